@@ -23,7 +23,7 @@ import numpy as np
 
 from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.drawing.label_places import Ground, Wish, place_labels
+from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
 from beamdyn.common.drawing.shapes import Arrow, Drawing, Label
 from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
@@ -92,12 +92,12 @@ def time_labels() -> Iterator[Row]:
     """Places of many labels among many lines."""
     draw = np.random.default_rng(19)
     ends = draw.uniform((40, 40, 40, 40), (640, 480, 640, 480), (SHAPES, 4))
-    ground = Ground((4.0, 4.0, 676.0, 516.0), ends, ends[:, 2:])
-    wishes = [Wish((60.0, 12.0), end[None, 2:], tuple(end[2:] - end[:2])) for end in ends[:LABELS]]
+    obstacles = Obstacles((4.0, 4.0, 676.0, 516.0), ends, ends[:, 2:])
+    requests = [LabelRequest((60.0, 12.0), end[None, 2:], tuple(end[2:] - end[:2])) for end in ends[:LABELS]]
 
     def place() -> None:
-        fresh = Ground(ground.frame, ground.lines, ground.points)
-        assert None not in place_labels(wishes, fresh)
+        fresh = Obstacles(obstacles.frame, obstacles.lines, obstacles.points)
+        assert None not in place_labels(requests, fresh)
 
     yield f"{LABELS} labels among {SHAPES} lines: places [ms]", f"{1e3 * _time(place):.1f}", f"{BOUND}"
     shapes = [Arrow(end[:2], end[2:], "load") for end in ends[: SHAPES - LABELS]]

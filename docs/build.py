@@ -1,6 +1,7 @@
 """Build the site into build/site, offline: ``python docs/build.py`` (extra ``docs``); a warning is an error.
 
-The validation manual is written anew if what its numbers follow from has changed; with ``-E`` everything is.
+The validation manual is written anew, and the gallery run again, if what they follow from has changed; with
+``-E`` everything is.
 Then every link and every anchor within the site is followed, and nothing may come from a network.
 """
 

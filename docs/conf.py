@@ -22,7 +22,8 @@ extensions = [
     "myst_parser",
     "sphinx_copybutton",
     "sphinx_gallery.gen_gallery",
-    "mathml",  # this and the next ones: docs/_ext
+    "gallery_pages",  # notes what examples ran when they have run
+    "mathml",  # this, the one above and the next ones: docs/_ext
     "docstring_bars",
     "docstring_pages",
     "repository_pages",

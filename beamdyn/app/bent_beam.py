@@ -1,4 +1,4 @@
-"""A bent beam as a drawing: along its own axis, its deflection to a stated scale."""
+"""Drawing of a bent beam along its own axis, with its deflection to a stated scale."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _SHOWN = 0.22  # largest deflection drawn, over the length
 
 
 def drawn_larger(largest: float, length: float) -> float:
-    """By how much deflections are drawn larger so that the largest one is seen: 1, 2, 5, 10, ...
+    """Factor by which deflections are drawn larger, so that the largest one is seen: 1, 2, 5, 10, ...
 
     Parameters
     ----------
     largest : float
         The largest deflection [m].
     length : float
-        Of the beam [m].
+        Length of the beam [m].
     """
     if not 0 < largest < np.inf:
         return 1.0
@@ -46,13 +46,13 @@ def bent_beam(
     deflection : ndarray, shape (n,)
         Deflection as drawn [m].
     title : str
-        Above it.
+        Title.
     label : str
-        At its tip.
+        Label at the tip.
     envelope : sequence of ndarray, shape (n,)
         Further deflections as drawn [m], in grey.
     room : float
-        Largest deflection as drawn [m] for which there is room.
+        Largest deflection as drawn [m] for which to leave room.
     scale : str
         To which the deflection is drawn, in words.
     """

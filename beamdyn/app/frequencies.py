@@ -1,4 +1,4 @@
-"""The screen of natural frequencies over speed, what excites them, and where the beam buckles."""
+"""The screen of natural frequencies over speed, their lines of excitation, and the critical speed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.app.headlines import of_locus
 from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
 from beamdyn.app.sketches import sketch
-from beamdyn.app.speed_charts import Meeting, describe_margin, frequency_chart
+from beamdyn.app.speed_charts import CrossingPoint, describe_margin, frequency_chart
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated
 from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
@@ -35,7 +35,7 @@ from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, p
 from beamdyn.tables.results import crossings_table, locus_table
 
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
-_COARSE, _ROUGH = "coarse", 1e-3  # a table that says so, and the tolerance then
+_COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
 
 
@@ -55,7 +55,7 @@ class Frequencies:
         Why there are no crossings, if the motion has none that are known.
     lines : tuple of Line
         Lines that excite the beam.
-    meetings : tuple of (float, float, str)
+    crossing_points : tuple of (float, float, str)
         Speed [rad/s] and frequency [Hz] of each crossing, and what crosses.
     margins : tuple of Margin
         Distances of the modes from the nearest line at the speed at which the motion settles.
@@ -66,7 +66,7 @@ class Frequencies:
     critical: CriticalPoint
     refused: str
     lines: tuple[Line, ...] = ()
-    meetings: tuple[Meeting, ...] = ()
+    crossing_points: tuple[CrossingPoint, ...] = ()
     margins: tuple[Margin, ...] = ()
 
     @property
@@ -102,7 +102,7 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
 
 
 def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The same with fewer speeds and digits, for a picture of it."""
+    """Tables of a coarser solution, with fewer speeds and digits, for the drawing."""
     return {**tables, _COARSE: {}}
 
 
@@ -116,7 +116,7 @@ def _solve_coarsely(scene: Scene, top: float, modes: int) -> Frequencies:
     except ValueError as error:
         return Frequencies(locus, None, critical, str(error))
     return Frequencies(
-        locus, None, critical, "", lines, tuple(_meetings(locus, lines)), _margins(locus, lines)
+        locus, None, critical, "", lines, tuple(_crossing_points(locus, lines)), _margins(locus, lines)
     )
 
 
@@ -133,7 +133,7 @@ def motion_speed(scene: Scene) -> float | None:
 
 
 def _lines_of(locus: Locus) -> tuple[Line, ...]:
-    """Lines of the load, of the motion of a locus's scene."""
+    """Lines of the load by the motion of the locus's scene."""
     motion = locus.scene.motion
     if motion is None:
         return ()
@@ -141,7 +141,7 @@ def _lines_of(locus: Locus) -> tuple[Line, ...]:
     return tuple(distinct_lines(excitation_lines(system, motion, 1)[0]))
 
 
-def _meetings(locus: Locus, lines: Sequence[Line]) -> Iterator[Meeting]:
+def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPoint]:
     """Where lines meet the modes of a locus, taken as straight between its speeds."""
     for line in lines:
         apart = locus.frequency - line.multiple * locus.speeds[:, None] / (2 * np.pi)
@@ -161,13 +161,13 @@ def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
 
 
 def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
-    """Frequencies over speed with what is known of them."""
+    """Frequencies over speed, with lines, crossings, margins and the critical speed."""
     same = answer.have_same_physics
     return [
         frequency_chart(
             answer.locus,
             answer.lines,
-            answer.meetings if same else (),
+            answer.crossing_points if same else (),
             answer.margins if same else (),
             (answer.critical.speed, critical_label(answer.critical)),
             motion_speed(answer.locus.scene),

@@ -1,4 +1,4 @@
-"""What stands first on the beam's screens: the few results that decide."""
+"""The most important results, which stand first on the beam's screens."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def of_locus(locus: Locus, critical: CriticalPoint) -> Iterator[KeyResult]:
 
 
 def of_steady(response: SteadyResponse) -> Iterator[KeyResult]:
-    """The largest deflection of the tip, whether it is past linear theory, and the speed at which it is."""
+    """The largest deflection of the tip, whether it is past linear theory, and its speed."""
     amplitude = np.asarray(response.amplitude)
     if not np.isfinite(amplitude).any():
         yield KeyResult("largest deflection of the tip", "no steady state")
@@ -52,7 +52,7 @@ def of_numbers(modes: Modes) -> Iterator[KeyResult]:
 
 
 def of_modes(modes: Modes) -> Iterator[KeyResult]:
-    """The same, and the largest model error, which takes longer than the modes."""
+    """Those of `of_numbers`, and the largest model error, which takes longer than the modes."""
     yield from of_numbers(modes)
     if np.isfinite(modes.model_error).any():
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))
@@ -72,7 +72,7 @@ def of_trade(modes: Modes, time: float, cheapest: str) -> Iterator[KeyResult]:
 
 
 def _in(unit: ShownUnit, value: float) -> str:
-    """A value of SI in the unit that it is shown in."""
+    """A value in SI, as text in the unit shown."""
     return number(unit.of(value), unit.name)
 
 

@@ -31,7 +31,7 @@ DRAGS = (
 )
 # What makes an answer take long.
 EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."
-# Lists of tables, and what they are.
+# Lists of tables, and their meanings.
 _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
     "beam.point_spring": 'springs along the beam, each such as { position = "20 mm", stiffness = "10 N/m" }',
@@ -59,7 +59,7 @@ class OperationInput(Section):
 
 
 class TradeInput(Section):
-    """[trade]: how good an answer is to be."""
+    """[trade]: how many digits an answer is to have."""
 
     digits: Annotated[float, WholeNumber(symbol="n", meaning="digits to keep", least=1, most=10)]
 

@@ -38,7 +38,7 @@ def solve(tables: Mapping[str, Any]) -> Modes:
 
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
-    """Each mode shape at a part of its swing: largest one way at 0, at rest at 1, the other way at 2."""
+    """Each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the undeflected beam."""
     each = [*_drawings(modes, 1.0 - place)]
     return [each[i : i + _ABREAST] for i in range(0, len(each), _ABREAST)]
 

@@ -1,4 +1,4 @@
-"""What the symbols of a scene's form mean: sketches of rotor, section and road."""
+"""Sketches of rotor, section and road that explain the symbols of a scene's form."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HUB = 0.16  # radius at which the sense of rotation is drawn
 
 
 def sketch(entries: Mapping[str, str]) -> Rows:
-    """Sketches for a form with these entries: they have the symbols of the inputs that there are."""
+    """Sketches for a form with these entries, with the symbols of its inputs."""
     paths = {entry.path for entry in inputs_of(entries)}
     rows = [[_plan(paths)], [_section(paths), _from_the_side()]]
     return [*rows, [_road()]] if "motion.road.wavelength" in paths else rows

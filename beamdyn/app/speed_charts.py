@@ -1,4 +1,4 @@
-"""Charts over speed that the beam's screens share: natural frequencies with what excites them."""
+"""The chart of natural frequencies over speed, with lines of excitation, crossings and margins."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.scene.motion import Line
 from beamdyn.spectrum.locus import Locus
 
-Meeting = tuple[float, float, str]  # speed [rad/s], frequency [Hz], words
-_HEADROOM = 1.08
+CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
+_HEADROOM = 1.08  # height of the chart over the highest frequency
 _MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 
 
 def frequency_chart(
     locus: Locus,
     lines: Sequence[Line],
-    meetings: Sequence[Meeting],
+    crossing_points: Sequence[CrossingPoint],
     margins: Sequence[Margin],
     critical: tuple[float, str],
     motion_speed: float | None,
@@ -33,7 +33,7 @@ def frequency_chart(
         Frequencies.
     lines : sequence of Line
         Lines of excitation.
-    meetings : sequence of (speed, frequency, words)
+    crossing_points : sequence of (speed, frequency, words)
         Where lines meet frequencies.
     margins : sequence of Margin
         Distances of modes from the nearest line at the speed of the motion.
@@ -50,8 +50,8 @@ def frequency_chart(
         for i, frequency in enumerate(locus.frequency.T, 1)
     ]
     excited = [_line(line, last, top, units) for line in lines]
-    points = [ChartPoints("resonance", [(speed.of(v), f, f"{words}\n{speed.say(v, 5)}, {f:.5g} Hz")
-                                        for v, f, words in meetings])] if meetings else []  # fmt: skip
+    met = [(speed.of(v), f, f"{words}\n{speed.say(v, 5)}, {f:.5g} Hz") for v, f, words in crossing_points]
+    points = [ChartPoints("resonance", met)] if met else []
     near = [*_margins(margins, units)]
     points += [ChartPoints("margin at the motion's speed", near, "reaction")] if near else []
     return Chart(
@@ -81,7 +81,7 @@ def _line(line: Line, last: float, top: float, units: DisplayUnits) -> ChartCurv
 
 
 def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Highest frequency shown: that of the modes that are not far above all lines, the lowest among them."""
+    """Highest frequency shown: of the modes that are not far above all lines, or of the lowest mode."""
     known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
     fastest = max(ends, default=0.0)
     near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
@@ -89,12 +89,12 @@ def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
 
 
 def _round_up(value: float) -> float:
-    """The next number of two digits."""
+    """The next larger number of two digits."""
     size = 10.0 ** np.floor(np.log10(value)) / 10
     return float(f"{np.ceil(value / size) * size:.2g}")
 
 
-def _margins(margins: Sequence[Margin], units: DisplayUnits) -> Iterator[Meeting]:
+def _margins(margins: Sequence[Margin], units: DisplayUnits) -> Iterator[CrossingPoint]:
     speed = units.speed_unit()
     for margin in margins:
         where = f"{speed.say(margin.speed, 5)}, {margin.frequency:.5g} Hz"

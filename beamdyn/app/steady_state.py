@@ -102,7 +102,7 @@ def stretches(answer: SteadyResponse) -> np.ndarray:
 
 
 def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
-    """Stretches of one reason each, halfway to the speeds beside them."""
+    """Bands over speeds with the same reason, which end midway between two speeds."""
     changes = np.flatnonzero(said[1:] != said[:-1]) + 1
     middles = (x[:-1] + x[1:]) / 2
     starts, ends = [0, *changes.tolist()], [*changes.tolist(), len(x)]

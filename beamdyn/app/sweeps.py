@@ -20,17 +20,9 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.curves import sweep_figure
 from beamdyn.common.designs import check_designs
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import (
-    MOST_ONE_BY_ONE,
-    InputSweep,
-    Output,
-    chosen,
-    designs_of,
-    numbers,
-    one_by_one,
-    parse_axis,
-    solve_cases,
-)
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen
+from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_cases
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
 from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene
@@ -38,12 +30,12 @@ from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.modes import Modes
 
 Kept = TypeVar("Kept")
-_COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, speeds about the largest, how often these close in
+_COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, about the largest amplitude, and refinements of these
 
 
 @dataclass(frozen=True)
 class SweepCase:
-    """A case of a sweep: a scene, and how far and with how many modes; answers are computed when wanted.
+    """A case of a sweep: a scene with top speed and number of modes; answers are computed when wanted.
 
     Parameters
     ----------
@@ -52,7 +44,7 @@ class SweepCase:
     top : float
         Top speed [rad/s].
     modes : int
-        How many modes.
+        Number of modes.
     """
 
     scene: Scene
@@ -89,7 +81,7 @@ class SweepCase:
 
     @property
     def first_resonance(self) -> float:
-        """The lowest of them; inf if there is none."""
+        """The lowest resonance speed [rad/s]; inf if there is none."""
         return float(self.crossings.min(initial=np.inf))
 
     def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
@@ -167,7 +159,7 @@ def _frequency(mode: int, share: float, case: SweepCase) -> float:
 
 
 def steady_outputs(_: int) -> list[Output]:
-    """The steady amplitude at the top speed, and the largest on the way there."""
+    """The steady amplitude at the top speed, and the largest one up to there."""
     return [
         Output(
             "amplitude",
@@ -201,7 +193,7 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
 
 
 def _draw(swept: InputSweep) -> Figure:
-    """The sweep, its warnings below it: it may be taken away without the page."""
+    """The sweep with its warnings below it, as a picture may be used without the page."""
     return note_below(sweep_figure(swept), swept.warnings)
 
 

@@ -1,4 +1,4 @@
-"""The screen of the trade: what digits of natural frequencies at a speed cost, and which model gives them."""
+"""The screen of the trade-off: the time that digits of natural frequencies take, and the cheapest model."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ NEEDS = ("trade", "options", "operation", *SCENE_TABLES)
 
 @dataclass(frozen=True)
 class Trade:
-    """The model chosen for a tolerance, and the measurements that it is held against.
+    """The model chosen for a tolerance, and measurements of others to compare it with.
 
     Parameters
     ----------
@@ -53,9 +53,9 @@ class Trade:
     time : float
         Shortest processor time of the whole call, with the choice of the model [s].
     numerical : Diagram
-        Error of the numbers against time.
+        Numerical error against time.
     of_physics : Diagram
-        The same, the error of the model included.
+        Numerical error with model error against time.
     """
 
     digits: int
@@ -70,13 +70,13 @@ class Trade:
         return 10.0**-self.digits
 
     def cheapest(self, diagram: Diagram) -> Digit | None:
-        """The cheapest measurement with so many digits; None if none has them."""
+        """The cheapest measurement with as many digits as asked for; None if none has them."""
         each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
         return next(each, None)
 
 
 def solve(tables: Mapping[str, Any]) -> Trade:
-    """The model chosen, and what others take."""
+    """The chosen model, and measurements of others."""
     digits = int(read_aside(tables, "trade").digits)
     scene, speed, modes = read_at_speed(tables)
     scene = plain_physics(scene)
@@ -107,7 +107,7 @@ def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
 
 
 def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
-    """Error against time, of the numbers alone and with that of the model."""
+    """Error against time: the numerical error alone, and with the model error."""
     made = [_chart(answer, answer.numerical, "Error of the numbers")]
     if answer.of_physics.measurements:
         made.append(_chart(answer, answer.of_physics, "Error with that of the model"))
@@ -139,7 +139,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
 
 
 def _curve(name: str, points: Sequence[tuple[float, float]]) -> ChartCurve:
-    """Errors against times [ms]; those beyond the picture at its edge."""
+    """Errors against times [ms]; errors outside the chart are drawn at its edge."""
     at = np.array(points).reshape(-1, 2)
     return ChartCurve(name, 1e3 * at[:, 0], np.clip(at[:, 1], _LEAST, _LARGEST), points=True)
 
@@ -213,7 +213,7 @@ def _chosen_table(answer: Trade) -> RenderableType:
             f"{f:.10g}",
             f"{error:.0e}",
             say_size(float(of_model)),
-            _worse(error, of_model, answer.tolerance),
+            _verdict(error, of_model, answer.tolerance),
         )
         for i, (f, error, of_model) in enumerate(zip(modes.frequency, modes.error, known, strict=True), 1)
     ]
@@ -224,8 +224,8 @@ def _chosen_table(answer: Trade) -> RenderableType:
     return table(title, ("mode", "frequency [Hz]", "numerical error", "model error", "digits"), rows, (4,))
 
 
-def _worse(error: float, of_model: float, tolerance: float) -> str:
-    """Which error breaks the tolerance, if one does."""
+def _verdict(error: float, of_model: float, tolerance: float) -> str:
+    """Whether the tolerance is kept, or by which error it is missed."""
     if not error <= tolerance:
         return "the numbers miss the tolerance"
     if np.isnan(of_model):
@@ -234,7 +234,7 @@ def _worse(error: float, of_model: float, tolerance: float) -> str:
 
 
 def rows(answer: Trade) -> Iterator[Sequence[object]]:
-    """All measurements, of the numbers and with the model's error."""
+    """All measurements: of the numerical error, and of that with the model error."""
     for name, diagram in (("numerical", answer.numerical), ("with_model_error", answer.of_physics)):
         heads, *lines = diagram_csv(diagram)
         if name == "numerical":

@@ -37,16 +37,16 @@ from beamdyn.transient.transient import Transient
 _TOLERANCE = 1e-4
 _MOST_PERIODS = 20_000  # of the first mode at rest in a run
 _PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
-_SAMPLES = 40  # the largest ones, beside which the peak is
-_CLOSE = 4  # periods of the first mode on either side of the present one in the close-up
-_MOST_SENT = 4000  # points of the whole run on the page: so many that its periods are seen when it is zoomed
+_SAMPLES = 40  # number of the largest samples near which the peak is sought
+_CLOSE = 4  # periods of the first mode before and after the present time in the close-up
+_MOST_SENT = 4000  # points of the whole run on the page: enough to see its periods when zoomed
 _MODES = 3  # whose resonances are marked
 NEEDS = ("run", *SCENE_TABLES)
 
 
 @dataclass(frozen=True)
 class Playable:
-    """A transient, and what is marked in it.
+    """A transient with its peak and the resonances that it passes, to be played.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Playable:
     passages : tuple of (float, str)
         When the speed passes a resonance speed [s], and what resonates.
     period : float
-        Of the first mode at rest [s].
+        Period of the first mode at rest [s].
     """
 
     run: Transient
@@ -70,7 +70,7 @@ class Playable:
     period: float
 
     def time(self, place: float) -> float:
-        """The time at a place of the slider, 0 to 1 [s]."""
+        """The time at a position of the slider, from 0 to 1 [s]."""
         return self.run.path.start + place * (self.run.path.end - self.run.path.start)
 
 
@@ -139,7 +139,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
-    """The beam at a time, in each direction, and how far it swings about then."""
+    """The beam at a time, in each direction, with its extremes within a period before and after."""
     return [[_beam(answer, place, direction) for direction in range(answer.run.scene.physics.planes)]]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from beamdyn.loads.cycles import LoadCycles
+    from beamdyn.loads.equivalent_ranges import EquivalentRange
 
 LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
@@ -88,22 +90,12 @@ class CycleOptions:
         """Number of equal cycles that do the same damage."""
         return 1.0 if self.equivalent_cycles is None else self.equivalent_cycles
 
-    def tables(self, cycles: LoadCycles, error: float) -> list[RenderableType]:
-        """Counted cycles, and the equal cycles that do the same damage.
-
-        Parameters
-        ----------
-        cycles : LoadCycles
-            The cycles.
-        error : float
-            Absolute error of the quantity that was counted [its unit].
-        """
+    def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
+        """Counted cycles, and the equal cycles that do the same damage."""
         from beamdyn.tables.loads import cycles_table, equivalents_table
 
         made: list[RenderableType] = [cycles_table(cycles)]
-        if self.exponents:
-            made.append(equivalents_table(cycles, self.exponents, self.number, error))
-        return made
+        return [*made, equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""

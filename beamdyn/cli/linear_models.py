@@ -62,6 +62,7 @@ def matrices(
         Output files.
     """
     from beamdyn import matrices
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.linear_models import matrices_csv, matrices_table
 
@@ -72,7 +73,9 @@ def matrices(
     options = {"speed": speed, "modes": modes, "discretization": discretization, "physics": physics}
     question = Question.on_file("beamdyn matrices", scene, **options)
     result = matrices(loaded, speed_or_final(loaded, speed), modes, discretization)
-    deliver(result, outputs, question, [matrices_table(result)], matrices_csv(result))
+    deliver(
+        result, outputs, question, [matrices_table(result)], matrices_csv(result), None, warnings_of(result)
+    )
 
 
 @app.command(
@@ -119,6 +122,7 @@ def response(
         Output files.
     """
     from beamdyn import frequency_response
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.linear_models import response_csv, response_table
 
@@ -133,7 +137,7 @@ def response(
     at = speed_or_final(loaded, speed)
     result = frequency_response(loaded, at, given, drive, seen, modes, discretization=discretization)
     tables, rows, draw = [response_table(result)], response_csv(result), on_axes(result.plot)
-    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 
 
 @app.command(
@@ -172,6 +176,7 @@ def random(
         Output files.
     """
     from beamdyn import random_response
+    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.html_report import Question
     from beamdyn.tables.linear_models import random_csv, random_table
 
@@ -186,7 +191,7 @@ def random(
     at = random_input.speed_of(loaded)
     result = random_response(loaded, at, spectrum, drive, seen, modes=modes, discretization=discretization)
     tables, rows, draw = [random_table(result)], random_csv(result), on_axes(result.plot)
-    deliver(result, outputs, question, tables, rows, draw, result.warnings)
+    deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 
 
 # Values of options --------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -243,7 +243,9 @@ def _in_transient(
         station = result.station_of(place)
         cycles = count_cycles(result, counting.cycles, station, place.component, *ends)
         counting.write(cycles)
-        tables += counting.tables(cycles, place.error)
+        equivalents = cycles.equivalents(counting.exponents, counting.number, place.error)
+        result = replace(result, equivalent_ranges=equivalents)
+        tables += counting.tables(cycles, equivalents)
     return result, tables
 
 

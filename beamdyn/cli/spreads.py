@@ -39,7 +39,7 @@ def answer_spread(
     from beamdyn import spread
     from beamdyn.common.edge.program import NoAnswer
     from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.spread_options import parse_spreads
+    from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
     from beamdyn.common.edge.spread_tables import spread_csv, spread_table
     from beamdyn.common.edge.wording import of_file
     from beamdyn.common.spreading.pictures import spread_figure
@@ -52,14 +52,15 @@ def answer_spread(
             spreading.spread,
             lambda entry: (nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path)),
         )
-        result = spread(
-            scene,
-            {each.name: each.distribution for each in given},
-            samples=spreading.samples,
-            seed=spreading.seed,
-            progress=progress,
-            **how,
-        )
+        with in_units_of(given):
+            result = spread(
+                scene,
+                {each.name: each.distribution for each in given},
+                samples=spreading.samples,
+                seed=spreading.seed,
+                progress=progress,
+                **how,
+            )
     rows = spread_csv(result)
     deliver(
         result,

@@ -28,8 +28,8 @@ from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.input_sweep import Axis
     from beamdyn.common.edge.inputs import Input
+    from beamdyn.common.edge.varied_inputs import Axis
     from beamdyn.scene.scene import Scene
     from beamdyn.studies.result import Study
 
@@ -96,8 +96,8 @@ def study(
     from beamdyn.cautions import warnings_of
     from beamdyn.common.designs import MOST_DESIGNS, check_designs
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.input_sweep import designs_of, parse_axis
     from beamdyn.common.edge.progress import at_work
+    from beamdyn.common.edge.varied_inputs import designs_of, parse_axis
     from beamdyn.common.edge.wording import of_file
     from beamdyn.tables.studies import study_csv, study_table
 
@@ -208,8 +208,8 @@ def _refusal(result: Study) -> str:
 
 def _inputs(scene: Scene) -> list[Input]:
     """The inputs of scene files that a study varies, each once, those in lists of a scene, and the speed."""
-    from beamdyn.common.edge.input_sweep import numbers
     from beamdyn.common.edge.inputs import Input, Quantity, describe
+    from beamdyn.common.edge.varied_inputs import numbers
     from beamdyn.config.scene_inputs import SceneInput
     from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
     from beamdyn.studies.listed_numbers import listed_names

@@ -53,7 +53,7 @@ def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answ
 
 
 def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """The same for an analysis of the plain beam alone, to which physics "auto" adds nothing."""
+    """The same for an analysis about the straight beam alone, which physics "auto" does not bend."""
     return _announcing(analysis, "")
 
 

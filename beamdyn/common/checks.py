@@ -232,8 +232,8 @@ def moderate(name: str, value: object, unit: str = "") -> float:
 def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
     """A number above zero, neither so large nor so small that powers and products overflow."""
     number = positive(name, value, unit, remedy)
-    bound = f"give a size from {1 / MOST:g} to {{limit}}"
-    refuse(not 1 / MOST <= number <= MOST, name, number, unit, bound, remedy, limit=MOST)
+    refuse(number < 1 / MOST, name, number, unit, "give a size of {limit} or more", remedy, limit=1 / MOST)
+    refuse(number > MOST, name, number, unit, "give a size of at most {limit}", remedy, limit=MOST)
     return number
 
 
@@ -384,7 +384,7 @@ def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.nda
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
     bound, remedy = "it follows {limit}; values must ascend without repeats", "pass numpy.unique({other})"
-    refuse(np.diff(array) <= 0, name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
+    refuse(array[1:] <= array[:-1], name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
     return array
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import BeyondModel, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
@@ -128,6 +129,7 @@ def _label(harmonic: int) -> str:
     return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
 
 
+@announced_of_plain_beam
 def frequency_response(
     scene: Scene,
     speed: float,
@@ -192,7 +194,7 @@ def frequency_response(
     start = perf_counter()
     given = ascending("frequencies", frequencies)
     refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
-    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit} {unit}", limit=_HIGHEST)
+    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit}", limit=_HIGHEST)
     drive, seen = as_excitation("input", input), as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, real_array, refuse, several
-from beamdyn.common.one_line import counted
+from beamdyn.common.one_line import counted, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
@@ -19,10 +20,13 @@ from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forc
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed, poles_of
 from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_left_out
 
 _NODAL = 1e-9  # by which a nodal value may differ from 1
+_FEW = 5  # modes, of which the lowest loses its stability first
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,8 @@ class Matrices(Result):
         The inputs u, with units.
     coordinates, rows : tuple of str
         What each coordinate q and each equation is, with units.
+    warnings : tuple of str
+        What limits the validity of the matrices.
     provenance : Provenance
         How the matrices were computed.
 
@@ -77,6 +83,7 @@ class Matrices(Result):
     inputs: tuple[str, ...]
     coordinates: tuple[str, ...]
     rows: tuple[str, ...]
+    warnings: tuple[str, ...]
     provenance: Provenance
     equations: Equations = field(repr=False)
     scene: Scene = field(repr=False)
@@ -85,6 +92,7 @@ class Matrices(Result):
         """What it says in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
+        yield warned(self.warnings)
 
     @property
     def poles(self) -> np.ndarray:
@@ -127,6 +135,7 @@ class Matrices(Result):
         return self.equations.deflection(xi, direction=check_direction(direction)).T
 
 
+@announced_of_plain_beam
 def matrices(
     scene: Scene,
     speed: float,
@@ -192,10 +201,27 @@ def matrices(
         inputs=tuple(f"{each.label} [{each.unit}]" for each in given),
         coordinates=coordinates,
         rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
+        warnings=(*warn_of_model(model),),
         provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
         equations=equations,
         scene=scene,
     )
+
+
+def warn_of_model(model: ModelAtSpeed) -> Iterator[str]:
+    """Yield what limits the validity of the equations at the speed, in the words of natural modes there."""
+    yield from warn_of_left_out(model.scene)
+    growing = _growing(model)
+    if growing:
+        yield f"unstable at {model.speed:.6g} rad/s: {growing} mode(s) grow; see poles"
+    yield from warn_of_rotation(model.model, model.speed)
+
+
+def _growing(model: ModelAtSpeed) -> int:
+    """How many of the lowest modes grow."""
+    solver = model.model.solver
+    found = solver.solve(np.array([model.speed]), min(model.modes or _FEW, solver.size))
+    return int((np.real(found.eigenvalue) > 0).sum())
 
 
 def listed(name: str, given: Any) -> tuple[Any, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
@@ -113,7 +113,7 @@ class RandomResponse(Result):
         return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
 
 
-@announced
+@announced_of_plain_beam
 def random_response(
     scene: Scene,
     speed: float,

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.announced import announce
 from beamdyn.common.checks import InvalidValue
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import Excitation
-from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive
+from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive, warn_of_model
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot, as_observation
 from beamdyn.modal.choice import DiscretizationChoice
@@ -80,6 +81,7 @@ def state_space(
     scene, speed = check_linear(scene, speed, modes)
     excitations = list_inputs(inputs, scene)
     model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization)
+    announce((*warn_of_model(model),), "")
     drives = [steady_drive(model, each) for each in excitations]
     observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
     _refuse_delayed_strain(scene, observed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import count, kind, positive
 from beamdyn.common.one_line import number, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.loads.equivalent_ranges import EquivalentRange
 from beamdyn.loads.span_loads import UNITS
 from beamdyn.loads.transient_loads import TransientLoads, window_in
 from beamdyn.scene.scene import Scene
@@ -95,6 +96,23 @@ class LoadCycles(Result):
         if not largest:
             return 0.0
         return largest * float((self.counts * (self.ranges / largest) ** m).sum() / number) ** (1 / m)
+
+    def equivalents(
+        self, exponents: Sequence[float], cycles: float, error: float
+    ) -> tuple[EquivalentRange, ...]:
+        """Ranges of equal cycles for several exponents, with their errors by that of the quantity [its unit].
+
+        Each range counted is off by twice the error of the values at most; Minkowski's inequality adds them
+        up.  The turning points add a thousandth.
+        """
+        found = []
+        for m in exponents:
+            value = self.equivalent_range(m, cycles)
+            of_values = 2 * error * (float(self.counts.sum()) / cycles) ** (1 / m)
+            of_both = of_values + TURNING_POINTS * value
+            place = self.quantity, self.component, self.x, self.start, self.end
+            found.append(EquivalentRange(*place, m, cycles, value, of_both))
+        return tuple(found)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how many cycles exceed each range."""

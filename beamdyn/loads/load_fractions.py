@@ -41,7 +41,7 @@ class LoadFractions:
     Parameters
     ----------
     shift : float
-        How far the response is from the input [Hz].
+        Frequency of the response less that of the input [Hz].
     direct : ndarray of complex, shape (S, K)
         d of K outputs at S stations.
     residues : ndarray of complex, shape (S, K, m)
@@ -70,7 +70,7 @@ class LoadFractions:
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Terms of the mean square by pole (S, K, m), whose real parts count twice, and its constant."""
+        """Terms of the mean square by pole (S, K, m), whose real parts count twice, and its constant term."""
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -78,7 +78,7 @@ class LoadFractions:
         return by_pole, np.abs(self.direct) ** 2 * integrals.whole
 
     def together_with(self, other: LoadFractions, spectrum: PowerSpectrum) -> np.ndarray:
-        """Integral of H conj(H') S over the frequency of the input, H' being the other: shape (S, K)."""
+        """Integral of H conj(H') S over the frequency of the input, with H' of `other`: shape (S, K)."""
         mu, conjugate = self._mu, np.conj(other._mu)
         r, d = self.residues / (2j * np.pi), self.direct
         other_r, other_d = np.conj(other.residues / (2j * np.pi)), np.conj(other.direct)
@@ -95,8 +95,8 @@ class LoadFractions:
 
 
 @dataclass(frozen=True)
-class Drives:
-    """Loads at stations of a linear model, by what drives it.
+class LinearLoads:
+    """Loads at stations of a linear model: transfer functions from an excitation, and steady loads.
 
     Parameters
     ----------
@@ -132,9 +132,12 @@ class Drives:
         return (*found,)
 
     def steady(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outputs (S, K) by the steady rotation, and amplitudes of what gravity makes of them in a turn.
+        """Outputs of steady rotation, and amplitudes of their variation by gravity within a turn.
 
-        At rest gravity adds to the former: it acts as it does at the angle of rotation 0.
+        Returns
+        -------
+        constant, amplitude : ndarray, shape (S, K)
+            At rest gravity counts in the constant outputs, as at the angle of rotation 0.
         """
         rows, _ = self._rows
         root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))

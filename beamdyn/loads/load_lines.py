@@ -17,10 +17,11 @@ from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_b
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import Pair, generate_harmonics, list_harmonics
 from beamdyn.steady.response import SteadyResponse
+from beamdyn.steady.tip_lines import combine_pairs
 from beamdyn.steady.vibration import Vibration, vibration_of
 
 _BATCH = 2000  # sums of lines whose largest values are sought at once
-_NEGLIGIBLE = 1e-12  # of the tip, over the sum of all lines: its harmonics of one interaction more are kept
+_NEGLIGIBLE = 1e-12  # size of a line of the tip, over the sum of all, below which it is left out
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,21 @@ class LoadLines:
 def lines_of_response(
     response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
 ) -> LoadLines:
-    """Lines of the outputs at stations of a steady response, or of the forces and moments there."""
+    """Find the lines of loads in a steady response.
+
+    Parameters
+    ----------
+    response : SteadyResponse
+        The response at C speeds, of a straight beam.
+    stations : SpanStations
+        The S stations.
+    outputs : StationOutputs, optional
+        The K outputs at each station; forces and moments if not given.
+
+    Returns
+    -------
+    LoadLines
+    """
     request, speeds = response.request, response.speeds
     model, motion = request.model, check_steady_state(request.scene.motion)
     equations = model.modal_equations(request.basis)
@@ -84,19 +99,19 @@ def lines_of_response(
     union = _harmonics_of_loads(rows, spectra, pairs)
     fine, rough = (_expand(rows, spectra, union, pairs, rates, each) for each in (q, truncated))
     fine[~response.stable] = np.nan
-    kappa = motion.road_multiple or 0.0
-    forward = [i for i, h in enumerate(union) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
-    harmonics = np.array([union[i] for i in forward], dtype=int).reshape(-1, 2)
-    amplitude = fine[..., forward] * np.where(harmonics.any(axis=1), 2.0, 1.0)
-    return LoadLines(harmonics, amplitude, np.abs(fine - rough).sum(axis=-1))
+    return LoadLines(*combine_pairs(fine, union, motion), np.abs(fine - rough).sum(axis=-1))
 
 
 def _solve(
     vibration: Vibration, equations: Equations, response: SteadyResponse
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H) of the coordinates (C, H, n), those of one interaction more than in the response.
+    """Solve for the coordinates with the harmonics of one interaction more than in the response.
 
-    Also the coordinates without these further harmonics, by whose distance their error is estimated.
+    Returns
+    -------
+    harmonics : list of pair, length H
+    coordinates, truncated : ndarray of complex, shape (C, H, n)
+        With all harmonics, and without those of the further interaction, to estimate the error.
     """
     coupling = set().union(*(system.coupling for system, _ in vibration.parts))
     levels = generate_harmonics(_harmonics_that_matter(response), coupling, 1)
@@ -112,7 +127,7 @@ def _solve(
 
 
 def _harmonics_that_matter(response: SteadyResponse) -> list[Pair]:
-    """Harmonics of the response, and their opposites, without those that are below rounding at all speeds."""
+    """Harmonics of the response, and their opposites, without those within rounding error at all speeds."""
     size = np.abs(response.line_amplitude) + np.abs(response.line_amplitude_across)
     matter = (np.nan_to_num(size) > _NEGLIGIBLE * np.nan_to_num(response.bound)[:, None]).any(axis=0)
     both = ((sign * int(j), sign * int(k)) for j, k in response.harmonics[matter] for sign in (1, -1))
@@ -141,7 +156,7 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Complex harmonics of the outputs (C, S, K, U), over a list of harmonics that includes the pairs."""
+    """Complex harmonics (C, S, K, U) of the outputs; the U harmonics include those of the coordinates."""
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

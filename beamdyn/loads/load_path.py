@@ -33,7 +33,7 @@ class LoadPath(FieldsOnly):
     stations : SpanStations
         The stations, S of them.
     given : StationOutputs, optional
-        What is stated of each, K outputs; None if only the loads are wanted.
+        The K outputs at each; None if only forces and moments are wanted.
     """
 
     run: Transient
@@ -48,12 +48,12 @@ class LoadPath(FieldsOnly):
 
     @cached_property
     def rows(self) -> LoadRows:
-        """The outputs by the state of the run."""
+        """The outputs as linear functions of the state of the run."""
         return self.loads.through(self.outputs.matrix)
 
     @cached_property
     def loads(self) -> LoadRows:
-        """Forces and moments by the state of the run."""
+        """Forces and moments as linear functions of the state of the run."""
         equations, model = self._system.equations, self.run.request.model
         return span_rows(self.run.scene, model.discretization, equations, self.stations).in_motion(equations)
 

@@ -206,7 +206,7 @@ def _gather(components: list[LoadRows]) -> LoadRows:
 
 
 def _filled(rows: list[np.ndarray | None]) -> list[np.ndarray]:
-    """Zeros in place of what is missing."""
+    """The arrays, with zeros in place of those that are None."""
     like = next(row for row in rows if row is not None)
     return [np.zeros_like(like) if row is None else row for row in rows]
 

@@ -14,9 +14,23 @@ from beamdyn.transient.trajectory import Path, Trajectory
 
 
 def time_errors_of_rows(rows: LoadRows, system: ModalSystem, path: Path, of_tip: float) -> np.ndarray:
-    """Time-integration errors (S, K) of loads on a path, given that of the tip deflection [m].
+    """Estimate the time-integration errors of loads on a path.
 
-    They are nan where that of the tip is not known, and 0 where the beam stays in equilibrium.
+    Parameters
+    ----------
+    rows : LoadRows
+        K components of loads at S stations, by the state.
+    system : ModalSystem
+        The equations.
+    path : Path
+        The motion.
+    of_tip : float
+        Time-integration error of the tip deflection [m].
+
+    Returns
+    -------
+    ndarray, shape (S, K)
+        nan where the error of the tip is not known, and 0 where the beam stays in equilibrium.
     """
     if of_tip == 0 or not isinstance(path, Trajectory):
         return np.full(rows.shape, of_tip)
@@ -29,7 +43,7 @@ def time_errors_of_rows(rows: LoadRows, system: ModalSystem, path: Path, of_tip:
 def largest_per_coordinate(
     rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
 ) -> np.ndarray:
-    """Largest load over the run per unit of the amplitude of each coordinate: shape (S, K, n)."""
+    """Largest load over the run per unit amplitude of each coordinate: shape (S, K, n)."""
     root = system.root(path.samples[0])  # several in each step: steps are short where a shock acts
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):

@@ -1,8 +1,8 @@
-"""Error of loads by the modes left out, from their distance from a solution with more modes.
+"""Modal truncation error of loads, from their distance from a solution with more modes.
 
-The modes that a larger model adds vibrate in waves along the span: at the nodes of a wave the distance is
-small by chance, while other modes are not.  So the distance at a station is the largest within half a wave of
-the first mode left out, to either side.
+At the nodes of the modes that a larger model adds, the distance is small by chance, while other modes left
+out are not.  So at each station the largest distance counts within half a wave of the first mode left out,
+to either side.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _BETWEEN = 21  # stations besides those asked for
 
 
 def with_neighbours(stations: SpanStations) -> SpanStations:
-    """The stations, then others evenly along the beam, at which distances are judged too."""
+    """The stations, then others evenly along the beam at which distances are found as well."""
     more = np.linspace(0, 1, _BETWEEN)
     return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 
@@ -34,9 +34,7 @@ def mode_error(
     basis: ModalBasis,
     length: float,
 ) -> np.ndarray:
-    """Errors of outputs (..., S, K) from distances of loads (..., N, 1 + 2 d), with those of rounding.
-
-    They are infinite where the distance is too large to judge by, which it is not where the load is rounding.
+    """Estimate errors of outputs from distances of loads, with rounding errors.
 
     Parameters
     ----------
@@ -52,6 +50,12 @@ def mode_error(
         The modes kept.
     length : float
         Length of the beam [m].
+
+    Returns
+    -------
+    ndarray, shape (..., S, K)
+        Infinite where the distance exceeds 0.3 of the largest value along the span, and rounding: then it
+        does not bound the error.
     """
     everywhere = with_neighbours(stations).xi
     half_wave = 1 / (_count_modes(basis) + 0.5)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, ascending, positive, refuse, within
 from beamdyn.common.digits import percent, supported
 from beamdyn.common.one_line import counted, error_at_most, warned
@@ -36,7 +36,7 @@ from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
 from beamdyn.linear_models.random_input import highest_frequency, random_input, warn_of_band
 from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
 from beamdyn.linear_models.transfer import check_stable
-from beamdyn.loads.load_fractions import Drives, LoadFractions, largest_in_turn
+from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
@@ -266,7 +266,7 @@ class RandomLoads(SpanLoads):
         return values[:, self.outputs.places[quantity]]
 
 
-@announced
+@announced_of_plain_beam
 def random_loads(
     scene: Scene,
     speed: float,
@@ -390,13 +390,13 @@ class _InputAndOutputs:
 
     def fractions(self, model: ModelAtSpeed) -> tuple[LoadFractions, ...]:
         """Transfer functions from the input to the outputs, one for each harmonic of the rotation."""
-        return Drives(model, self.stations, self.outputs).fractions(self.drive)
+        return LinearLoads(model, self.stations, self.outputs).fractions(self.drive)
 
     def statistics(self, model: ModelAtSpeed) -> np.ndarray:
         """The fields of `RandomStatistics`, in their order: shape (5, S, K)."""
         check_stable(model)
         fractions, spectrum = self.fractions(model), self.spectrum
-        mean, gravity = Drives(model, self.stations, self.outputs).steady()
+        mean, gravity = LinearLoads(model, self.stations, self.outputs).steady()
         squares = [sum(each.mean_square(spectrum, order) for each in fractions) for order in (0, 2)]
         most = largest_in_turn(fractions, spectrum)
         rms, rate, in_turn = (_root(np.asarray(square)) for square in (*squares, most))

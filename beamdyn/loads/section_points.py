@@ -50,10 +50,29 @@ class Sections:
 def sections_at(
     scene: Scene, stations: SpanStations, points: SectionPoints | None, youngs_modulus: float | None
 ) -> Sections:
-    """Sections of a scene at stations, with points [m] that all have, or by default the outermost of each.
+    """Find the sections of a scene at stations.
 
-    The default is the corners of a rectangular beam that bends in two planes, else the outer fibres; none
-    where the beam has no outer fibre.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    stations : SpanStations
+        The S stations.
+    points : sequence of (float, float), optional
+        Points of every section [m]; if not given, the corners of a rectangle that bends in two planes, else
+        the outer fibres, and none if the beam has no outer fibre.
+    youngs_modulus : float, optional
+        Young's modulus [Pa]; that of a rectangular beam if not given.
+
+    Returns
+    -------
+    Sections
+
+    Raises
+    ------
+    InvalidValue
+        If the points are not pairs of finite numbers, or lie outside a section, or the modulus is not
+        positive.
     """
     beam, rectangle = scene.modelled_beam, rectangle_of(scene.beam)
     half = _half_sides(scene.beam, rectangle, stations.beside)
@@ -139,7 +158,7 @@ QUANTITIES = "force", "moment", "curvature", "strain", "stress"
 
 @dataclass(frozen=True)
 class StationOutputs:
-    """Everything that is stated at S stations, as linear functions of the loads there.
+    """All outputs at S stations, as linear functions of the loads there.
 
     Parameters
     ----------

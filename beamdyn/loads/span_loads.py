@@ -1,4 +1,4 @@
-"""What every result on loads along the span has: the stations, the loads there, and their errors."""
+"""Base of all results on loads along the span: stations, loads there, and their errors."""
 
 from __future__ import annotations
 
@@ -205,7 +205,7 @@ class SpanLoads(Result):
     def located(
         self, quantity: str, value: float, error: float, station: int, component: int, case: float
     ) -> LargestLoad:
-        """A value with its place."""
+        """A value with the position, component and case at which it occurs."""
         at = float(self.x[station]), bool(self.inboard[station])
         return LargestLoad(quantity, value, error, *at, component, case)
 
@@ -230,7 +230,7 @@ REMEDIES = {
 
 
 def placed(scene: Scene, stations: SpanStations, sections: Sections) -> dict[str, Any]:
-    """The fields of all results that say where, as arguments of their class."""
+    """Stations, points and scene, as arguments of the classes of results."""
     x = stations.xi * scene.beam.length
     return {"x": x, "inboard": stations.inboard, "points": sections.points, "scene": scene}
 

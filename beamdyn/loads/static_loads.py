@@ -141,20 +141,14 @@ def static_loads(
     sections = sections_at(scene, stations, points, youngs_modulus)
     model = choose_model(scene.undamped, discretization, speeds, _MODES)
     outputs = StationOutputs.of_sections(sections)
-    values, tip = _solve(model, stations, outputs, speeds, theta)
-    error = _error(values, _solve(model.coarser, stations, outputs, speeds, theta)[0])
+    found, tip = _solve(model, stations, outputs, speeds, theta)
+    error = _error(found, _solve(model.coarser, stations, outputs, speeds, theta)[0])
+    values = outputs.split(found)
     return StaticLoads(
         **placed(scene, stations, sections),
-        **outputs.split(values),
+        **values,
         **outputs.split(error, "_error"),
-        warnings=(
-            *of_plain,
-            *sections.notes,
-            *warn_of_left_out(scene),
-            *_warn_of_stretch(model, speeds),
-            *_warn_of_tip(tip, scene, speeds),
-            *warn_of_elastic_limit(outputs.split(values)["strain"]),
-        ),
+        warnings=(*of_plain, *sections.notes, *_warnings(scene, model, speeds, tip, values["strain"])),
         provenance=Provenance(
             __version__,
             str(model.discretization),
@@ -167,10 +161,16 @@ def static_loads(
     )
 
 
-def _warn_of_stretch(model: Model, speeds: np.ndarray) -> Iterator[str]:
-    """Yield a warning if the rotation stretches the beam by more than linear theory allows."""
-    _, strain = static_load(model, speeds)
-    yield from warn_of_strain(float(strain.max()))
+def _warnings(
+    scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray, strain: np.ndarray
+) -> Iterator[str]:
+    """Yield what limits the answer: effects left out, and large deflection or strain at the speeds (C,)."""
+    yield from warn_of_left_out(scene)
+    _, stretch = static_load(model, speeds)
+    yield from warn_of_strain(float(stretch.max()))
+    size = np.hypot.reduce(np.abs(tip), axis=1)
+    yield from warn_of_static_deflection(size, scene.beam.length, speeds)
+    yield from warn_of_elastic_limit(strain)
 
 
 def _solve(
@@ -206,7 +206,3 @@ def _error(values: np.ndarray, coarse: np.ndarray) -> np.ndarray:
     """Error of values (C, S, K) by their distance from those of a coarser model, and of rounding."""
     largest = np.abs(values).max(axis=1, keepdims=True)
     return _MARGIN * np.abs(values - coarse) + _ROUNDING * largest
-
-
-def _warn_of_tip(tip: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
-    yield from warn_of_static_deflection(np.hypot.reduce(np.abs(tip), axis=1), scene.beam.length, speeds)

@@ -12,6 +12,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.results import Provenance
+from beamdyn.loads.equivalent_ranges import EquivalentRange
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import (
@@ -42,6 +43,8 @@ class TransientLoads(SpanLoads):
     ----------
     t : ndarray, shape (C,)
         Times [s].
+    equivalent_ranges : tuple of EquivalentRange
+        Ranges of equal cycles, where they were asked for, as by `beamdyn loads --woehler`.
 
     Notes
     -----
@@ -60,6 +63,7 @@ class TransientLoads(SpanLoads):
 
     t: np.ndarray
     path: LoadPath = field(repr=False)
+    equivalent_ranges: tuple[EquivalentRange, ...] = ()
 
     case: ClassVar[str] = "time [s]"
 

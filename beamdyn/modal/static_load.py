@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from beamdyn.common.announced import OUTSIDE
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.modal.model import Model
 from beamdyn.scene.mount import exact_cos_sin
-from beamdyn.scene.validity import warn_of_static_deflection, warn_of_strain
+from beamdyn.scene.validity import list_range, warn_of_static_deflection, warn_of_strain
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,3 +56,20 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[str]:
     deflection, strain = static_load(model, speeds)
     yield from warn_of_strain(float(strain[0]))
     yield from warn_of_static_deflection(deflection, model.scene.beam.length, speeds)
+    yield from warn_of_straight(deflection, speeds, model)
+
+
+def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
+    """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
+    lost = np.isnan(deflection)
+    if lost.any() and bends(model):
+        yield (
+            f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
+            f"the answer is {OUTSIDE}"
+        )
+
+
+def bends(model: Model) -> bool:
+    """Whether a steady rotation loads the straight beam transversely."""
+    equations = model.equations
+    return bool(equations.steady().f2[equations.places(equations.deflections)].any())

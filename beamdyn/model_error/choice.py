@@ -21,8 +21,9 @@ from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import bends
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import EXCLUDED, bends
+from beamdyn.model_error.large_deflection import EXCLUDED
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, vibrate, without_large_deflection
 from beamdyn.scene.physics import Physics

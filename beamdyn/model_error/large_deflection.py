@@ -9,6 +9,7 @@ import numpy as np
 from beamdyn.common.assignment import assign
 from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import bends
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
@@ -62,11 +63,6 @@ def large_deflection_change(
     each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
     reasons = dict.fromkeys(reason for _, reason in each if reason)
     return np.array([change for change, _ in each]), next(iter(reasons), "")
-
-
-def bends(model: Model) -> bool:
-    """Whether a steady rotation loads the straight beam transversely."""
-    return bool(model.equations.steady().f2[_transverse(model)].any())
 
 
 def _transverse(model: Model) -> np.ndarray:

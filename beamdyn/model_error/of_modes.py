@@ -11,9 +11,10 @@ import numpy as np
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import bends
 from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
 from beamdyn.model_error.known_modes import Simple, find_alike
-from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, bends, large_deflection_change
+from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalues
 from beamdyn.scene.physics import Physics

@@ -334,7 +334,7 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
         raise InvalidValue(name, x.tolist(), bound)
     if x[0] != 0:
         refuse_station(0, "the first station must be 0, the root")
-    if (falls := np.flatnonzero(np.diff(x) < 0) + 1).size:
+    if (falls := np.flatnonzero(x[1:] < x[:-1]) + 1).size:
         refuse_station(falls[0], f"it follows {x[falls[0] - 1]:g}; stations must ascend")
     if x[-1] != 1:
         refuse_station(len(x) - 1, "the last station must be 1, the tip")

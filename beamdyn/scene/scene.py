@@ -118,6 +118,7 @@ class Scene(OneLine):
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
+        _check_damper(self)
 
     def headline(self) -> Iterator[str]:
         """Label, beam, mount, motion, and what else was given."""
@@ -235,6 +236,21 @@ def _check_point_springs(scene: Scene) -> None:
         if spring.direction == ACROSS and scene.physics.planes == 1:
             bound, remedy = "a beam of one plane is rigid in this direction", "give physics.planes = 2"
             raise InvalidValue(f"point_springs[{k}].direction", ACROSS, bound, remedy)
+
+
+# Damper at the tip --------------------------------------------------------------------------------
+
+_MOST_DAMPING = 1e6  # damper over sqrt(EI m / L^3): beyond, rounding hides how slowly the tip gives way
+
+
+def _check_damper(scene: Scene) -> None:
+    """Refuse a damper that rounding does not tell from a support."""
+    beam, damper = scene.beam, scene.damping.tip_damper
+    mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
+    mass += 0.0 if beam.tip is None else beam.tip.mass
+    most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
+    bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) of the beam of mass m: the tip is still beyond"
+    refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "lessen it", limit=most)
 
 
 # Properties that the physics needs ----------------------------------------------------------------

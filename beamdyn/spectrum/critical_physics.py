@@ -11,9 +11,9 @@ import numpy as np
 
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import bends
 from beamdyn.model_error.choice import PHYSICS_TOLERANCE, Judged, choose_by
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 

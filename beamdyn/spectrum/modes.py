@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import OUTSIDE, announced
+from beamdyn.common.announced import announced
 from beamdyn.common.checks import count, real, within
 from beamdyn.common.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results import Provenance
@@ -26,12 +26,11 @@ from beamdyn.modal.choice import (
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.plane_share import plane_share
-from beamdyn.modal.static_load import static_load
+from beamdyn.modal.static_load import static_load, warn_of_straight
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
-    list_range,
     warn_of_left_out,
     warn_of_static_deflection,
     warn_of_strain,
@@ -306,25 +305,11 @@ def warn_of_modes(
     yield from warn_of_strain(strain.max(initial=0))
     if not scene.physics.large_deflection:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
-        yield from _warn_of_straight(deflection, speeds, model)
+        yield from warn_of_straight(deflection, speeds, model)
     if tolerance is not None:
         yield from warn_of_missed_tolerance(error.max(), tolerance)
     elif error.max() > 1e-6:
         yield f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
-
-
-def _warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
-    """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
-    lost = np.isnan(deflection)
-    if not lost.any():
-        return
-    from beamdyn.model_error.large_deflection import bends  # here, for the time that it takes to import
-
-    if bends(model):
-        yield (
-            f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
-            f"the answer is {OUTSIDE}"
-        )
 
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:

@@ -68,7 +68,7 @@ class Crossing:
 
 
 def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = None) -> str:
-    """What tells a crossing from others, for tables and pictures: its modes, line and kind."""
+    """Label of a crossing for tables and pictures: its modes, line and kind."""
     modes = f"mode {mode}" if second_mode is None else f"modes {mode} and {second_mode}"
     return f"{modes}, {line.name} ({kind})"
 
@@ -136,7 +136,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @property
     def extent(self) -> str:
-        """What was sought, and what is left out, as a sentence."""
+        """Extent of the search, and crossings left out, as a sentence."""
         sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
         if not self.unlisted:
             return f"{sought}; there are none of order {self.order + 1}."

@@ -51,7 +51,24 @@ def periodic_system(equations: Equations, motion: Motion | None, speeds: np.ndar
 def periodic_system_of_each(
     equations: Sequence[Equations], motion: Motion | None, speeds: np.ndarray
 ) -> PeriodicSystem:
-    """Expand equations of the same terms at each speed: as `periodic_system`, for S sets of equations."""
+    """Expand equations that differ from speed to speed, such as those about equilibria.
+
+    Parameters
+    ----------
+    equations : sequence of Equations, length S
+        The equations at each speed, with the same terms.
+    motion, speeds
+        As for `periodic_system`.
+
+    Returns
+    -------
+    PeriodicSystem
+
+    Raises
+    ------
+    ValueError
+        If the motion's steady state is not known, or is not smooth in the phases.
+    """
     motion, first = check_steady_state(motion), equations[0]
     used = {part.quantity for part in (*first.terms, *first.loads)}
     spectra = expand_quantities(first, used, motion, speeds)
@@ -70,7 +87,7 @@ def periodic_system_of_each(
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Arrays of each speed as one; a view where all are the same."""
+    """Stack the arrays of all speeds; a view if they are one and the same array."""
     if all(array is arrays[0] for array in arrays):
         return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
     return np.array(arrays)
@@ -103,7 +120,23 @@ def check_steady_state(motion: Motion | None) -> Motion:
 def expand_quantities(
     equations: Equations, used: Iterable[str], motion: Motion, speeds: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Expand quantities of the root's motion at steady speeds in harmonics of the two phases, (S, N, N) each.
+    """Expand quantities of the root's motion at steady speeds in harmonics of the two phases.
+
+    Parameters
+    ----------
+    equations : Equations
+        The equations of motion, which know mount and gravity.
+    used : iterable of str
+        Names of the quantities: fields of `RootMotion`.
+    motion : Motion
+        A motion with `steady_acceleration`.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    dict of str to ndarray of complex, shape (S, N, N)
+        Spectra, as `PeriodicSystem` has them.
 
     Raises
     ------
@@ -147,7 +180,22 @@ def name_line(motion: Motion, harmonic: Pair) -> Line:
 def excitation_lines(
     system: PeriodicSystem, motion: Motion | None, order: int
 ) -> tuple[list[Line], list[Line]]:
-    """Lines of the load and of the stiffness, up to an order."""
+    """List the lines of the load and of the stiffness, up to an order.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+        The equations.
+    motion : Motion or None
+        The motion, which names the lines.
+    order : int
+        1: lines of the load and of the stiffness; n: also those of up to n - 1 interactions.
+
+    Returns
+    -------
+    forced, parametric : list of Line
+        Ascending in frequency.
+    """
     motion = check_steady_state(motion)
 
     def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:

@@ -44,14 +44,28 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """The same by one matrix over all harmonics, at each pair of rates."""
+    """Solve for some harmonics of the response by one matrix over all of them, at each pair of rates."""
     T = _real_basis(harmonics)
     y = _solve(*_assemble(system, harmonics, T))
     return T @ y.reshape(-1, len(harmonics), system.size)
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Matrices (S, H, H) of the product with a spectrum: its harmonic h - h' + shift is at (h, h')."""
+    """Matrices of the product with a function of the phases that is given by its spectrum.
+
+    Parameters
+    ----------
+    spectrum : ndarray of complex, shape (S, N, N)
+        Harmonics of the function.
+    harmonics : sequence of pair, length H
+        Harmonics of what it is multiplied with, and of the product.
+    shift : pair
+        Added to the harmonic h - h' of the spectrum that stands at (h, h').
+
+    Returns
+    -------
+    ndarray of complex, shape (S, H, H)
+    """
     h = np.array(harmonics)
     return select_harmonics(spectrum, h[:, None] - h[None, :] + np.array(shift))
 

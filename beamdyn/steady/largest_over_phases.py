@@ -1,6 +1,6 @@
 """Largest value, over two phases, of a sum of lines.
 
-The sum is sampled at so many phases as its strong lines need; the largest maxima of the samples are refined
+The sum is sampled at as many phases as its strong lines need; the largest maxima of the samples are refined
 by Newton's method with all lines.
 """
 
@@ -42,7 +42,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _split_by_degree(amplitude: np.ndarray, harmonics: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the rows whose strong lines need as many samples, with the highest of their |h|, (2,)."""
+    """Yield rows whose strong lines have the same highest |h|, (2,), by which they are sampled, and that."""
     strong = _find_strong(np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1), harmonics)
     degrees = np.stack([(strong * np.abs(h)).max(axis=1) for h in harmonics.T], axis=1)
     for degree in np.unique(degrees, axis=0):
@@ -62,7 +62,7 @@ def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
 
 
 def _split(rows: np.ndarray, samples: int) -> list[np.ndarray]:
-    """Split rows, of so many samples each, into parts that fit into memory."""
+    """Split rows, of `samples` each, into parts that fit into memory."""
     return np.array_split(rows, 1 + len(rows) * samples // _MOST_SAMPLES)
 
 

@@ -80,6 +80,6 @@ def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
 
 
 def _pair(crossing: CrossingOfLine) -> tuple[float, float]:
-    """Angular frequencies of the two modes of a crossing [rad/s]; the same twice where it has one."""
+    """Angular frequencies of the two modes of a crossing [rad/s]; of a single mode twice."""
     first = 2 * np.pi * crossing.frequency
     return first, first if crossing.second_mode is None else crossing.line.multiple * crossing.speed - first

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,13 +28,10 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 from beamdyn.steady.crossings import Crossing, Crossings
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
 
-if TYPE_CHECKING:
-    pass
-
-_HIGHEST_ORDER = 20  # that may be asked for: ten seconds
+_HIGHEST_ORDER = 20  # highest order that may be asked for: it takes ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
-_BENT_NODES = 100  # the same where each takes an equilibrium, about which the loci are smooth
-_FURTHER_MODES = 2  # of other parts, which may come below those that are sought
+_BENT_NODES = 100  # the same with large deflection: each takes an equilibrium, and the loci are smooth
+_FURTHER_MODES = 2  # modes of other parts that may come below those that are sought
 
 
 @announced

@@ -49,7 +49,7 @@ from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibra
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_HARMONICS = 20  # interactions that may be asked for: half a minute
+_MOST_HARMONICS = 20  # most interactions that may be asked for: they take half a minute
 _HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
 _MOST_MODES = 13  # of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
@@ -296,11 +296,11 @@ def steady_response(
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     basis = given_basis(modes)
-    steps = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
+    interactions = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
     tolerance = positive("tolerance", tolerance)
     smallest = basis or ModalBasis(FEWEST_MODES)
     scene = choose_for_motion(scene, speeds, basis and basis.modes, tolerance)
-    request = ResponseRequest(scene, speeds, smallest, steps, tolerance, discretization)
+    request = ResponseRequest(scene, speeds, smallest, interactions, tolerance, discretization)
     return request.run() if basis else request.run_smallest_basis()
 
 
@@ -355,7 +355,7 @@ class ResponseRequest(FieldsOnly):
         return Provenance(__version__, method, estimated, perf_counter() - start)
 
     def solve_with(self, scene: Scene, _: str = "") -> Answer:
-        """Amplitudes of another scene, with as many modes, or where it is of another kind at least those."""
+        """Amplitudes of another scene with as many modes, or more if only one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:
@@ -431,7 +431,7 @@ def _warnings(
 
 
 def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
-    """Yield a warning if the tip moves too far [m] from what the equations are linear about."""
+    """Yield a warning if the tip vibrates too far [m] for equations linear about the equilibrium."""
     if not scene.physics.large_deflection:
         yield from warn_of_deflection(vibration, scene.beam.length, speeds)
         return

@@ -43,10 +43,10 @@ _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong beside "
     "the beam's stiffness; check the size and the unit of each value"
 )
-_STILL = 1e-9  # rate of a harmonic that stands still, over those of the phases
-_MOST_STEPS = 6  # interactions that make a harmonic that stands still
+_STATIONARY = 1e-9  # rate of a stationary harmonic, over those of the phases
+_MOST_STEPS = 6  # interactions by which a stationary harmonic is sought
 _PHASES = 8  # between commensurate rates, of which the fastest growth is taken
-_BETWEEN_PHASES = 0.1  # of the difference over these, by which the growth between two of them may be faster
+_BETWEEN_PHASES = 0.1  # error of the growth rate between two of them, over its range over all
 
 
 def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
@@ -235,12 +235,12 @@ class _FreeMotion:
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
-            V, still = [(f[i : i + 1], v[i]) for f, v in self.V], self._find_still(self.rates[i])
+            V, stationary = [(f[i : i + 1], v[i]) for f, v in self.V], self._find_stationary(self.rates[i])
             found = []
             for a in np.flatnonzero(overlap[i].any(axis=(1, 2))):
                 partners = {(0, 0)} | {harmonics[k] for k in np.flatnonzero(overlap[i, a].any(axis=0))}
                 found.append(
-                    _Resonance(self.rates[i], self.coupling, self.sigma[i], V, int(a), partners, still)
+                    _Resonance(self.rates[i], self.coupling, self.sigma[i], V, int(a), partners, stationary)
                 )
             yield int(i), found
 
@@ -257,10 +257,10 @@ class _FreeMotion:
         levels = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)
         return np.array([h for level in levels[1:] for h in level])
 
-    def _find_still(self, rates: np.ndarray) -> Pair | None:
-        """Find a harmonic that stands still at a pair of commensurate rates; None if there is none."""
-        still = self._reached[np.abs(self._reached @ rates) <= _STILL * np.abs(rates).max()]
-        return (int(still[0, 0]), int(still[0, 1])) if len(still) else None
+    def _find_stationary(self, rates: np.ndarray) -> Pair | None:
+        """Find a harmonic h with Omega_h = 0, which commensurate rates have; None if there is none."""
+        found = self._reached[np.abs(self._reached @ rates) <= _STATIONARY * np.abs(rates).max()]
+        return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
 
 
 def _opposite(h: np.ndarray) -> np.ndarray:
@@ -283,8 +283,8 @@ class _Resonance:
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair
         Harmonics of the modes whose discs overlap that of the mode, and (0, 0).
-    still : pair or None
-        A harmonic that stands still, because the rates are commensurate.
+    stationary : pair or None
+        A harmonic h with Omega_h = 0, if the rates are commensurate.
     """
 
     rates: np.ndarray
@@ -293,14 +293,14 @@ class _Resonance:
     V: list[tuple[np.ndarray, np.ndarray]]
     mode: int
     harmonics: set[Pair]
-    still: Pair | None
+    stationary: Pair | None
 
     def growth_rate(self, scale: float) -> tuple[float, float]:
         """Growth rate and its error [1/s], the largest over the phase between commensurate rates.
 
         `scale` is the largest |eigenvalue| of the mean equations.
         """
-        phases = np.arange(_PHASES if self.still else 1) * (2 * np.pi / _PHASES)
+        phases = np.arange(_PHASES if self.stationary else 1) * (2 * np.pi / _PHASES)
         rates, errors = np.transpose([self._growth_rate_at(phase, scale) for phase in phases])
         return float(rates.max()), float(errors.max() + _BETWEEN_PHASES * np.ptp(rates))
 
@@ -336,7 +336,7 @@ class _Resonance:
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
         """Hill's matrix, the operator of harmonic balance in the modes, and its rows before the last level.
 
-        Harmonics whose difference stands still are one, with the phase between the commensurate rates.
+        Harmonics whose difference is stationary are one, with the phase between the commensurate rates.
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
         inner = dict.fromkeys(self._fold(h) for level in levels[:-1] for h in level)
@@ -348,21 +348,23 @@ class _Resonance:
         return hill, len(inner) * len(self.sigma)
 
     def _fold(self, h: Pair) -> Pair:
-        """The harmonic that represents all from which h differs by multiples of the one that stands still."""
-        if self.still is None:
+        """The harmonic that represents all from which h differs by multiples of the stationary one."""
+        if self.stationary is None:
             return h
-        (j, k), (a, b) = h, self.still
+        (j, k), (a, b) = h, self.stationary
         turns = int(np.floor((j * a + k * b) / (a * a + b * b) + 0.5))
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
         """Matrix (H, H) of the product with a spectrum, summed over harmonics that are one."""
-        if self.still is None:
+        if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
-        most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(map(abs, self.still))
+        most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(
+            map(abs, self.stationary)
+        )
         total = np.zeros((len(harmonics), len(harmonics)), dtype=complex)
         for m in range(-most, most + 1):
-            shift = m * self.still[0], m * self.still[1]
+            shift = m * self.stationary[0], m * self.stationary[1]
             total += np.exp(1j * m * phase) * convolution_matrix(spectrum, harmonics, shift)[0]
         return total
 

@@ -14,10 +14,32 @@ _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 
 def solve_parts(
-    parts: list[tuple[PeriodicSystem, np.ndarray]], tips: np.ndarray, steps: int | None, tolerance: float
+    parts: list[tuple[PeriodicSystem, np.ndarray]],
+    tips: np.ndarray,
+    interactions: int | None,
+    tolerance: float,
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H) and errors (S) of parts that no term couples, together."""
-    solved = [_solve_harmonics(part, tips[..., places], steps, tolerance) for part, places in parts]
+    """Solve parts of the equations that no term couples, and add up their tip deflections.
+
+    Parameters
+    ----------
+    parts : list of (PeriodicSystem, ndarray)
+        Equations at S speeds, each with its coordinates.
+    tips : ndarray, shape (S, d, n)
+        Tip deflection per coordinate in d directions.
+    interactions : int, optional
+        Number of interactions with the periodic coefficients; as many as the tolerance needs if not given.
+    tolerance : float
+        Truncation error of the harmonics aimed at, relative to the sum of all lines.
+
+    Returns
+    -------
+    harmonics : list of pair, length H
+    deflections : ndarray of complex, shape (S, d, H)
+    error : ndarray, shape (S,)
+        Estimated truncation error, relative to the sum of all lines.
+    """
+    solved = [_solve_harmonics(part, tips[..., places], interactions, tolerance) for part, places in parts]
     index = {h: i for i, h in enumerate(dict.fromkeys(h for harmonics, *_ in solved for h in harmonics))}
     c = np.zeros((*tips.shape[:2], len(index)), dtype=complex)
     for harmonics, of_part, _ in solved:
@@ -26,24 +48,24 @@ def solve_parts(
 
 
 def _solve_harmonics(
-    system: PeriodicSystem, tips: np.ndarray, steps: int | None, tolerance: float
+    system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed solved with as many as it needs."""
+    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed with the harmonics it needs."""
     S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
-    most = _MOST_INTERACTIONS if steps is None else steps
+    most = _MOST_INTERACTIONS if interactions is None else interactions
     levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
     complete, levels = len(levels) <= most + 1, levels[: most + 1]
     harmonics, sizes = [h for level in levels for h in level], np.cumsum([0, *map(len, levels)])
     c, error = np.zeros((S, d, sizes[-1]), dtype=complex), np.full(S, np.inf)
-    first, kept = min(3 if steps is None else most + 1, len(levels)), slice(0)
+    first, kept = min(3 if interactions is None else most + 1, len(levels)), slice(0)
     for used in range(first - 1, len(levels) + 1):
         kept, exact = slice(sizes[used]), complete and used == len(levels)
         unconverged = np.flatnonzero(~(error <= tolerance))
         for part in _split(unconverged, system.size * sizes[used]):
             finer = _solve_tip(system[part], tips[part], harmonics[kept])
-            if used >= first:  # the one before is only what this is compared with
+            if used >= first:  # the level before serves only to estimate the error
                 error[part] = _ROUNDING if exact else _distance(finer, c[part, :, kept])
             c[part, :, kept] = finer
         if (error <= tolerance).all():
@@ -52,7 +74,7 @@ def _solve_harmonics(
 
 
 def _split(rows: np.ndarray, unknowns: int) -> list[np.ndarray]:
-    """Split indices of speeds, of so many unknowns each, into parts that fit into the cache."""
+    """Split indices of speeds, with `unknowns` each, into parts that fit into the cache."""
     return [p for p in np.array_split(rows, 1 + len(rows) * unknowns // _MOST_UNKNOWNS) if len(p)]
 
 
@@ -86,7 +108,22 @@ def across_bending(c: np.ndarray) -> np.ndarray:
 
 
 def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Combine each pair h, -h into the line of positive frequency: harmonics (l, 2), amplitudes (S, d, l)."""
+    """Combine each pair h, -h into the line of positive frequency.
+
+    Parameters
+    ----------
+    c : ndarray of complex, shape (..., H)
+        Amplitudes of the harmonics.
+    harmonics : list of pair, length H
+        The harmonics; with each, its opposite.
+    motion : Motion
+        The motion, whose `road_multiple` orders them by frequency.
+
+    Returns
+    -------
+    harmonics : ndarray of int, shape (l, 2)
+    amplitudes : ndarray of complex, shape (..., l)
+    """
     kappa = motion.road_multiple or 0.0
     forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
     harmonic = np.array([harmonics[i] for i in forward], dtype=int).reshape(-1, 2)
@@ -96,9 +133,24 @@ def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple
 def add_static(
     line: np.ndarray, harmonics: np.ndarray, static: np.ndarray, directions: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Add the deflection in equilibrium (S, d) to the static line; also its size before over that after.
+    """Add the deflection in equilibrium to the static line.
 
-    Of the directions in which the tip vibrates, those of the modelled planes are kept.
+    Parameters
+    ----------
+    line : ndarray of complex, shape (S, d, l)
+        Amplitudes of the lines.
+    harmonics : ndarray of int, shape (l, 2)
+        Harmonic of each line.
+    static : ndarray, shape (S, d)
+        Deflection in equilibrium [m].
+    directions : int
+        Number of directions to keep, those of the modelled planes.
+
+    Returns
+    -------
+    total : ndarray of complex, shape (S, directions, l)
+    share : ndarray, shape (S,)
+        Sum of the sizes of all lines before over that after, at most 1: what a relative error shrinks by.
     """
     total = line[:, :directions].copy()
     total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]

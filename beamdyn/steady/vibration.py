@@ -1,4 +1,4 @@
-"""Vibration at steady speeds: its equations over the phases of the excitation, and where it decays.
+"""Equations of vibration at steady speeds over the phases of the excitation, and its stability.
 
 A straight beam has the same equations at all speeds.  With large deflection, the beam vibrates about the
 equilibrium to which rotation bends it: its equations at each speed are linear about the equilibrium there, in
@@ -27,9 +27,9 @@ from beamdyn.steady.stability import fastest_growth
 
 UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
-_MISSING, _REPELLING = "no equilibrium", "unstable equilibrium"
-WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _REPELLING
-_NO_FREQUENCY = 1e-8  # over the frequency of a clamped beam: what rounding leaves of a square of 0
+_MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
+WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
+_NO_FREQUENCY = 1e-8  # frequency, over that of a clamped beam, that rounding makes of 0
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class Vibration:
     parts : list of (PeriodicSystem, ndarray)
         Equations that no term couples, each with its coordinates.
     tips : ndarray, shape (S, d, n)
-        Deflection of the tip per coordinate, in each direction of which the motion counts.
+        Deflection of the tip per coordinate, in each of d directions.
     static : ndarray, shape (S, d)
         Deflection of the tip in the equilibrium about which the beam vibrates [m].
     without_rate : ndarray of bool, shape (S,)
         Where no growth rate is defined.
     lost : dict of str to ndarray of bool, shape (S,)
-        Why there is no vibration about a stable mean, whatever varies: the first that is true counts.
+        Where there is no stable mean to vibrate about, by the reason; the first that is true counts.
     """
 
     parts: list[tuple[PeriodicSystem, np.ndarray]]
@@ -67,7 +67,23 @@ class Vibration:
 
 
 def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray) -> Vibration:
-    """Equations of vibration of a model in a modal basis at speeds [rad/s] (S,)."""
+    """Equations of vibration of a model in a modal basis.
+
+    Parameters
+    ----------
+    model : Model
+        The discretized scene, of a straight beam or with large deflection.
+    basis : ModalBasis
+        The modal basis; about equilibria its number of modes, at each speed.
+    motion : Motion or None
+        The motion; None for rotation about a fixed centre.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    Vibration
+    """
     if isinstance(model.solver, DeflectedSolver):
         return _about_equilibria(model, basis, motion, speeds)
     return _of_straight_beam(model, basis, motion, speeds)
@@ -121,7 +137,7 @@ def _about_equilibria(
         tips=np.array([tips for _, tips in each]),
         static=model.elastica.tip(q)[:, ::-1] - [0.0, model.scene.beam.length],
         without_rate=missing,
-        lost={_MISSING: missing, _REPELLING: _repels(parts, missing)},
+        lost={_MISSING: missing, _UNSTABLE_MEAN: _are_unstable(parts, missing)},
     )
 
 
@@ -137,8 +153,8 @@ def _reduced_about(
         yield equations, np.array([equations.tip, along @ shape.matrix])
 
 
-def _repels(parts: list[tuple[PeriodicSystem, np.ndarray]], missing: np.ndarray) -> np.ndarray:
-    """Whether an equilibrium is unstable, without what varies."""
+def _are_unstable(parts: list[tuple[PeriodicSystem, np.ndarray]], missing: np.ndarray) -> np.ndarray:
+    """Whether each equilibrium (S,) is unstable, without the periodic coefficients; False where missing."""
     rate = np.zeros(len(missing))
     if (known := ~missing).any():
         rate[known] = fastest_growth([replace(part[known], varying=()) for part, _ in parts])[0]

@@ -12,13 +12,13 @@ from rich.text import Text
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.loads.cycles import TURNING_POINTS
 from beamdyn.loads.span_loads import REMEDIES
 
 if TYPE_CHECKING:
     from beamdyn.common.display_units import ShownUnit
     from beamdyn.common.results import Result
     from beamdyn.loads.cycles import LoadCycles
+    from beamdyn.loads.equivalent_ranges import EquivalentRange
     from beamdyn.loads.random_loads import RandomLoads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads
@@ -223,30 +223,16 @@ def cycles_table(cycles: LoadCycles) -> Group:
     return table(title, (f"range [{unit}]", "cycles"), rows[::-1], ())
 
 
-def equivalents_table(cycles: LoadCycles, exponents: Sequence[float], number: float, error: float) -> Group:
-    """Ranges of equal cycles that do the damage of these, by the exponent of the Woehler curve.
-
-    Parameters
-    ----------
-    cycles : LoadCycles
-        The cycles.
-    exponents : sequence of float
-        Exponents of the Woehler curve.
-    number : float
-        Number of equal cycles.
-    error : float
-        Absolute error of the quantity [its unit].
-    """
-    scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
-    rows = []
-    for m in exponents:
-        value = cycles.equivalent_range(m, number)
-        # Each range is off by twice the error of the values at most; Minkowski's inequality adds them up.
-        of_values = 2 * error * (float(cycles.counts.sum()) / number) ** (1 / m)
-        shown = supported(scale * value, scale * (of_values + TURNING_POINTS * value), _MOST_DIGITS)
-        rows.append((f"{m:g}", shown))
+def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
+    """Ranges of equal cycles of one quantity that do the damage of those counted, by the Woehler exponent."""
+    quantity, number = equivalents[0].quantity, equivalents[0].cycles
+    scale, unit = _SCALES.get(quantity, (1.0, "1/m"))
+    rows = [
+        (f"{each.exponent:g}", supported(scale * each.range, scale * each.error, _MOST_DIGITS))
+        for each in equivalents
+    ]
     title = f"Damage-equivalent ranges (number of equal cycles: {number:g})"
-    return table(title, ("Woehler exponent", f"range of {cycles.quantity} [{unit}]"), rows, ())
+    return table(title, ("Woehler exponent", f"range of {quantity} [{unit}]"), rows, ())
 
 
 # CSV ----------------------------------------------------------------------------------------------

@@ -15,8 +15,8 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
+from beamdyn.modal.static_load import bends
 from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
-from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.frequencies import sizes_of_eigenvalues, solve_reference
 from beamdyn.tradeoffs.measurements import Diagram, Measurement, number_of

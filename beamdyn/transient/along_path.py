@@ -29,20 +29,20 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import size_per_coordinate
 from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
 
-_THIN = 2  # of the samples of a path, one in so many is taken
-_STRETCHES, _OF_RECORD = 8, 32  # of a segment in which the speed changes, and of a record
+_THIN = 2  # every second sample of a path is taken
+_STRETCHES, _OF_RECORD = 8, 32  # stretches of a segment in which the speed changes, and of a record
 _RESOLVED = 1.9  # phase from sample to sample [rad] up to which a mode is followed in time
-_INSIDE = 1e-9  # of a segment, by which samples at its ends lie inside it: loads may jump there
-_CONTAINED = 1e-6  # of its size, by which a shape may miss the larger model
-_MOST_DECAY = 30.0  # exponent of the decay in a stretch: larger ones exceed the range of numbers
-_BY_CHANCE = 3.0  # largest of many contributions added by chance, over the root of their summed squares
-_MOST_RINGING = 0.1  # of the distance: a sum of amplitudes is far more than what they reach together
-_MOST_GROWTH = 2.0  # of the deflection at steady speed: what grows there is more than these oscillators
+_INSIDE = 1e-9  # distance of the first and last sample from the ends, over a segment: loads may jump there
+_CONTAINED = 1e-6  # distance of a shape from the larger model, over its size, up to which it is contained
+_MOST_DECAY = 30.0  # largest exponent of the decay in a stretch: beyond, numbers overflow
+_BY_CHANCE = 3.0  # largest sum of many random contributions, over the root of their summed squares
+_MOST_RINGING = 0.1  # ringing over the distance up to which this holds: amplitudes rarely add up to their sum
+_MOST_GROWTH = 2.0  # growth of the deflection at steady speed beyond which these oscillators do not do
 
 
 @dataclass(frozen=True)
 class _Residual:
-    """What the motion of a run misses in the equations of a larger model, and these equations.
+    """Residual of the motion of a run in the equations of a larger model, and these equations.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def _within(segment: Segment | RecordSegment) -> tuple[float, float]:
 
 
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
-    """Amplitude of the tip [m] by what the load's bends from sample to sample excite, added by chance.
+    """Amplitude of the tip [m] that changes of the load's slope at the samples excite, added as random.
 
     A change of slope excites a mode of frequency w by itself over w^3; a jump between two samples, in which
     that is spread over a time h, by w h as much.

@@ -53,7 +53,7 @@ class SweepRequest(FieldsOnly):
         )
 
     def basis_at(self, speed: float) -> ModalBasis:
-        """Modal basis of one case: as many modes as it needs, at its own slowest and fastest speed."""
+        """Modal basis of one case, with as many modes as it needs, at its own slowest and fastest speed."""
         basis = replace(self.basis, modes=self._modes_near(speed)) if self.modes_at else self.basis
         at_rest = basis.is_at_rest
         return basis if at_rest else replace(basis, speeds=find_speed_range(self.motion(speed), self.t_end))

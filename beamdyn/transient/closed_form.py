@@ -22,13 +22,13 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_WORTH_IT = 200  # steps, below which they cost no more
+_WORTH_IT = 200  # number of steps below which these cost no more
 _ORDERS = (3, 5)  # powers of e that are tried
-_FIT_TIMES = 8  # for each harmonic of e and g, at which these are fitted
+_FIT_TIMES = 8  # times for each harmonic of e and g at which these are fitted
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 _FIT_ERROR = 1e-3  # of e and g, over the accuracy
-_SAME = 1e-9  # difference of frequencies that are the same, over the largest
-_ABSENT = 1e-12  # factor of a line over the largest, which the rounding of the fit alone makes
+_SAME = 1e-9  # difference of frequencies that count as equal, over the largest
+_ABSENT = 1e-12  # factor of a line, over the largest, that is rounding error of the fit
 _MOST_HARMONICS = 400
 _ITERATIONS = 30
 _CONVERGED = 1e-15
@@ -80,7 +80,7 @@ class _Harmonics:
         return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
-        """Sums of up to so many frequencies of the stiffness, ascending: shape (k,)."""
+        """Sums of up to `order` frequencies of the stiffness, ascending: shape (k,)."""
         varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
         found = np.zeros(1)
         for _ in range(order):
@@ -88,7 +88,7 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> _Coupling:
-        """Which of some sums the varying stiffness couples."""
+        """The coupling of some sums of frequencies (k,) by the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
         source = _places(sums, sums - self.frequency[varying, None])
         return _Coupling(source, self.stiffness[varying].swapaxes(1, 2))
@@ -96,7 +96,7 @@ class _Harmonics:
 
 @dataclass(frozen=True)
 class _Coupling:
-    """What the varying stiffness makes of a motion at some sums of frequencies.
+    """Forces of the varying stiffness on a motion, between sums of frequencies.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _distinct(frequencies: np.ndarray) -> np.ndarray:
 
 
 def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is the same."""
+    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is equal."""
     after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
     missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
     return np.where(missing, len(sums), after)
@@ -197,19 +197,13 @@ def _free(
     direction of the shape, in which the exponent changes instead.
     """
     n, sums = len(K), harmonics.sums(order)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
-    upper = np.imag(values) > 0
-    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
+    unmodulated = _unmodulated(C, K)
+    if unmodulated is None or n * len(sums) > 4 * _MOST_HARMONICS:
         return None
-    exponent, shape = values[upper], vectors[:n, upper].T
-    shape = shape / np.linalg.norm(shape, axis=1)[:, None]
+    exponent, shape = unmodulated
     own = int(np.abs(sums).argmin())
     inverse = np.linalg.inv(_stiffness_beside(exponent, 1j * sums, own, C, K))
-    border = np.empty((n, n + 1, n + 1), complex)
-    border[:, :n, :n] = _stiffness(exponent, C, K)
-    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
-    border[:, n, :n], border[:, n, n] = shape.conj(), 0
-    bordered = np.linalg.inv(border)
+    bordered = np.linalg.inv(_bordered_stiffness(exponent, shape, C, K))
     P = np.zeros((n, len(sums), n), complex)
     P[:, own] = shape
     coupling, before = harmonics.coupling(sums), np.inf
@@ -225,6 +219,27 @@ def _free(
             break
         before = change
     return exponent[:, None] + 1j * sums, P
+
+
+def _unmodulated(C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Exponents (n,) and unit shapes (n, n) of free vibrations by C and K; None if one does not oscillate."""
+    n = len(K)
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
+    upper = np.imag(values) > 0
+    if upper.sum() != n:
+        return None
+    shape = vectors[:n, upper].T
+    return values[upper], shape / np.linalg.norm(shape, axis=1)[:, None]
+
+
+def _bordered_stiffness(exponent: np.ndarray, shape: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Dynamic stiffness at n exponents, bordered by its change with the exponent, and by the shape."""
+    n = len(K)
+    border = np.empty((n, n + 1, n + 1), complex)
+    border[:, :n, :n] = _stiffness(exponent, C, K)
+    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
+    border[:, n, :n], border[:, n, n] = shape.conj(), 0
+    return border
 
 
 def _stiffness_beside(

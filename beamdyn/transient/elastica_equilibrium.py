@@ -19,10 +19,10 @@ _REMEDY = "give 'rest' or an array"
 
 @dataclass(frozen=True)
 class LoadAtOnce(SteadyLoad):
-    """Equilibrium under all loads of a moment together, gravity and angular acceleration included.
+    """Equilibrium under all loads at one time, gravity and angular acceleration included.
 
-    The parameter is the squared speed, in proportion to which the other quantities are raised as well; of a
-    beam that does not rotate, it is their share.
+    The continuation parameter is the squared speed, and all other quantities grow in proportion to it; for a
+    beam that does not rotate it is the fraction of the loads.
 
     Parameters
     ----------

@@ -17,15 +17,15 @@ from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
 from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
-from beamdyn.transient.gauss import BLOCK, Segment, Tableau, tableau
+from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, tableau
 
 _ITERATIONS = 30  # of Newton's method
-_CONVERGED = 1e-13  # error of the accelerations over their size that may be left
-_LEAST_REDUCTION = 1e-3  # of an error by an iteration that the changes of the last two may stand for
-_STALLED = 1e-9  # the same from which on rounding may end the iteration
-_BALANCED = 1e-12  # residual over the elastic force, for the same where the accelerations are small beside it
-_FAST = 0.1  # reduction by an iteration with which derivatives are kept
-_FEW = 4  # iterations of a step up to which the next begins with the same derivatives
+_CONVERGED = 1e-13  # error of the accelerations, over their size, with which the iteration ends
+_LEAST_REDUCTION = 1e-3  # least ratio of errors by an iteration that the last two changes may show
+_STALLED = 1e-9  # error of the accelerations over their size below which a stalled iteration has converged
+_BALANCED = 1e-12  # the same for the residual over the elastic force, where accelerations are small beside it
+_FAST = 0.1  # reduction by an iteration up to which the derivatives are kept
+_FEW = 4  # number of iterations up to which the next step begins with the same derivatives
 
 
 class StepNotSolved(ArithmeticError):
@@ -66,9 +66,7 @@ def propagate_elastica(
     """
     h, n = (t1 - t0) / steps, system.size
     step = _Step(system, h, tableau(stages))
-    state = np.empty((steps + 1, 2 * n + 1))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    acceleration = np.empty((steps, stages, n))
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
     known = None if like is None else at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
     with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused
@@ -80,7 +78,7 @@ def propagate_elastica(
 
 
 def at_nodes(given: int, wanted: int) -> np.ndarray:
-    """Weights (wanted, given) of the values at the nodes of a rule in those at the nodes of another."""
+    """Matrix (wanted, given) from values at the nodes of one Gauss rule to those at the nodes of another."""
     x, w = legendre.leggauss(given)
     degrees = np.arange(given)
     series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(x, given - 1).T * w

@@ -37,9 +37,9 @@ _FINER = STAGES + 2  # stages of the second run
 _INSIDE = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error of interpolation
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _TIMES_COMPARED = 257  # times at which the motion of the root is compared with that at the start
-_SHORTER = 0.5  # of a step that was not solved
+_SHORTER = 0.5  # phase angle of the next step size, over that of a step that was not solved
 _SHORT = 1.0  # phase angle of steps [rad] below which they resolve one mode more instead
-_MANY = 64  # pieces of a motion, as one given by samples has: their steps are not divided further
+_MANY = 64  # number of pieces of a motion, such as one given by samples, above which none is divided further
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
@@ -82,7 +82,7 @@ def _shorten(step_size: StepSize, size: int) -> StepSize:
 
 @dataclass(frozen=True)
 class _Attempt:
-    """Two runs in the same steps.
+    """Two runs in the same steps, with different numbers of stages.
 
     Parameters
     ----------

@@ -19,6 +19,9 @@ from typing import Protocol
 import numpy as np
 from numpy.polynomial import legendre
 
+from beamdyn.common.checks import MOST
+from beamdyn.transient.limits import growth_without_bound
+
 BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache
 
 
@@ -101,15 +104,48 @@ class StepMaps:
 
 
 def step_maps(system: LinearSystem, starts: np.ndarray, h: float, table: Tableau) -> StepMaps:
-    """Solve the collocation equations of all steps that begin at `starts` [s] with length h [s]."""
+    """Solve the collocation equations of N steps.
+
+    Parameters
+    ----------
+    system : LinearSystem
+        The equations.
+    starts : ndarray, shape (N,)
+        Beginnings of the steps [s].
+    h : float
+        Step size [s].
+    table : Tableau
+        Coefficients of the collocation.
+
+    Returns
+    -------
+    StepMaps
+    """
     return solve_steps(*system.coefficients(starts[:, None] + h * table.c), h, table)
 
 
 def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> StepMaps:
-    """Solve the collocation equations of steps of length h [s], given C, K and f at their nodes.
+    """Solve the collocation equations of N steps, given the coefficients at their nodes.
 
     The accelerations a_i at the nodes satisfy
     a_i + C_i (v + h sum A_ij a_j) + K_i (q + c_i h v + h^2 sum A2_ij a_j) = f_i.
+
+    Parameters
+    ----------
+    C : ndarray, shape (N, s, n, n), or None
+        Damping; None if there is none.
+    K : ndarray, shape (N, s, n, n)
+        Stiffness.
+    f : ndarray, shape (N, s, n)
+        Loads.
+    h : float
+        Step size [s].
+    table : Tableau
+        Coefficients of the collocation.
+
+    Returns
+    -------
+    StepMaps
     """
     if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
         return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
@@ -304,17 +340,22 @@ def propagate(
     -------
     Segment
     """
-    h, n = (t1 - t0) / steps, system.size
-    state = np.empty((steps + 1, 2 * n + 1))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    acceleration = np.empty((steps, stages, n))
-    powers = None
+    h, powers = (t1 - t0) / steps, None
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
     for first in range(0, steps, BLOCK):
         block = slice(first, min(first + BLOCK, steps))
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
-        powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
+        with np.errstate(over="ignore", invalid="ignore"):
+            powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
+        _check_bounded(t0 + h * block.stop, state[block.stop])
         acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
+
+
+def _check_bounded(t: float, state: np.ndarray) -> None:
+    """Refuse a motion that has grown beyond all bounds."""
+    if not (np.abs(state) < MOST).all():
+        raise growth_without_bound(f"past {MOST:g} before t = {t:.4g} s")
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
@@ -332,6 +373,14 @@ def advance(steps: np.ndarray, state: np.ndarray) -> None:
     """Fill the augmented states state[1:] from state[0] by affine maps, one after the other."""
     for step, before, after in zip(steps, state[:-1], state[1:, 1:], strict=True):
         step.dot(before, out=after)
+
+
+def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Allocate the arrays `state` and `acceleration` of a segment, of which the first state is known."""
+    n = len(q0)
+    state = np.empty((steps + 1, 2 * n + 1))
+    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    return state, np.empty((steps, stages, n))
 
 
 def _affine_powers(step: np.ndarray, count: int) -> np.ndarray:

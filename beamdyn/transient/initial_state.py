@@ -13,7 +13,7 @@ _FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below whic
 
 
 def initial_state(initial: str | np.ndarray, system: ModalSystem | ElasticaSystem) -> np.ndarray:
-    """Coordinates and velocities (2 n,) that "rest", "equilibrium" or an array stand for.
+    """Coordinates and velocities (2 n,) at "rest", in "equilibrium", or as given by an array.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def initial_state(initial: str | np.ndarray, system: ModalSystem | ElasticaSyste
 
 
 def padded(initial: str | np.ndarray, modes: int, more: int) -> str | np.ndarray:
-    """Extend initial coordinates and velocities of some modes to those of more, by zeros; words stay."""
+    """Extend initial coordinates and velocities from `modes` to `more` modes by zeros; words are kept."""
     if isinstance(initial, str):
         return initial
     parts = np.reshape(initial, (-1, modes))

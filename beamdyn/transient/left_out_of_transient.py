@@ -40,7 +40,7 @@ class Run(Protocol):
 
     @property
     def request(self) -> Any:
-        """What was asked for."""
+        """The request."""
         ...
 
     @property
@@ -119,7 +119,7 @@ def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Answ
 
 
 def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -> Answer:
-    """Largest deflection by a run of another scene in as many modes."""
+    """Largest deflection by a run of another scene with the same number of modes."""
     if not isinstance(request.initial, str):
         return Answer(np.array(np.nan), "the initial coordinates are those of this model")
     modes = request.basis.modes

@@ -36,8 +36,13 @@ def check_growth(scene: Scene, largest: float) -> None:
     """Raise an ArithmeticError for a motion that has grown without bound: its error estimates are void."""
     length = scene.beam.length
     if not largest <= _LIMIT_DEFLECTION * length:
-        raise ArithmeticError(
-            f"the motion grows without bound, to {largest / length:.1g} times the length: the beam buckles "
-            "under its weight, or it is parametrically unstable, and linear theory does not hold; lower "
-            "gravity or the speed, or end the run earlier"
-        )
+        raise growth_without_bound(f"to {largest / length:.1g} times the length")
+
+
+def growth_without_bound(how_far: str) -> ArithmeticError:
+    """Say of a motion that it has no answer, as it grows so far."""
+    return ArithmeticError(
+        f"the motion grows without bound, {how_far}: the beam buckles under its weight, or it is "
+        "parametrically unstable, and linear theory does not hold; lower gravity or the speed, or end the "
+        "run earlier"
+    )

@@ -25,6 +25,7 @@ from beamdyn.transient.gauss import (
     StepMaps,
     Tableau,
     advance,
+    allocate_steps,
     components,
     interpolate,
     interpolate_each,
@@ -54,7 +55,7 @@ class StepCounter(Protocol):
 
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
-    """Whether a motion has breakpoints about as dense as the steps, as one given by samples has."""
+    """Whether a motion has breakpoints about as dense as the steps, as a motion given by samples has."""
     pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
@@ -68,7 +69,7 @@ def smooth_piece_ends(motion: Motion, t_end: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class RecordSteps:
-    """Steps of unequal length, and the pieces in them on which the motion is smooth.
+    """Steps of unequal length, and the pieces of each on which the motion is smooth.
 
     Parameters
     ----------
@@ -108,7 +109,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Blocks of steps: equal ones, each in one piece, as many as are integrated at once; and others."""
+        """Blocks of steps that are integrated at once: of equal steps of one piece each, and of others."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -116,10 +117,10 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Whether the steps of a block are each in one piece and end where as many equal steps do."""
+        """Whether the steps of a block have one piece each and equal lengths, also in their sums."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
-        off = np.abs(ends - grid).max()  # lengths that drift are the next one's each, and yet not equal
+        off = np.abs(ends - grid).max()  # lengths that drift differ little from one to the next, but add up
         return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
     def select(self, which: np.ndarray) -> RecordSteps:
@@ -178,7 +179,7 @@ class _WantedSteps:
 
 
 def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
-    """Number of steps that the step size wants between two samples, where it wants the most."""
+    """Largest number of steps between two neighbouring samples, by a step size."""
     ends = smooth_piece_ends(system.motion, t_end)
     return float(np.diff(_WantedSteps.of(system, t_end, step_size).before(ends)).max())
 
@@ -270,14 +271,29 @@ class RecordSegment:
 def propagate_record(
     system: ModalSystem, steps: RecordSteps, q0: np.ndarray, v0: np.ndarray, stages: int, accuracy: float
 ) -> RecordSegment:
-    """Integrate over unequal steps by Gauss collocation, from coordinates q0 and velocities v0.
+    """Integrate over unequal steps by Gauss collocation.
 
     Many equal steps, each between two samples, take maps that are expanded about the mean motion of a block
-    of them; `accuracy` is the relative error that the truncated series may cause in all.
+    of them.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        The equations.
+    steps : RecordSteps
+        The steps.
+    q0, v0 : ndarray, shape (n,)
+        Coordinates and velocities at the beginning.
+    stages : int
+        Stages of each step.
+    accuracy : float
+        Largest relative error by the truncated series of all expanded maps.
+
+    Returns
+    -------
+    RecordSegment
     """
-    N, n = len(steps), system.size
-    state, acceleration = np.empty((N + 1, 2 * n + 1)), np.empty((N, stages, n))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
+    state, acceleration = allocate_steps(len(steps), stages, q0, v0)
     for block in steps.blocks:
         ends = slice(block.start, block.stop + 1)
         if not _expand(system, steps, block, state[ends], acceleration[block], accuracy):

@@ -58,7 +58,7 @@ class SolveIvpPath:
 
 
 def check_method(method: object) -> None:
-    """Refuse what is no method of `solve_ivp`."""
+    """Refuse anything but a method of `solve_ivp`."""
     named = isinstance(method, str) and method in _KNOWN_METHODS
     if not named and not (isinstance(method, type) and issubclass(method, OdeSolver)):
         known = ", ".join(map(repr, _KNOWN_METHODS))

@@ -1,4 +1,4 @@
-"""Modal bases of a sweep: as many modes as sampled speeds need to keep the tolerance."""
+"""Modal bases of a sweep, with the modes that sampled speeds need to keep the tolerance."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transi
 def _run_in_basis(
     request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient]
 ) -> list[Transient]:
-    """Run the samples again in the basis of the request, but for those that were."""
+    """Run the samples in the basis of the request, except those that were run in it before."""
     runs = []
     for speed, run in zip(list_samples(speeds), samples, strict=True):
         basis = request.basis_at(speed)

@@ -59,7 +59,7 @@ class CheckedSteps:
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
-    """Choose the indices of the checked steps of a segment, at most so many."""
+    """Choose the indices of at most `most` steps of a segment to be checked."""
     if steps <= most:
         return np.arange(steps)
     return np.unique((steps * (_GOLDEN * np.arange(most) % 1)).astype(int))

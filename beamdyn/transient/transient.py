@@ -116,7 +116,7 @@ class Transient(StatesModelError):
         return self.request.scene
 
     def without_waiting(self) -> Transient:
-        """The same; its modal truncation error, too, is left out if it was not asked for."""
+        """A copy to be shown at once, without model and modal truncation errors that are not computed yet."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 
@@ -380,6 +380,10 @@ class TransientRequest(FieldsOnly):
         """Equations of the run, without the coordinates that stay at rest."""
         if self.scene.physics.large_deflection:
             return ElasticaSystem.of_model(model, self.basis, self.motion)
+        return self._modal_system(model)
+
+    def _modal_system(self, model: Model) -> ModalSystem:
+        """Equations of a run of a straight beam, without the coordinates that stay at rest."""
         equations = model.modal_equations(self.basis)
         if isinstance(self.initial, str):
             return ModalSystem.from_rest(equations, self.motion, self.t_end)
@@ -410,8 +414,7 @@ class TransientRequest(FieldsOnly):
         request = self._refined_of_same_functions()
         if request is None:
             return None
-        system = request._system(request.model)
-        assert isinstance(system, ModalSystem)
+        system = request._modal_system(request.model)
         try:
             finer, error = follow_steps(path, system, initial_state(request.initial, system), self.tolerance)
         except (ArithmeticError, TooManySteps):
@@ -427,8 +430,7 @@ class TransientRequest(FieldsOnly):
         request = self._refined_of_same_functions()
         if request is None:
             return None
-        system = request._system(request.model)
-        assert isinstance(system, ModalSystem)
+        system = request._modal_system(request.model)
         states = (initial_state(each.initial, s) for each, s in ((self, own), (request, system)))
         return distance_along_path(path, own, system, *states)
 

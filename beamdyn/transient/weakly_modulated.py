@@ -9,7 +9,7 @@ a factorisation of its own, and the maps of many steps are one product of matric
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, reduce
 
@@ -20,6 +20,7 @@ from beamdyn.transient.gauss import (
     Tableau,
     add_drift,
     advance,
+    allocate_steps,
     increment,
     left_side,
     right_side,
@@ -107,7 +108,7 @@ class _StepMapSeries:
         return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
     def every(self, stride: int) -> _StepMapSeries:
-        """The same for some of the points."""
+        """The series at every `stride`-th point."""
         return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
     @property
@@ -173,11 +174,11 @@ class _Polynomials:
 
     @property
     def ends_early(self) -> bool:
-        """Whether so many points suffice: the last term may be left out."""
+        """Whether the number of points suffices, so that the last term may be left out."""
         return len(self.size) == 1 or bool(self.size[-1] <= self.allowed)
 
     def shortened(self, rough: bool) -> _Polynomials:
-        """Without the last terms that are far below what is allowed; in single precision if rough."""
+        """The sum without last terms far below what is allowed; in single precision if `rough`."""
         left_out = np.cumsum(self.size[::-1])[::-1]
         count = max(1, int((left_out > _NEGLIGIBLE * self.allowed).sum()))
         values = self.values[:count]
@@ -227,9 +228,9 @@ class _Expansion:
         table: Tableau,
         accuracy: float,
     ) -> _Expansion | None:
-        """Expand the maps of some steps of h, the first beginning at `first` [s], so many points.
+        """Expand the maps of steps of length h from `first` on [s], with a number of Chebyshev points.
 
-        None if the polynomials of so many points are not within the accuracy after all steps.
+        None if the polynomials through these points are not within the accuracy after all steps.
         """
         begin = first + (steps - 1) * h * (1 + _extrema(points)) / 2
         point = _StepMapSeries.at(system, begin, h, table)
@@ -293,7 +294,7 @@ class _Block:
     point: _StepMapSeries
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
-        """Chebyshev polynomials at x (N,) in [-1, 1], as many as are needed: shape (N, p)."""
+        """The p Chebyshev polynomials that the block needs, at x (N,) in [-1, 1]: shape (N, p)."""
         return _polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
@@ -324,7 +325,7 @@ class _Block:
 
 @lru_cache(maxsize=64)
 def _to_part(count: int, start: float, end: float) -> np.ndarray:
-    """Matrix from Chebyshev coefficients over [-1, 1], so many, to those over a part of it."""
+    """Matrix from `count` Chebyshev coefficients over [-1, 1] to those over a part of it."""
     T = _polynomials(start + (end - start) * (1 + _extrema(count)) / 2, count)
     return _to_coefficients(count) @ T
 
@@ -358,7 +359,7 @@ def _extrema(points: int) -> np.ndarray:
 
 
 def _polynomials(x: np.ndarray, count: int) -> np.ndarray:
-    """Chebyshev polynomials, so many of them, at x (N,) in [-1, 1]: shape (N, count)."""
+    """The first `count` Chebyshev polynomials at x (N,) in [-1, 1]: shape (N, count)."""
     return np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(count))
 
 
@@ -411,35 +412,46 @@ def propagate_modulated(
     Segment or None
         None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
-    h, n, table = (t1 - t0) / steps, len(q0), tableau(stages)
+    h, table = (t1 - t0) / steps, tableau(stages)
     expansion = _expand(system, t0, h, steps, table, accuracy)
     if expansion is None:
         return None
-    state, acceleration = np.empty((steps + 1, 2 * n + 1)), np.empty((steps, stages, n))
-    state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
-    all_e = all_g = np.empty(0)
-    for first in range(0, steps, _STEPS):
-        block = slice(first, min(first + _STEPS, steps))
-        k = np.arange(block.start, block.stop)
-        if first % _SAMPLED == 0:
-            sampled = np.arange(first, min(first + _SAMPLED, steps))
-            all_e, all_g = system.scalars(t0 + h * (sampled[:, None] + table.c))
-        here = slice(first % _SAMPLED, first % _SAMPLED + len(k))
-        e, g = all_e[here], all_g[here]
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
+    for block, e, g in _blocks(system, t0, h, steps, table):
         if steps * (expansion.ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
             return None
-        start, end = (2 * x / max(steps - 1, 1) - 1 for x in (int(k[0]), int(k[-1])))
-        local = expansion.over(start, end)
-        T = local.polynomials(2 * (k - k[0]) / max(len(k) - 1, 1) - 1)
-        e, g = np.moveaxis(e, 2, 1).reshape(len(k), -1), g.reshape(len(k), -1)  # e over (step, (m, node))
-        maps = local.steps(T, e)
-        affine = np.empty((len(k), 2 * n, 2 * n + 1))
-        np.matmul(maps[:, :, 2 * n :], g[:, :, None], out=affine[:, :, :1])
-        affine[:, :, 1:] = maps[:, :, : 2 * n]
-        advance(affine, state[first : block.stop + 1])
-        z = np.concatenate([state[block, 1:], g], axis=1)
-        acceleration[block] = local.accelerations(T, e, z).reshape(len(k), stages, n)
+        start, end = (2 * k / max(steps - 1, 1) - 1 for k in (block.start, block.stop - 1))
+        ends = slice(block.start, block.stop + 1)
+        _advance_block(expansion.over(start, end), e, g, state[ends], acceleration[block])
     return Segment(t0, h, state, acceleration)
+
+
+def _blocks(
+    system: ModulatedSystem, t0: float, h: float, steps: int, table: Tableau
+) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
+    """Yield blocks of steps, with e (N, s, m) and g (N, s, l) at the nodes of their N steps."""
+    for first in range(0, steps, _SAMPLED):
+        last = min(first + _SAMPLED, steps)
+        e, g = system.scalars(t0 + h * (np.arange(first, last)[:, None] + table.c))
+        for k in range(first, last, _STEPS):
+            here = slice(k - first, min(k + _STEPS, last) - first)
+            yield slice(k, min(k + _STEPS, last)), e[here], g[here]
+
+
+def _advance_block(
+    local: _Block, e: np.ndarray, g: np.ndarray, state: np.ndarray, acceleration: np.ndarray
+) -> None:
+    """Fill state[1:] of a block of N steps from state[0], and the accelerations at their nodes."""
+    N, columns = len(e), state.shape[1]
+    T = local.polynomials(2 * np.arange(N) / max(N - 1, 1) - 1)
+    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)  # e over (step, (m, node))
+    maps = local.steps(T, e)
+    affine = np.empty((N, columns - 1, columns))
+    np.matmul(maps[:, :, columns - 1 :], g[:, :, None], out=affine[:, :, :1])
+    affine[:, :, 1:] = maps[:, :, : columns - 1]
+    advance(affine, state)
+    z = np.concatenate([state[:-1, 1:], g], axis=1)
+    acceleration[:] = local.accelerations(T, e, z).reshape(acceleration.shape)
 
 
 def _expand(

@@ -1,4 +1,4 @@
-"""The pattern that every brake follows; its command, its screen and its HTML report are made from it."""
+"""Base classes of all types of brakes, from which their commands, screens and HTML reports are made."""
 
 from __future__ import annotations
 
@@ -22,23 +22,11 @@ from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import parse, read, validated
-from beamdyn.common.edge.input_sweep import (
-    MOST_AT_ONCE,
-    MOST_ONE_BY_ONE,
-    Axis,
-    CaseTask,
-    InputSweep,
-    Output,
-    SolvedCases,
-    chosen,
-    designs_of,
-    one_by_one,
-    parse_axis,
-    solve_cases,
-    swept,
-)
+from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, swept
 from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.one_line import counted, error_at_most
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results import Provenance, Result, plain
@@ -64,7 +52,7 @@ class Answer(Result, ABC):
     provenance: Provenance | None = field(default=None, kw_only=True)
 
     def headline(self) -> Iterator[str]:
-        """What its parts say in one line, and its error; see `Result.headline`."""
+        """Headlines of its parts, its error, and the number of refusals; see `Result.headline`."""
         parts = (getattr(self, each.name) for each in fields(self))
         said = (line for part in parts if isinstance(part, Result) for line in part.headline())
         yield from dict.fromkeys((*said, error_at_most(self.error)))
@@ -86,11 +74,11 @@ class Answer(Result, ABC):
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Why there is no answer to some of as many designs that were solved together, by their row."""
+        """Why designs have no answer, by row, where `count` designs were solved together."""
         return {}
 
     def loadable(self) -> Result | None:
-        """The result of the mechanics, if a single one is all that there is to know; else None."""
+        """The result of the mechanics if the answer consists of a single one, which is saved; else None."""
         return None
 
     @abstractmethod
@@ -118,23 +106,23 @@ class Answer(Result, ABC):
         Parameters
         ----------
         place : float, optional
-            Place of the screen's slider; if not given, the picture of the command and the HTML report.
+            Position of the screen's slider; if not given, the picture is that of command and HTML report.
         """
 
     def drawings(self, place: float) -> Rows:
-        """Drawings of the machine, row by row, with the slider at a place; none if it is not drawn."""
+        """Drawings of the machine, row by row, with the slider at a position; none if it is not drawn."""
         return ()
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """What the figure shows beside its drawings, with the slider at a place."""
+        """Charts of the figure, besides its drawings, with the slider at a position."""
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """The same answer with each of several solutions drawn, by their names; none where there is one."""
+        """The answer with each of its solutions drawn, by their names; none if there is only one."""
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Points of the first drawing that can be moved there, with the slider at a place."""
+        """Points of the first drawing that can be moved, with the slider at a position."""
         return ()
 
 
@@ -170,9 +158,9 @@ class SweepRequest:
     axes : sequence of Axis
         The inputs.
     combine : {"product", "zip"}
-        How they are combined.
+        Whether the inputs are combined each with each, or taken together.
     run : TaskRunner, optional
-        Where designs are solved one by one.
+        Runs the tasks of designs that are solved one by one; by default in this process.
     """
 
     design: Any
@@ -183,7 +171,7 @@ class SweepRequest:
 
 
 class BrakeType(ABC, Generic[FileModel]):
-    """A type of brake: what its TOML file says, and how it is answered.
+    """A type of brake: how its TOML file is read and solved, and what is shown.
 
     Command, screen and HTML report ask only this class and `Answer`. To add a type of brake ``name``:
 
@@ -209,31 +197,31 @@ class BrakeType(ABC, Generic[FileModel]):
     Attributes
     ----------
     name : str
-        Of its command and of its file without the suffix.
+        Name of its command, and of its file without the suffix.
     title : str
-        Of its screen.
+        Title of its screen.
     purpose : str
-        What its screen is for, in a sentence.
+        Purpose of its screen, in a sentence.
     method : str
-        How it is computed, in a phrase.
+        Method of solution, in a phrase.
     error_from : str
-        What the error of an answer is, in a phrase.
+        Meaning of the error of an answer, in a phrase.
     sections : tuple of str
         Tables on its form; "" for inputs outside any table.
     needs : tuple of str
-        Tables, or inputs outside any, from which the answer follows.
+        Tables, or inputs outside any, that the answer depends on.
     example_sweep : str
-        Sweep with which its screen begins, such as "brake.friction=0.1:0.6:26".
+        Sweep that its screen shows at first, such as "brake.friction=0.1:0.6:26".
     sweep_results : str
         Results of a sweep if none are named, separated by commas.
     slider : Slider, optional
-        What its figure follows.
+        Slider on which its drawings depend.
     more : tuple of FoldedPart
         Drawings and tables that fold out on its screen.
     most_cases : int
-        Cases of a sweep that are solved.
+        Largest number of designs of a sweep.
     key_results : tuple of (words, name)
-        The outputs that stand first on its screen, and what they are called there.
+        The outputs that stand first on its screen: how they are called there, and their names.
     """
 
     name: ClassVar[str]
@@ -288,7 +276,7 @@ class BrakeType(ABC, Generic[FileModel]):
         """Inputs of the form, for tables as far as they are filled in."""
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Paths of the form's inputs that mean nothing beside these entries; see `Document`."""
+        """Paths of inputs that have no effect beside these entries; see `Document`."""
         return ()
 
     @abstractmethod
@@ -297,7 +285,7 @@ class BrakeType(ABC, Generic[FileModel]):
 
     @abstractmethod
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Results over inputs, and warnings."""
+        """Results of the designs that are asked for, and warnings."""
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
         """Answer to the design of tables, with its provenance; raises what `read` and `solve` raise."""
@@ -340,11 +328,11 @@ class BrakeType(ABC, Generic[FileModel]):
         results : str, optional
             Names of outputs, separated by commas.
         options : pair of str
-            What inputs and results are called in messages.
+            Options that give inputs and results, for messages.
         combine : {"product", "zip"}
             Whether the inputs are combined each with each, or taken together.
         run : TaskRunner, optional
-            Where designs are solved that take no arrays; in this process if not given.
+            Runs the tasks of designs that are solved one by one; by default in this process.
 
         Returns
         -------
@@ -358,7 +346,7 @@ class BrakeType(ABC, Generic[FileModel]):
         ValueError
             If an input or a result is not known, an input is given twice, or there are too many designs.
         NoAnswer
-            If there is an answer nowhere.
+            If no design has an answer.
         """
         start, design = perf_counter(), self.read(tables, source)
         wanted = chosen(
@@ -383,7 +371,7 @@ ERROR = Output("error", "relative error", lambda answer: answer.error)
 
 
 class ArrayBrakeType(BrakeType[FileModel]):
-    """A type of brake whose mechanics takes arrays: a sweep is solved for all cases at once.
+    """A type of brake whose mechanics takes arrays: all designs of a sweep are solved at once.
 
     Attributes
     ----------
@@ -403,7 +391,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return describe(self.model)
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers in the tables that the design has."""
+        """Numbers in those tables that the design has."""
         return numeric_inputs(design)
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
@@ -421,7 +409,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
     def _solve_accepted(
         self, design: FileModel, designs: Designs
     ) -> tuple[Answer | None, np.ndarray, dict[int, str]]:
-        """Answer to the designs that are not refused, their rows (M,), and why others are, by row."""
+        """Answer to the accepted designs, their rows (M,), and why the others are refused, by row."""
         columns, rows, refused = designs.columns(), np.arange(designs.count), dict[int, str]()
         while rows.size:
             try:
@@ -430,16 +418,16 @@ class ArrayBrakeType(BrakeType[FileModel]):
             except InvalidValue as error:
                 bad = error.by_case()
                 if error.cases is None or error.cases.bad.shape != rows.shape:
-                    raise  # it is no matter of the designs
+                    raise  # it is not about some of the designs
                 refused.update((int(rows[i]), str(each)) for i, each in bad.items())
                 rows = rows[~error.cases.bad]
         return None, rows, refused
 
 
 def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> InputSweep:
-    """The sweep with the reasons why the model has no answer to designs of some rows, such as that they lock.
+    """The sweep with the reasons why designs have no answer, such as that the brake locks.
 
-    A design of which all results that are wanted are there has none to give.
+    Reasons are given only for designs that lack one of the wanted results.
     """
     lacking = np.any([np.isnan(values).ravel() for values in made.found[:-1]], axis=0)
     why = {} if answer is None else answer.refusals_of_cases(len(rows))
@@ -448,15 +436,15 @@ def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> 
 
 
 class TableBrakeType(BrakeType[FileModel]):
-    """A type of brake whose mechanics takes one design: a sweep is solved case by case."""
+    """A type of brake whose mechanics takes one design: those of a sweep are solved one by one."""
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Results case by case; not a number where there is no answer."""
+        """Results design by design; nan where there is no answer."""
         made = one_by_one(asked.tables, asked.axes, outputs, self.solve_task, asked.combine, asked.run)
         return made, made.warnings
 
     def solve_task(self, task: CaseTask) -> SolvedCases:
-        """Solve the cases of a task, here or in a worker."""
+        """Solve the designs of a task, here or in a worker."""
         outputs = self.outputs(self.read(task.tables, self.name))
         return solve_cases(task, [*outputs, ERROR], self._solve_determined)
 

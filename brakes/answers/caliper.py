@@ -1,4 +1,4 @@
-"""Bicycle calipers, named ones and those made of parts: what is shown of them and of plain mechanisms."""
+"""Answers on bicycle calipers, by name or made of parts, and the types of calipers and mechanisms."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from beamdyn.common.described import descriptions
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
-from beamdyn.common.edge.input_sweep import Output, numbers
+from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
@@ -144,13 +145,13 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """What statics does not determine, what opens, and that friction jams the brake."""
+        """Sentences on forces that statics does not determine, contacts that open, and friction that jams."""
         stuck = self.friction and not self.friction.has_answer and in_small_units(self.friction.message)
         return (*super().refusals, *([stuck] if stuck else []))
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Warnings of the stroke, and that friction holds the brake."""
+        """Warnings of the stroke, and a sentence if friction holds the brake."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
         return tuple(map(in_small_units, (*self.run.warnings, *held)))
@@ -207,7 +208,7 @@ class CaliperAnswer(PlanarAnswer):
             yield f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
 
     def _rubbing(self, friction: PivotFriction) -> str:
-        """What rubs."""
+        """Names of the pivots with friction, as the start of a sentence."""
         own = (
             ""
             if not self.caliper.free.friction
@@ -268,7 +269,7 @@ class CaliperAnswer(PlanarAnswer):
         return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
-        """What friction does at the end of the stroke."""
+        """Tensions of the cable with friction, at the end of the stroke; "" elsewhere."""
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
@@ -341,7 +342,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return [(f"{load.name} {when}", name_output(load.name)) for load in loads][:3]
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """The signs of joints; of a caliper with a vehicle that too."""
+        """The symbols of joints; with the vehicle of a caliper that has one."""
         return mechanism_sketch(any(text for path, text in entries.items() if path.startswith("stop.")))
 
     def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:
@@ -360,7 +361,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return inputs_of_tables(tables)
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Hand, pads and vehicle, where nothing says which loads are cable and pads."""
+        """Inputs of hand, pads and vehicle, if the file does not say which loads are cable and pads."""
         return idle_inputs(entries)
 
     def sweep_inputs(self, design: CaliperInput | MechanismInput, tables: Mapping[str, Any]) -> list[Input]:
@@ -452,7 +453,7 @@ def _mobility(core: Caliper | Mechanism) -> int:
 
 
 def _explain_list(text: str) -> str:
-    """Why a text is no list of parts."""
+    """Why a text is not a list of parts, and how to give one."""
     form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
     try:
         tomllib.loads(f"parts = {text}")

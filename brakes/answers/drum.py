@@ -1,4 +1,4 @@
-"""Drum brakes with pivoted shoes: what is shown of them."""
+"""Answers on drum brakes with pivoted shoes, for command, screen and report."""
 
 from __future__ import annotations
 
@@ -80,11 +80,11 @@ class DrumAnswer(Answer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """That the brake locks."""
+        """A sentence if the brake locks."""
         return (self.result.message,) if np.any(self.result.locked) else ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """That the brake locks, of the designs of which it does."""
+        """A sentence on each design whose brake locks, by row."""
         return self.result.messages_of_locked(count)
 
     def tables(self) -> list[RenderableType]:
@@ -111,7 +111,7 @@ class DrumAnswer(Answer):
         return brake_figure(self.result)
 
     def drawings(self, place: float) -> Rows:
-        """Free bodies; of a locked brake its parts."""
+        """The shoes with their forces; of a brake that locks without."""
         return ((drawing_of(self.result),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
@@ -146,7 +146,7 @@ def _on_rim(r: float, angle: float) -> tuple[float, float]:
 
 
 def _from_bottom(x: float, y: float) -> float:
-    """Angle of a place from straight down [rad]."""
+    """Angle of a point from straight down [rad]."""
     return float(np.arctan2(x, -y))
 
 

@@ -1,4 +1,4 @@
-"""A forklift's brakes: what is shown of the stop, of the shoes' motion and of the forces in one brake."""
+"""Answers on a forklift's brakes: the stop, the motion of the shoes, and the forces in one brake."""
 
 from __future__ import annotations
 
@@ -145,13 +145,13 @@ class ForkliftAnswer(Answer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """That the truck does not stop, or that the brake locks or cannot give the torque."""
+        """Sentences if the truck does not stop, or the brake locks or cannot give the torque."""
         stop = [] if self.stop is None or np.all(self.stop.stops) else [self.stop.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """The same of each of as many designs, by its row."""
+        """The sentences of each design that has any, by row."""
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
         return stop | ({} if self.forces is None else self.forces.messages_of_cases(count))
 
@@ -163,7 +163,7 @@ class ForkliftAnswer(Answer):
         return np.fmax.reduce(np.broadcast_arrays(*residuals))
 
     def tables(self) -> list[RenderableType]:
-        """A table of the vehicle, two of the kinematics, one of the forces, as far as they are there."""
+        """Tables of vehicle, kinematics and forces, as far as these stages are shown."""
         tables = [] if self.stop is None else [_stop_table(self.stop)]
         if "kinematics" in self.stages and self.motion is not None and self.kinematics is not None:
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
@@ -177,18 +177,18 @@ class ForkliftAnswer(Answer):
         return outputs_csv(stage_outputs(self.stages), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
-        """The truck, the brake's two stages and the free bodies of its shoes, as far as they are there."""
+        """The truck, the brake's two stages and the free bodies of its shoes, as far as they are shown."""
         return figure_of(self._drawn(place))
 
     def drawings(self, place: float) -> Rows:
-        """The same without slope and speed, which stand in the form beside it in the units chosen there."""
+        """The drawings of the figure; without slope and speed in the title, which stand in the form."""
         if self.stop is None:
             return self._drawn(place)
         (first, *others), *below = self._drawn(place)
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """All drawings; of the kinematics alone the brake at a place of its two stages, from 0 to 2."""
+        """All drawings; for the kinematics alone, the brake at a point of its two stages, from 0 to 2."""
         if place is not None and self.stages == ("kinematics",) and self.motion is not None:
             return ((_motion_drawing(self.motion, place),),)
         shown = None if self.stages == ("forces",) else self.kinematics
@@ -242,7 +242,7 @@ def _forces_table(forces: InternalForces, torque_from: str) -> RenderableType:
 
 
 def _motion_drawing(motion: ShoeMotion, progress: float) -> Drawing:
-    """The brake at a place of its two stages, from 0 to 2."""
+    """The brake at a point of its two stages, from 0 to 2."""
     seated, turned = min(progress, 1.0), max(progress - 1.0, 0.0)
     shoes, drum = np.degrees((seated * float(motion.seating_turn), turned * float(motion.drum_turn)))
     title = f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg"

@@ -1,4 +1,4 @@
-"""Points of a forklift's drawings that can be moved, and the inputs that follow from their places."""
+"""Handles on a forklift's drawings: points that can be moved, and the inputs for their new places."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.common.app.screens import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # of the place at rest of a moved point [m], [rad]
+_TOLERANCE = 1e-7  # of the position at rest of a moved point [m], [rad]
 _ITERATIONS = 30  # at most
 _GROUND = 1.9  # end of the drawn ground, in wheelbases
 _REAR_AXLE = 0.75  # its drawn height, in radii of the front wheel
@@ -29,7 +29,7 @@ def truck_handles(stop: Stop) -> list[Handle]:
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # of row vectors
 
     def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
-        """A handle at a place given along the slope and off the ground; its values are in these axes too."""
+        """A handle at coordinates along the slope and normal to it, in which `values` takes them, too."""
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
@@ -107,7 +107,7 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Angle of the contact that is drawn in the direction of (x, y); at rest the clearance too."""
+    """Angle of the contact that is drawn in the direction of (x, y); at rest also the clearance."""
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -124,7 +124,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Add the residual until it vanishes; stop where there is no such brake, which its fields then refuse."""
+    """Add the residual until it vanishes; stop at an impossible brake, which its fields then refuse."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

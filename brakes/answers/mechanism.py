@@ -1,4 +1,4 @@
-"""Planar mechanisms of bodies, joints and loads: what is shown of them, as drawn and over a stroke."""
+"""Answers on planar mechanisms of bodies, joints and loads, as drawn and over a stroke."""
 
 from __future__ import annotations
 
@@ -99,9 +99,10 @@ class MechanismAnswer(PlanarAnswer):
     over : Equilibrium, optional
         Equilibrium at each position of the stroke.
     friction : MechanismFriction, optional
-        With friction, if any joint rubs and statics determines the forces of a single motion.
+        Equilibria with friction, if a joint has friction, and statics determines the forces of the only
+        motion.
     branch : {"without friction", "squeezing", "releasing"}
-        Whose forces are drawn.
+        The equilibrium whose forces are drawn.
     """
 
     over: Equilibrium | None
@@ -109,7 +110,7 @@ class MechanismAnswer(PlanarAnswer):
     branch: str = WITHOUT
 
     def branches(self) -> Mapping[str, MechanismAnswer]:
-        """The same with the forces of each branch drawn: without friction, squeezing, releasing."""
+        """The answer with the forces of each branch drawn: without friction, squeezing, releasing."""
         return {name: replace(self, branch=name) for name in BRANCHES} if self.friction else {}
 
     @classmethod
@@ -119,7 +120,7 @@ class MechanismAnswer(PlanarAnswer):
         Raises
         ------
         MissingValue
-            If joints rub and no driver is named.
+            If joints have friction and no driver is named.
         """
         drawn, run = solve(mechanism, assemble(mechanism)), design.run
         motion, over, friction = None, None, None
@@ -148,7 +149,7 @@ class MechanismAnswer(PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """What statics does not determine, what opens, and which way friction lets nothing move."""
+        """Sentences on forces not determined, contacts that open, and directions in which friction jams."""
         found = super().refusals
         if self.friction is not None:
             return (*found, *map(in_small_units, self.friction.refusals))
@@ -158,7 +159,7 @@ class MechanismAnswer(PlanarAnswer):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Warnings of statics, toggle positions, and which way friction holds the mechanism."""
+        """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         toggles = [toggle.message for toggle in self.motion.toggles] if self.motion else []
         held = self.friction.warnings if self.friction else ()
         return tuple(map(in_small_units, (*self.last.warnings, *toggles, *held)))
@@ -241,9 +242,12 @@ class MechanismAnswer(PlanarAnswer):
         return told | drawn | more | {"friction": self.friction and self.friction.to_dict()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """The mechanism with its forces, and what the loads do over the stroke.
+        """The mechanism with its forces, and the loads over the stroke.
 
-        As drawn, as the table of forces has it; or at a part of the stroke from 0 to 1.
+        Parameters
+        ----------
+        place : float, optional
+            Part of the stroke, from 0 to 1; if not given, as drawn, which the table of forces shows.
         """
         index = self._index_at(0.0 if place is None else place)
         return mechanism_figure(self._drawing(index), self._over_stroke(index))
@@ -253,7 +257,7 @@ class MechanismAnswer(PlanarAnswer):
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """What the loads do over the stroke, if there is one."""
+        """The loads over the stroke, if there is one."""
         loads = self._over_stroke(self._index_at(place))
         return () if loads is None else loads.charts()
 

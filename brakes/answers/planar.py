@@ -1,4 +1,4 @@
-"""What answers on calipers and on mechanisms share: diagnosis, free bodies, animation."""
+"""Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class PlanarAnswer(Answer):
     design : CaliperInput or MechanismInput
         Its file.
     equilibrium : Equilibrium
-        Of a caliper at the end of its stroke, of a mechanism as drawn.
+        Equilibrium of a caliper at the end of its stroke, or of a mechanism as drawn.
     motion : Stroke, optional
         Positions over the stroke.
     """
@@ -78,7 +78,7 @@ class PlanarAnswer(Answer):
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
-        """Equilibria of which the bodies are drawn one by one, by their headings."""
+        """Equilibria whose bodies are drawn one by one, by their headings."""
         return {"": self.equilibrium}
 
     def free_bodies(self) -> Figure:

@@ -66,17 +66,17 @@ class MechanismFriction(Result):
 
     @property
     def last(self) -> FrictionalEquilibrium:
-        """Over the stroke, or as drawn."""
+        """The equilibria over the stroke if there is one, else those as drawn."""
         return self.over or self.drawn
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Which way no force moves the mechanism, a contact opens, or a cable slackens."""
+        """Sentences on directions in which no force moves it, a contact opens, or a cable slackens."""
         return [sentence for way, sentence in self._locking() if not way.has_answer]
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Which way the mechanism locks itself, so that the load has to be turned round."""
+        """Sentences on directions in which it locks itself, so that the load has to be reversed."""
         return [sentence for way, sentence in self._locking() if way.has_answer]
 
     def _locking(self) -> list[tuple[Equilibrium, str]]:
@@ -108,7 +108,7 @@ class MechanismFriction(Result):
         return {f"{name} [{load.unit}]": size for load, name, size in self._curves()}
 
     def curves(self, couples: bool) -> dict[str, np.ndarray]:
-        """The same by name: of moments, or of forces."""
+        """Moments, or forces, of the unknown loads over the stroke, squeezing and releasing, by name."""
         return {name: size for load, name, size in self._curves() if load.is_couple == couples}
 
     def _curves(self) -> list[tuple[Load, str, np.ndarray]]:
@@ -139,9 +139,9 @@ class MechanismFriction(Result):
         return _ways(found)[BRANCHES.index(branch)]
 
     def locked(self) -> dict[str, np.ndarray]:
-        """Where the mechanism locks over the stroke, by the name of each curve on which it does anywhere.
+        """Where the mechanism locks over the stroke, by the name of each curve on which it does.
 
-        It jams, so that there is no force, or the unknown load has to act the other way.
+        There it jams, so that there is no force, or the unknown load has to act in the other direction.
         """
         over = self.last
         found = {}
@@ -153,7 +153,7 @@ class MechanismFriction(Result):
         return {name: where for name, where in found.items() if where.any()}
 
     def to_dict(self) -> dict[str, Any]:
-        """As drawn, by the way of motion."""
+        """The equilibria as drawn, by the direction of motion, as plain numbers, lists and strings."""
         keys = ("status", "message", "reactions", "magnitudes", "amplitudes", "friction", "residual")
         ways = {"squeezing": self.drawn.squeeze, "releasing": self.drawn.release}
         return {"driver": self.driver} | {
@@ -162,7 +162,7 @@ class MechanismFriction(Result):
 
 
 def unknown_loads(mechanism: Mechanism) -> list[Load]:
-    """Loads whose size equilibrium gives."""
+    """Loads without a given magnitude, which equilibrium gives."""
     return [load for load in mechanism.loads if load.amplitude(np.zeros(1)) is None]
 
 

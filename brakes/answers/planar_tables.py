@@ -40,7 +40,7 @@ def name_output(words: str) -> str:
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Indices of the rows of a stroke's table, among so many positions."""
+    """Indices of the rows of a stroke's table, among `count` positions."""
     return np.unique(np.linspace(0, count - 1, _ROWS).round().astype(int))
 
 
@@ -77,7 +77,7 @@ def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """A force as text; not a number is what statics does not determine, and any force where friction jams."""
+    """A force as text; nan stands for a force that statics does not determine, or where friction jams."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"

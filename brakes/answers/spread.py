@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.edge.input_sweep import Axis, Coordinate, Output, chosen
+from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.spread_options import OPTION, parse_spreads
+from beamdyn.common.edge.spread_options import OPTION, in_units_of, parse_spreads
 from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.varied_inputs import Axis, Coordinate
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.result import Spread
@@ -67,8 +68,9 @@ def spread_of_brake(
     inputs = {entry.path: entry for entry in brake.sweep_inputs(design, tables)}
     used, cautions = check_samples(samples)
     given = parse_spreads([*inputs.values()], texts, lambda entry: nominal_of(design, entry))
-    for each in given:
-        _check_reach(inputs[each.name], each)
+    with in_units_of(given):
+        for each in given:
+            _check_reach(inputs[each.name], each)
     _check_count(brake, count_designs(len(given), used), samples)
     units = {each.name: each.unit for each in given}
     answers = _BrakeAnswers(brake, SweepRequest(design, tables, (), "zip", run), inputs, units, wanted)

@@ -1,4 +1,4 @@
-"""The screens of calipers: by name with their dimensions, and of mechanisms given part by part."""
+"""The screens of calipers, given by name with their dimensions, and of mechanisms given part by part."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The forklift's three screens: vehicle, kinematics, internal forces, each handing on to the next."""
+"""The forklift's three screens: vehicle, kinematics and internal forces, which uses results of the others."""
 
 from __future__ import annotations
 

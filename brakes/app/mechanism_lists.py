@@ -1,6 +1,6 @@
-"""A mechanism's bodies, points, joints and loads as lists: what a person adds, names, joins and removes.
+"""A mechanism's bodies, points, joints and loads as lists: to add, name, join and remove them.
 
-Pure functions from entries to entries; the entries are those of the TOML file.
+All functions are pure: they take entries of the form, which are those of the TOML file, and return others.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ _PARTS: dict[str, type[Part]] = {part.key(): part for part in (*JOINTS, *LOADS)}
 _INPUTS = {key: describe(SECTIONS[key]) for key in _PARTS}
 _POINTS = ("at", "to", "on", "at_other", "points")  # keys whose values are points
 _BODIES = ("body", "other", "bodies")
+_ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are joints and loads
 _UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # in which a bare number is taken
 _FIRST = {  # of what is added
     "direction": "-90 deg",
@@ -47,21 +48,30 @@ def _entries(tables: dict[str, Any]) -> Entries:
     return entries_of(kept, inputs_of_tables(kept))
 
 
+def _list_at(tables: Mapping[str, Any], key: str) -> list[Any]:
+    """The list at a key; an empty one where there is none, such as a text with a mistake."""
+    given = tables.get(key)
+    return given if isinstance(given, list) else []
+
+
+def _table_at(tables: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The table at a key; an empty one where there is none."""
+    given = tables.get(key)
+    return given if isinstance(given, dict) else {}
+
+
 def _bodies(tables: Mapping[str, Any]) -> list[str]:
-    given = tables.get("bodies")
-    return [str(body) for body in given] if isinstance(given, list) else []
+    return [str(body) for body in _list_at(tables, "bodies")]
 
 
 def _points(tables: Mapping[str, Any]) -> dict[str, Any]:
-    given = tables.get("points")
-    return given if isinstance(given, dict) else {}
+    return _table_at(tables, "points")
 
 
 def _parts(tables: Mapping[str, Any]) -> Iterator[tuple[str, int, dict[str, Any]]]:
     """Kind, number and table of each joint and load."""
     for key in _PARTS:
-        given = tables.get(key)
-        for number, part in enumerate(given if isinstance(given, list) else ()):
+        for number, part in enumerate(_list_at(tables, key)):
             if isinstance(part, dict):
                 yield key, number, part
 
@@ -153,8 +163,7 @@ def _said(value: Any) -> str:
 
 
 def _stroke(tables: Mapping[str, Any]) -> Item:
-    run = tables.get("run")
-    run = run if isinstance(run, dict) else {}
+    run = _table_at(tables, "run")
     driver = str(run.get("driver", ""))
     options = tuple(dict.fromkeys(("", *_loads(tables), driver)))
     cells = (
@@ -168,7 +177,7 @@ def _stroke(tables: Mapping[str, Any]) -> Item:
 
 
 def put(entries: Mapping[str, str], item: Item, key: str, text: str) -> Entries:
-    """The entries with another text in a cell; what names a thing that is renamed follows."""
+    """The entries with another text in a cell; references to an item that is renamed follow."""
     tables, text = _tables(entries), text.strip()
     if item.path == "run":
         run = {**tables.get("run", {}), key: text if key == "driver" else _with_unit(text, "mm")}
@@ -224,7 +233,7 @@ def _with_point(tables: dict[str, Any], item: Item, key: str, text: str) -> dict
 
 
 def _renamed(tables: dict[str, Any], keys: Sequence[str], old: str, new: str) -> dict[str, Any]:
-    """Tables in which a body or point has another name, also where a part names it."""
+    """Tables in which a body or point has another name, also where a part refers to it."""
 
     def other(value: Any) -> Any:
         if isinstance(value, list):
@@ -248,7 +257,7 @@ def _with_part_renamed(tables: dict[str, Any], old: str, new: str) -> dict[str, 
     def other(value: Any) -> Any:
         return [other(part) for part in value] if isinstance(value, list) else new if value == old else value
 
-    named = {"run": ("driver",), "caliper": ("cable", "pads", "centring")}
+    named = {"run": ("driver",), "caliper": _ROLES}
     return tables | {
         table: {key: other(value) if key in keys else value for key, value in tables[table].items()}
         for table, keys in named.items()
@@ -285,7 +294,7 @@ def _new_point(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _first(entry: Input, kind: str, tables: Mapping[str, Any]) -> Any:
-    """What a new part has at first: the last body, and the last points, which are the newest."""
+    """The first value of an input of a new part: the last body or the last points, which are the newest."""
     key, bodies, points = entry.path, _bodies(tables), list(_points(tables))
     if key == "name":
         return _fresh(_PARTS[kind].kind(), [str(part.get("name")) for _, _, part in _parts(tables)])
@@ -324,7 +333,7 @@ def _without_users(tables: dict[str, Any], keys: Sequence[str], name: str) -> di
 
 
 def _without_parts(tables: dict[str, Any], gone: Collection[tuple[str, int]]) -> dict[str, Any]:
-    """Tables without the joints and loads of these kinds and numbers; a driver that goes ends the stroke."""
+    """Tables without joints and loads by kind and number; a driver that goes ends the stroke."""
     left: dict[str, Any] = {
         key: [part for number, part in enumerate(tables[key]) if (key, number) not in gone] for key, _ in gone
     }
@@ -332,7 +341,26 @@ def _without_parts(tables: dict[str, Any], gone: Collection[tuple[str, int]]) ->
     run = tables.get("run")
     if isinstance(run, dict) and run.get("driver") in names:
         left["run"] = {key: value for key, value in run.items() if key not in ("driver", "travel")}
-    return tables | left
+    return _without_roles(tables | left, names)
+
+
+def _without_roles(tables: dict[str, Any], names: Collection[Any]) -> dict[str, Any]:
+    """Tables whose [caliper] names none of these parts; without cable and pads it is no caliper."""
+    given = tables.get("caliper")
+    if not isinstance(given, dict):
+        return tables
+    roles = {key: _unnamed(value, names) if key in _ROLES else value for key, value in given.items()}
+    kept = {key: value for key, value in roles.items() if value not in ("", [])}
+    if kept.keys() & {"cable", "pads"}:
+        return tables | {"caliper": kept}
+    return {key: table for key, table in tables.items() if key != "caliper"}
+
+
+def _unnamed(value: Any, names: Collection[Any]) -> Any:
+    """A name, or a list of them, without those of some parts."""
+    if isinstance(value, list):
+        return [name for name in value if name not in names]
+    return "" if value in names else value
 
 
 def empty(entries: Mapping[str, str]) -> Entries:
@@ -345,7 +373,7 @@ def empty(entries: Mapping[str, str]) -> Entries:
 
 
 def advice(entries: Mapping[str, str]) -> list[str]:
-    """What a mechanism still needs before its forces are known and it moves; a sentence each."""
+    """Sentences on what a mechanism still lacks before its forces are determined and it moves."""
     tables = _tables(entries)
     return [*_structure(tables)] or [*_motion(tables)]
 
@@ -369,19 +397,18 @@ def _structure(tables: Mapping[str, Any]) -> Iterator[str]:
 def _named(part: Mapping[str, Any]) -> tuple[Any, ...]:
     """Bodies that a joint joins."""
     if "bodies" in part:
-        return tuple(part["bodies"]) if isinstance(part["bodies"], list) else ()
+        return tuple(_list_at(part, "bodies"))
     return part.get("body"), part.get("other") or GROUND
 
 
 def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
-    """Freedoms against unknown loads, and what drives the stroke."""
-    run = tables.get("run")
-    still = {**tables, "run": _without(run, "driver") if isinstance(run, dict) else {}}
-    still["run"].pop("travel", None)
+    """Compare degrees of freedom with unknown loads, and ask for what drives the stroke."""
+    run = _table_at(tables, "run")
+    still = {**tables, "run": _without(_without(run, "driver"), "travel")}
     try:
         core = mechanism_from_dict(still, "mechanism").core
     except (ConfigError, ValueError):
-        return  # which the fields say
+        return  # the mistakes stand at the fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints
@@ -394,12 +421,12 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
         )
     elif free < unknown:
         yield f"{unknown} loads have no magnitude, {free} can be found: give magnitudes, or remove a joint."
-    elif free == 1 and not (isinstance(run, dict) and run.get("driver") and run.get("travel")):
+    elif free == 1 and not (run.get("driver") and run.get("travel")):
         yield "To see it move, choose the load that drives the stroke, and its travel."
 
 
 def _is_known(load: Any) -> bool:
-    """Whether a load has a magnitude; springs know theirs."""
+    """Whether a load has a given magnitude; that of a spring follows from its length."""
     return getattr(load, "magnitude", 0.0) is not None
 
 

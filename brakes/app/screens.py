@@ -1,4 +1,4 @@
-"""Screens and documents made from types of brakes: they hold no knowledge of a brake of their own."""
+"""Screens and documents made from types of brakes, without knowledge of any particular brake."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ def make_document(
     Parameters
     ----------
     brake : BrakeType
-        Its file is that of the document.
+        The type of brake, whose file is the document.
     screens : tuple of Screen
-        Its screens; the one of the type if not given.
+        Screens of the document; the one of the type if not given.
     check : callable, optional
-        Takes text and name of a file and raises `ConfigError` for one that is not for this document; the
-        commands' check if not given.
+        ``check(text, name)`` raises `ConfigError` for a file that is not for this document; the commands'
+        check if not given.
     """
 
     def accept(text: str, source: str) -> object:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.checks import kind, not_negative, positive
+from beamdyn.common.checks import InvalidValue, kind, not_negative, positive
 from beamdyn.common.one_line import number
 from beamdyn.common.results import Result
 from brakes.calipers.stance import GRAVITY, Stance
@@ -177,6 +177,12 @@ def _distance(
     return float(path[-1]), any(given(s) > most for s in path if s < math.inf)
 
 
+def check_wheels(inertia: float, tyre_radius: float | None, rim_radius: float | None) -> None:
+    """Refuse an inertia [kg m2] or a rim [m] without the tyre's radius [m], and a rim beyond the tyre."""
+    _equivalent_mass(inertia, tyre_radius)
+    _radius_ratio(rim_radius, tyre_radius)
+
+
 def _equivalent_mass(inertia: float, tyre_radius: float | None) -> float:
     if not inertia:
         return 0.0
@@ -192,7 +198,8 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
         raise ValueError("rim_radius needs tyre_radius, the rolling radius of the wheels in m")
     rim = positive("rim_radius", rim_radius, "m")
     if rim > tyre_radius:
-        raise ValueError(f"rim_radius = {rim:g} m: it must not exceed tyre_radius = {tyre_radius:g} m")
+        bound = "it must not exceed {other} = {limit}"
+        raise InvalidValue("rim_radius", rim, bound, unit="m", limit=tyre_radius, other="tyre_radius")
     return rim / tyre_radius
 
 

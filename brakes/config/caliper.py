@@ -14,6 +14,7 @@ from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
+from brakes.calipers.stopping import check_wheels
 from brakes.planar.inputs import DescribedDirection, DescribedPoint
 from brakes.planar.points import Point as Coordinates
 
@@ -108,6 +109,7 @@ class _StopInput(CoreSection):
     @cached_property
     def core(self) -> Stance:
         """Balance and grip."""
+        check_wheels(self.wheel_inertia, self.tyre_radius, self.rim_radius)
         return Stance(**{key: getattr(self, key) for key in _STANCE})
 
     def with_force(self, pad_force: float) -> StoppingDistance:

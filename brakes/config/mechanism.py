@@ -9,11 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import Field, create_model
 
+from beamdyn.common.checks import InvalidValue
 from beamdyn.common.described import described_hints, description
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
 from beamdyn.common.edge.inputs import Section
-from beamdyn.common.edge.sections import fields_of, section_of
+from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
+from beamdyn.common.edge.wording import in_small_units
 from brakes.calipers import NAMED, Caliper
 from brakes.config.caliper import QUANTITIES, Angle, CaliperInput, CaliperStopInput, Point, RunInput, model_of
 from brakes.planar import JOINTS, LOADS, Joint, Load, Mechanism, Part
@@ -57,7 +59,23 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
 # Any mechanism ------------------------------------------------------------------------------------
 
 
-SECTIONS = {part.key(): section_of(part, tables=QUANTITIES) for part in (*JOINTS, *LOADS)}  # by table
+class PartSection(MadeSection):
+    """Table of a joint or load; its refusals say where it is in millimetres, as the file does."""
+
+    @cached_property
+    def core(self) -> Part:
+        """The joint or load."""
+        try:
+            return super().core
+        except InvalidValue:  # which is put into the file's words where its key is known
+            raise
+        except ValueError as error:
+            raise ValueError(in_small_units(str(error))) from None
+
+
+SECTIONS = {  # by table
+    part.key(): section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
+}
 
 
 class RolesInput(Section):

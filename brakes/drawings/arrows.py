@@ -15,14 +15,14 @@ _FORCES = 3  # priority of their labels
 
 @dataclass(eq=False)
 class ForceArrows:
-    """A drawing that grows, with arrows of forces to one scale.
+    """A drawing to which arrows of forces are added, to one scale.
 
     Parameters
     ----------
     scale : float
         Length of an arrow per force [m/N].
     shapes, labels : list
-        What has been drawn, in m.
+        Shapes and labels so far, in m.
     """
 
     scale: float
@@ -41,9 +41,9 @@ class ForceArrows:
         symbol : str
             Its symbol, such as "N_1".
         role : str
-            What it is, in `beamdyn.common.drawing.style`.
+            Role that gives its colour: a name in `beamdyn.common.drawing.style`.
         ends_here : bool
-            Whether the arrow ends at `at`, as for a force that pushes, rather than starts there.
+            Whether the arrow ends at `at`, as for a force that pushes, and does not start there.
         """
         start = np.asarray(at, dtype=float)
         end = start + self.scale * np.asarray(vector)

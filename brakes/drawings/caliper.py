@@ -21,7 +21,7 @@ _HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # of the charts over the stroke, relative to on
 
 
 def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> Drawing:
-    """A caliper open (as a shadow) and closed on the rim, with its forces; in mm.
+    """A caliper open (outlined in grey) and closed on the rim, with its forces; in mm.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> D
 
 
 def title_of(caliper: Caliper, run: CaliperStroke, cable: float) -> str:
-    """What a drawing at some travel of the cable [m] shows."""
+    """Title of a drawing at a travel of the cable [m]."""
     return f"{caliper.name}: {1e3 * cable:.3g} mm of cable, {run.finger_force:g} N on the lever; grey: open"
 
 

@@ -1,4 +1,4 @@
-"""What the inputs of calipers and mechanisms mean: a caliper with its dimensions, the signs of joints."""
+"""Sketches that explain the inputs of calipers and mechanisms: dimensions, symbols of joints, angles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LETTERS = 9.0
 
 
 def caliper_sketch(name: str) -> Rows:
-    """A named caliper with the names of its dimensions, and the vehicle; of another name that alone."""
+    """A named caliper with the names of its dimensions, and the vehicle; for an unknown name the latter."""
     return [[_dimensions(name)], [bicycle_sketch()]] if name in NAMED else [[bicycle_sketch()]]
 
 
@@ -42,13 +42,13 @@ def _dimensions(name: str) -> Drawing:
 
 
 def mechanism_sketch(stops: bool) -> Rows:
-    """The signs of joints and loads, and the angles of directions; and a vehicle if it stops one."""
-    return [[_signs()], [_directions()], *([[bicycle_sketch()]] if stops else [])]
+    """The symbols of joints and loads, and the angles of directions; with a vehicle if it stops one."""
+    return [[_symbols()], [_directions()], *([[bicycle_sketch()]] if stops else [])]
 
 
-def _signs() -> Drawing:
+def _symbols() -> Drawing:
     s = Sketch()
-    signs: Sequence[tuple[str, Callable[[Sketch, float, float], None]]] = (
+    symbols: Sequence[tuple[str, Callable[[Sketch, float, float], None]]] = (
         ("pin", _pin),
         ("pin on the ground", _grounded),
         ("bar", _bar),
@@ -56,7 +56,7 @@ def _signs() -> Drawing:
         ("spring", _spring),
         ("slot, contact", _face),
     )
-    for i, (words, draw) in enumerate(signs):
+    for i, (words, draw) in enumerate(symbols):
         x, y = 2.6 * (i % 2), -0.8 * (i // 2)
         draw(s, x, y)
         s.labels.append(Label(words, (x + 0.4, y), "text", (1.0, 0.0), size=_LETTERS))
@@ -93,7 +93,7 @@ def _face(s: Sketch, x: float, y: float) -> None:
 
 
 def _directions() -> Drawing:
-    """In which direction an angle points."""
+    """Directions of some angles."""
     s = Sketch()
     for words, way in {"0 deg": (1.0, 0.0), "90 deg": (0.0, 1.0), "-30 deg": (0.87, -0.5)}.items():
         s.add(Arrow((0.0, 0.0), way, "load", words, 1.6))

@@ -55,7 +55,7 @@ def drawing_of(result: BrakeResult) -> Drawing:
 
 
 def locked_brake(result: BrakeResult) -> Drawing:
-    """The shoes in the drum, those that lock with a mark; of one case, in m."""
+    """The shoes in the drum, with a mark on those that lock; of one case, in m."""
     r = float(result.shoes[0].shoe.drum_radius)
     arrows = ForceArrows(0.0)
     _draw_drum(arrows, r, result.reverse)
@@ -122,7 +122,7 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
 
 
 def _draw_parts(arrows: ForceArrows, shoe: Shoe, placed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Add a shoe with lining and pin; the places (2,) of its pin and of where the force presses."""
+    """Add a shoe with lining and pin; return the points (2,) of the pin and of the force."""
     r = float(shoe.drum_radius)
     rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
     pin = np.array(shoe.pivot, dtype=float) @ placed
@@ -136,12 +136,12 @@ def _draw_parts(arrows: ForceArrows, shoe: Shoe, placed: np.ndarray) -> tuple[np
 
 
 def _draw_ends(arrows: ForceArrows, pin: np.ndarray, lever: np.ndarray) -> None:
-    """Add the pin, and the place where the force presses, over what has been drawn."""
+    """Add the pin, and the point of the force, over what has been drawn."""
     arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
 
 
 def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
-    """Places (k, 2) on the drum at angles from straight down."""
+    """Points (k, 2) on the drum at angles from straight down [rad]."""
     return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
 
 

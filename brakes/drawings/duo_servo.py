@@ -63,7 +63,22 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
 def moved(
     points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
 ) -> np.ndarray:
-    """Move points of a shoe from the right side at rest to a side at a point of the motion, shape (n, 2)."""
+    """Move points of the right shoe at rest to where they are on a side at a point of the motion.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        Points of the right shoe at rest [m].
+    geometry, motion, progress
+        As for `duo_servo`.
+    side : {"right", "left"}
+        The side.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        [m]
+    """
     first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
     pin = np.array(geometry.adjuster, dtype=float)
     turned = pin + _turned(np.asarray(points) - pin, -first * float(motion.seating_turn))
@@ -141,7 +156,7 @@ def free_bodies(forces: InternalForces, followed: Kinematics | None = None) -> l
 
 
 def bare_shoes(forces: InternalForces, followed: Kinematics | None = None) -> list[Drawing]:
-    """Both shoes, which are in no equilibrium, without forces; as `free_bodies`."""
+    """Both shoes without forces, where there is no equilibrium; otherwise as `free_bodies`."""
     why = {"locked": "locks itself", "no solution": "no equilibrium"}[str(forces.status)]
     drawings = []
     for side, name in (("left", "trailing shoe"), ("right", "leading shoe")):
@@ -155,7 +170,7 @@ def bare_shoes(forces: InternalForces, followed: Kinematics | None = None) -> li
 def _draw_shoe(
     arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Add the drum and the outline of a shoe if it is known; where piston and adjuster act (2,) [m]."""
+    """Add the drum, and the outline of a shoe if known; return the points of piston and adjuster [m]."""
     r = float(f.levers.drum_radius)
     arrows.shapes += [Disc((0, 0), r, "axis", 1.2, (4.0, 2.0)), Symbol("cross", (0, 0), "axis", 8.0)]
     outline, tip, pin = _outline(f, followed, side)

@@ -19,7 +19,7 @@ from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
-    """Draw the truck, the brake's two stages and the free bodies of its shoes, as far as they are given."""
+    """Draw the truck, the brake's two stages and the free bodies of its shoes, if these are given."""
     from beamdyn.common.drawing.on_axes import figure_of
 
     rows = answer_drawings(stop, followed, forces, followed)
@@ -43,7 +43,7 @@ def answer_drawings(
     forces : InternalForces, optional
         Free bodies of its shoes; where they have no equilibrium the shoes alone.
     outlines : Kinematics, optional
-        The motion that gives these their outlines.
+        Motion by which the shoes have their outlines.
     """
     rows = [] if stop is None else [[truck(stop)]]
     if followed is not None:
@@ -85,7 +85,7 @@ def truck(stop: Stop) -> Drawing:
 
 
 def _mark_moving_on(arrows: ForceArrows, at: np.ndarray, length: float, turn: np.ndarray) -> None:
-    """An arrow down the slope, of this length [m], that says that the truck does not stop."""
+    """Add an arrow of a length [m] down the slope, with the words that the truck does not stop."""
     foot, tip = at @ turn, (at + np.array([length, 0.0])) @ turn
     arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))
     places = np.stack([(foot + tip) / 2, tip])
@@ -98,7 +98,7 @@ def _title(stop: Stop) -> str:
 
 
 def outcome(stop: Stop) -> str:
-    """Where the truck stops, or why it does not, and the torque of a brake; of one case."""
+    """Stopping distance, or why the truck does not stop, and the torque of a brake; of one case."""
     how = f"stops within {float(stop.distance):.4g} m" if stop.stops else str(stop.status)
     return f"{how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
 

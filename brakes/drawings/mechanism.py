@@ -23,7 +23,7 @@ _MM = 1e3
 _LONGEST = 0.28  # longest arrow, over the size of the mechanism
 _SHORTEST = 1e-6  # shorter arrows are not drawn [mm]
 _ASIDE = 0.17  # distance from the middle, over the size, past which arrows may point inwards
-_ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # where on a member its label may stand
+_ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # fractions of a member's length at which its label may stand
 _CABLE = (5.0, 3.0)
 _SPRING = (1.5, 2.0)
 _BODIES, _MEMBERS, _FORCES = 1, 2, 3  # priorities of labels
@@ -33,7 +33,7 @@ _COUPLE = 1e-12  # couples below are rounding [N m]
 
 @dataclass(eq=False)
 class _Sketch:
-    """Shapes and labels as they come."""
+    """A drawing to which shapes and labels are added."""
 
     shapes: list[DrawnShape] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
@@ -81,8 +81,8 @@ def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium
     sketch.shapes += [Outline(face, "contact", 1.6) for face in _faces(position)]
 
 
-def _shadow(position: Position) -> list[DrawnShape]:
-    """The same without names and forces, in one pale colour."""
+def _ghost(position: Position) -> list[DrawnShape]:
+    """The mechanism without names and forces, in one pale colour."""
     straight = parts.two_force_bodies(position.mechanism)
     bodies = [body for body in position.mechanism.bodies if body not in straight]
     outlines = [parts.outline(position, body) * _MM for body in bodies]
@@ -143,14 +143,14 @@ def force_scale(forces: Sequence[parts.OuterForce], size: float) -> float:
 
 
 def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: Any = None) -> Drawing:
-    """The open mechanism as a shadow under the closed one with its forces.
+    """The open mechanism, outlined in grey, under the closed one with its forces.
 
     Loads (black) and reactions of the ground (green) are arrows to one scale.
 
     Parameters
     ----------
     open_ : Position
-        The shadow.
+        Position of the open mechanism.
     closed : Equilibrium
         At one position.
     title : str
@@ -164,7 +164,7 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
     if rim is not None:
         _add_rim(sketch, np.asarray(rim))
     if not np.array_equal(open_.coordinates, closed.position.coordinates):
-        sketch.shapes += _shadow(open_)
+        sketch.shapes += _ghost(open_)
     _add_mechanism(sketch, closed.position, closed)
     _add_forces(sketch, forces, scale, (low, high))
     words = "A mechanism with its forces as arrows to one scale: loads, and reactions of the ground"

@@ -1,4 +1,4 @@
-"""Geometry of the pictures of a mechanism: outlines of bodies, members, outer forces."""
+"""Geometry of the drawings of a mechanism: outlines of bodies, members, external forces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """A force: name, where it acts (2,) [m], its components (2,) [N]; whether a reaction, and along a bar."""
+    """An external force: name, point (2,) [m], components (2,) [N]; if it is a reaction, or along a bar."""
 
     name: str
     at: np.ndarray
@@ -124,9 +124,9 @@ def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
-    """Forces on the mechanism from outside: loads, and reactions and friction of the ground.
+    """External forces on the mechanism: loads, and reactions and friction of the ground.
 
-    That on a bar is at its end on the ground, where an arrow along it does not cover it.
+    The reaction on a bar is drawn at its end on the ground, where the arrow does not cover the bar.
     """
     mechanism = equilibrium.position.mechanism
     on_ground = _ends_on_ground(equilibrium.position)

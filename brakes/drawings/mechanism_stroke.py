@@ -19,11 +19,18 @@ if TYPE_CHECKING:
 class LoadsOverStroke(NamedTuple):
     """Loads over a stroke.
 
-    travel : (S,), travel of the driver, in its unit.
-    driver, unit : its name, and the unit of its travel.
-    forces, moments : (S,) by name [N], [N m].
-    place : the travel to mark.
-    locked : (S,) by name, where the mechanism locks.
+    Parameters
+    ----------
+    travel : ndarray, shape (S,)
+        Travel of the driver, in `unit`.
+    driver, unit : str
+        Name of the driver, and the unit of its travel.
+    forces, moments : mapping of str to ndarray, shape (S,)
+        Loads by name [N], [N m].
+    place : float
+        Travel to mark, in `unit`.
+    locked : mapping of str to ndarray of bool, shape (S,)
+        Where the mechanism locks, by the name of the load.
     """
 
     travel: np.ndarray
@@ -68,7 +75,7 @@ def mechanism_figure(drawing: Drawing, loads: LoadsOverStroke | None) -> Figure:
     drawing : Drawing
         From `brakes.drawings.mechanism.open_and_closed`.
     loads : LoadsOverStroke, optional
-        Forces and moments have panels of their own.
+        Its loads, forces and moments in an axes each.
     """
     from matplotlib.figure import Figure
 
@@ -84,7 +91,7 @@ def mechanism_figure(drawing: Drawing, loads: LoadsOverStroke | None) -> Figure:
 
 
 def travel_axis(name: str, unit: str, travel: np.ndarray) -> ChartAxis:
-    """The axis of a stroke, from end to end."""
+    """The axis of the travel, as long as the stroke."""
     return ChartAxis(name, unit, low=float(travel.min()), high=float(travel.max()))
 
 

@@ -1,4 +1,4 @@
-"""What the symbols of the brakes' forms mean: sketches of truck, duo-servo brake, drum brake, bicycle."""
+"""Sketches that explain the symbols of the forms: truck, duo-servo brake, drum brake, bicycle."""
 
 from __future__ import annotations
 

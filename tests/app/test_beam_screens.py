@@ -112,8 +112,8 @@ def test_coarse_frequencies_lie_on_those_in_full():
     for mode in range(2):
         fine = np.interp(quick.locus.speeds, full.locus.speeds, full.locus.frequency[:, mode])
         assert np.allclose(quick.locus.frequency[:, mode], fine, rtol=1e-3)
-    forced = sorted(m[0] for m in full.meetings if "forced" in m[2])
-    assert sorted(m[0] for m in quick.meetings) == pytest.approx(forced, rel=1e-3)
+    forced = sorted(m[0] for m in full.crossing_points if "forced" in m[2])
+    assert sorted(m[0] for m in quick.crossing_points) == pytest.approx(forced, rel=1e-3)
     (chart,) = FREQUENCIES.charts(quick, 0.0)
     assert [c.name for c in chart.curves] == [c.name for c in FREQUENCIES.charts(full, 0.0)[0].curves]
 

@@ -16,6 +16,8 @@ from brakes.app.program import BRAKES
 SCREEN = MECHANISM.screens[0]
 CLAMP = (Path(__file__).parents[2] / "examples" / "calipers" / "toggle-clamp.toml").read_text("utf-8")
 
+OWN = (Path(__file__).parents[2] / "examples" / "calipers" / "own-caliper.toml").read_text("utf-8")
+
 
 def item(entries, name):
     return next(one for group in groups(entries) for one in group.items if one.name == name)
@@ -169,6 +171,29 @@ def test_what_names_a_body_or_point_goes_with_it(name, along):
 def _parts_of(entries):
     given = tables(entries)
     return [part for kind in ("pin", "bar", "force") for part in given.get(kind, [])]
+
+
+@pytest.mark.parametrize(
+    "name, left",
+    [
+        ("rotation lock springs", {"cable": "wire", "pads": ["right pad", "left pad"]}),
+        ("force right pad", {"cable": "wire", "pads": ["left pad"], "centring": ["springs"]}),
+        ("cable pair wire", {"pads": ["right pad", "left pad"], "centring": ["springs"]}),
+        ("right arm", {"pads": ["left pad"]}),
+        ("right_pad", {"cable": "wire", "pads": ["left pad"], "centring": ["springs"]}),
+    ],
+)
+def test_what_is_removed_plays_no_role_in_the_caliper(name, left):
+    entries = MECHANISM.opened(OWN, "own")
+    roles = tables(remove(entries, item(entries, name)))["caliper"]
+    assert roles == left | {"lever_ratio": 4, "clearance": "1.25 mm"}
+
+
+def test_what_has_neither_cable_nor_pads_is_no_caliper():
+    entries = MECHANISM.opened(OWN, "own")
+    for name in ("left arm", "right arm"):
+        entries = remove(entries, item(entries, name))
+    assert "caliper" not in tables(entries)
 
 
 def test_bare_numbers_take_the_unit_shown_and_decimal_commas_are_read():

@@ -8,7 +8,7 @@ from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.form_entries import in_unit, units_of
 from beamdyn.common.app.reading import is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import numbers
+from beamdyn.common.edge.varied_inputs import numbers
 from brakes.app.program import BRAKES
 
 DOCUMENTS = {d.name: d for d in (*BRAKES.documents, *BEAMDYN.documents)}

@@ -80,6 +80,22 @@ def test_address_that_is_not_of_this_computer(said):
     assert "leave --host out" in sentence
 
 
+@needs_server
+@pytest.mark.parametrize("host", ["", "  "])
+def test_host_that_is_blank(said, host):
+    sentence = said("--host", host, "--port", str(free_port()))
+    assert f'--host = "{host}": it is blank' in sentence
+    assert "such as 127.0.0.1, or leave --host out" in sentence
+
+
+@needs_server
+@pytest.mark.parametrize("host", ["no-such-host.invalid", "http://localhost", "a..b", "x" * 300])
+def test_host_without_an_address(said, host):
+    sentence = said("--host", host, "--port", str(free_port()))
+    assert f'--host = "{host}": no address is known for it' in sentence
+    assert "such as 127.0.0.1, or leave --host out" in sentence
+
+
 def test_without_nicegui_it_says_what_to_install(said, monkeypatch):
     monkeypatch.setitem(sys.modules, "nicegui", None)
     assert MISSING in said("--port", str(free_port()))

@@ -17,9 +17,10 @@ from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.app.screens import Program
 from beamdyn.common.app.sweep_charts import sweep_charts
 from beamdyn.common.app.sweep_panel import around
-from beamdyn.common.edge.input_sweep import numbers, sweep_csv
+from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
 from beamdyn.common.edge.rendering import csv_text
+from beamdyn.common.edge.varied_inputs import numbers
 from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.edge import input_sweep
+from beamdyn.common.edge import input_sweep, varied_inputs
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
@@ -26,6 +26,7 @@ from brakes.answers.forklift import solve_stages
 from brakes.cli import main
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
+from brakes.config.mechanism import mechanism_from_dict
 from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
@@ -288,8 +289,8 @@ def test_angles_in_messages() -> None:
 # Sweeps -------------------------------------------------------------------------------------------------
 
 
-def parse_axis(design: Any, text: str) -> input_sweep.Axis:
-    return input_sweep.parse_axis(numeric_inputs(design), text)
+def parse_axis(design: Any, text: str) -> varied_inputs.Axis:
+    return varied_inputs.parse_axis(numeric_inputs(design), text)
 
 
 TORQUE = Output("torque", "torque", lambda r: r.torque, "N m")
@@ -363,7 +364,7 @@ def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
     answer = solve_stages(with_arrays(design, {axes[0].input.path: axes[0].values}))
-    found = input_sweep.swept(input_sweep.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
+    found = input_sweep.swept(varied_inputs.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)
     assert found.to_dict()["inputs"] == ["truck.load_mass"]
@@ -407,3 +408,10 @@ def test_a_point_beyond_every_mechanism_is_refused_by_name(tmp_path, capsys) -> 
     assert main(["caliper", str(tmp_path / "far.toml")]) == 2
     said = " ".join(capsys.readouterr().err.split())
     assert "points.right_bolt" in said and "give coordinates of at most 1e+06 m either way" in said
+
+
+def test_a_caliper_with_one_pad_is_told_how_many_there_are():
+    text = (EXAMPLES / "calipers" / "own-caliper.toml").read_text(encoding="utf-8")
+    one = text.replace('["right pad", "left pad"]', '["right pad"]')
+    with pytest.raises(ConfigError, match=r'caliper\.pads = \["right pad"\]: give at least 2 values'):
+        mechanism_from_dict(tomllib.loads(one), "own.toml")

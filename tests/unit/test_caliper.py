@@ -242,6 +242,12 @@ def mistakes(text: str) -> str:
         ('at = "clamp"', 'at = "clam"', 'cable_pair[0].at = "clam": no such point in [points]'),
         ('at = "clamp"', 'at = ["1 mm"]', "cable_pair[0].at"),
         ('to = "housing"', 'to = "clamp"', "cable_pair[0]: cable pair 'wire' has zero length"),
+        (
+            'left_pad"\ndirection = [-1, 0]',
+            'left_pad"\ndirection = [-1, 0]\n[[spring]]\nname = "s"\nbody = "left arm"\nat = "clamp"\n'
+            'to = "clamp"\nstiffness = "5 N/mm"\nfree_length = "1 mm"',
+            "spring 's' has zero length at (-42, 2) mm",
+        ),
         ('body = "left arm"\nat', 'body = "left"\nat', "did you mean 'left arm'?"),
         ('["-42 mm", "2 mm"]', '["-42 mm", 2]', "points.clamp"),
         ("direction = [1, 0]", "direction = [0, 0]", "force[0]: force 'right pad': direction = (0, 0)"),
@@ -480,3 +486,9 @@ def test_examples_are_what_they_say():
     for path in EXAMPLES.glob("*.toml"):
         given = tomllib.loads(path.read_text())
         assert "caliper" in given or "bodies" in given
+
+
+def test_a_rim_outside_the_tyre_is_refused_by_key_and_in_the_unit_of_the_file():
+    vehicle = '[stop]\nmass = "90 kg"\nspeed = "25 km/h"\nfriction = 0.4\ntyre_radius = "34 cm"\n'
+    said = mistakes(f'{OWN}\n{vehicle}rim_radius = "40 cm"\n')
+    assert said.endswith('stop.rim_radius = "40 cm": it must not exceed tyre_radius = 34 cm')

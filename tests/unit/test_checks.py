@@ -108,3 +108,10 @@ def test_numbers_out_of_range_are_said_in_the_words_of_a_user(failing):
         eval(failing)
     assert reason_of(raised.value) == OUT_OF_RANGE
     assert reason_of(ArithmeticError("buckles")) == "buckles"
+
+
+def test_values_as_far_apart_as_floats_go_are_put_in_order_without_overflow():
+    largest = np.finfo(float).max
+    np.testing.assert_array_equal(ascending("speeds", [-largest, largest]), [-largest, largest])
+    with pytest.raises(ValueError, match="must ascend"):
+        ascending("speeds", [largest, -largest])

@@ -175,3 +175,13 @@ def test_a_name_like_none_lists_all_that_there_are(refused):
     said = refused("sensitivities", TYRE, "--inputs", "beam.nosuch")
     assert "beam.length, " in said and "beam.thickness" in said
     assert refused("sensitivities", TYRE, "--inputs", "beam.thicknes").endswith("give beam.thickness\n")
+
+
+@pytest.mark.parametrize("given", [("-",), (TYRE, "--csv", "-"), (TYRE, "--json", "-")])
+def test_a_dash_is_said_to_be_no_file(refused, given):
+    assert "A dash names no file: give a name, such as /dev/stdin" in refused("modes", *given)
+
+
+@pytest.mark.parametrize("name", ["", "  "])
+def test_an_empty_name_is_not_the_current_folder(refused, name):
+    assert 'one of the names is empty (""); give the name of a file' in refused("modes", name)

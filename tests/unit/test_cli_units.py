@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from beamdyn.cli import BAD_INPUT, main
 from beamdyn.cli.excitations import read_spectrum
 from beamdyn.cli.linear_models import parse_frequencies
 from beamdyn.common.edge.config import ConfigError
+from brakes.cli import main as brakes
 
+TYRE = Path(__file__).parents[2] / "examples" / "tyre_harvester.toml"
 G = 9.80665  # m/s2
 
 
@@ -67,3 +72,39 @@ def test_frequencies_that_are_refused(text, said):
 )
 def test_frequencies(text, hertz):
     np.testing.assert_allclose(parse_frequencies(text), hertz, rtol=1e-14)
+
+
+# Numbers out of range, in the unit in which they were given ----------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["modes", TYRE, "--speed", "1e60 rpm"], "--speed = 1e+60 rpm: give at most 9.5493e+50 rpm"),
+        (["modes", TYRE, "--speed=-1e60 rpm"], "--speed = -1e+60 rpm: give at most 9.5493e+50 rpm"),
+        (["locus", TYRE, "--speeds", "0:1e60:2 rpm"], "--speeds = 1e+60 rpm"),
+        (
+            ["response", TYRE, "--speed", "1 rpm", "--frequencies", "1:1e20:2 kHz"],
+            "--frequencies = 1e+20 kHz: at most 1e+09 kHz",
+        ),
+        (
+            ["study", TYRE, "--spread", "beam.density=+-12 g/cm3"],
+            "beam.density = -4.15 g/cm3, which +-12 g/cm3 reaches",
+        ),
+    ],
+)
+def test_what_is_out_of_range_is_said_in_the_unit_of_its_option(options, said, capsys):
+    assert main([str(each) for each in options]) == BAD_INPUT
+    assert said in " ".join(capsys.readouterr().err.split())
+
+
+def test_the_spread_of_a_brake_is_refused_in_the_unit_of_its_tolerance(capsys):
+    assert brakes(["caliper", "dual-pivot", "--spread", "run.finger=+-500 kgf"]) == BAD_INPUT
+    assert "run.finger = -495.921 kgf, which +-500 kgf reaches" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_size_below_all_bounds_is_told_the_bound_in_its_unit(tmp_path, capsys):
+    small = TYRE.read_text("utf-8").replace('"50 mm"', '"1e-60 mm"')
+    (tmp_path / "small.toml").write_text(small)
+    assert main(["modes", str(tmp_path / "small.toml")]) == BAD_INPUT
+    assert 'beam.length = "1e-60 mm": give a size of 1e-47 mm or more' in capsys.readouterr().err

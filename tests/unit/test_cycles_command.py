@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
@@ -113,3 +114,19 @@ def test_options_of_cycles_are_refused_in_a_sentence(options, said, run, monkeyp
     monkeypatch.chdir(tmp_path)
     code, _, err = run(*options)
     assert code == BAD_INPUT and said in err
+
+
+def test_equivalent_ranges_are_in_the_json_file(run, loads, tmp_path):
+    cycles, file = bd.count_cycles(loads, "strain", start=0.1, end=0.3), tmp_path / "loads.json"
+    equal = "--woehler", "3, 5.5", "--equivalent-cycles", "100"
+    assert run("--cycles", "strain", *equal, "--json", file)[0] == DONE
+    found = json.loads(file.read_text())["equivalent_ranges"]
+    assert [(each["exponent"], each["cycles"], each["range"]) for each in found] == [
+        (m, 100.0, cycles.equivalent_range(m, 100.0)) for m in (3.0, 5.5)
+    ]
+    assert {(each["quantity"], each["x"], each["start"], each["end"]) for each in found} == {
+        ("strain", cycles.x, 0.1, 0.3)
+    }
+    back = bd.load(file)
+    assert isinstance(back, bd.TransientLoads)
+    assert [each.exponent for each in back.equivalent_ranges] == [3.0, 5.5]

@@ -128,6 +128,10 @@ REFUSED = {
         "damping_ratio",
     ),
     "negative damper": (lambda: bd.Damping(tip_damper=-1.0), "damping.tip_damper"),
+    "damper beside which the beam is lost to rounding": (
+        lambda: bd.Scene(BEAM, damping=bd.Damping(tip_damper=1e9)),
+        r"damping.tip_damper = 1e\+09 N s/m: it must be at most",
+    ),
     "huge damper": (lambda: bd.Damping(tip_damper=1e300), "damping.tip_damper"),
     "huge factor": (lambda: bd.Damping(stiffness_factor=1e300), "damping.stiffness_factor"),
     "huge gravity": (lambda: bd.Scene(BEAM, gravity=1e300), "gravity"),

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import beamdyn as bd
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.drawing.label_places import Ground, Wish, place_labels
+from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
 from beamdyn.common.drawing.layout import Fit, arrange, follow
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
@@ -206,29 +206,29 @@ def test_the_key_has_used_entries_alone():
 def crowd(count, seed, room=600.0, size=(60.0, 12.0)):
     draw = np.random.default_rng(seed)
     ends = draw.uniform(40, room - 40, (120, 4))
-    wishes = [Wish(size, end[None, 2:], tuple(end[2:] - end[:2])) for end in ends[:count]]
-    return wishes, Ground((0.0, 0.0, room, room), ends, ends[:, 2:])
+    requests = [LabelRequest(size, end[None, 2:], tuple(end[2:] - end[:2])) for end in ends[:count]]
+    return requests, Obstacles((0.0, 0.0, room, room), ends, ends[:, 2:])
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_labels_of_a_crowd_are_free_and_the_same_again(seed):
-    wishes, ground = crowd(40, seed)
-    places = place_labels(wishes, ground)
+    requests, obstacles = crowd(40, seed)
+    places = place_labels(requests, obstacles)
     assert None not in places
-    half = np.array(wishes[0].size) / 2
+    half = np.array(requests[0].size) / 2
     centres = np.array([place.centre for place in places])
     for one, other in combinations(centres, 2):
         assert (np.abs(one - other) >= 2 * half - 1e-9).any()
     assert (centres - half >= 0).all() and (centres + half <= 600).all()
-    for at in ground.points:
+    for at in obstacles.points:
         assert (np.abs(centres - at) > half).any(axis=1).all()
     again = np.array([place.centre for place in place_labels(*crowd(40, seed))])
     np.testing.assert_array_equal(again, centres)
 
 
 def test_a_label_for_which_there_is_no_room_has_no_place():
-    wishes, ground = crowd(6, 1, room=110.0)
-    assert None in place_labels(wishes, ground)
+    requests, obstacles = crowd(6, 1, room=110.0)
+    assert None in place_labels(requests, obstacles)
 
 
 def test_what_has_no_place_is_numbered_and_listed():
@@ -305,7 +305,7 @@ def test_a_name_is_a_text_and_nothing_else(name):
 
 
 def test_every_role_has_a_colour_on_light_and_on_dark_that_can_be_read():
-    """Contrast of letters against the ground, by the formula of WCAG 2: at least 3, of text at least 7."""
+    """Contrast of letters against the obstacles, by the formula of WCAG 2: at least 3, of text at least 7."""
     from beamdyn.common.drawing.style import PAPER
 
     def luminance(colour):

@@ -136,3 +136,35 @@ def test_a_line_within_another_takes_its_place(on_terminal):
             assert "whole" not in terminal.text
         terminal.truncate(0)
         wait_for("whole", terminal)
+
+
+@pytest.mark.parametrize(
+    ("counts", "left"),
+    [
+        ([(0.0, 0), (10.0, 10), (10.1, 20)], 40.4),  # two workers end at about the same time
+        ([(0.0, 0), (0.1, 50), (60.1, 60)], 240.0),  # half is in the store; a step takes longer than 30 s
+        ([(0.0, 0), (8.0, 10), (12.0, 20), (14.0, 30), (15.0, 40), (16.0, 50)], 10.0),  # the longest first
+    ],
+)
+def test_the_time_left_is_that_of_the_last_half_of_the_time(counts, left):
+    pace = progress.Pace()
+    for at, done in counts:
+        pace.note(at, done)
+    now = counts[-1][0]
+    assert pace.left(now, 100) == pytest.approx(left, rel=1e-12)
+    assert pace.left(now + 1.0, 100) == pytest.approx(left - 1.0, rel=1e-12)
+
+
+def test_no_time_is_left_to_say_before_a_step_has_ended():
+    pace = progress.Pace()
+    assert pace.left(0.0, 100) is None
+    pace.note(0.0, 0)
+    assert pace.left(1.0, 100) is None
+
+
+def test_the_time_left_stands_on_the_line(on_terminal, monkeypatch):
+    monkeypatch.setattr(progress.Pace, "left", lambda pace, now, total: 3725.4)
+    terminal = on_terminal()
+    with at_work("designs") as count:
+        count(1, 2)
+        wait_for("1:02:05 left", terminal)

@@ -347,3 +347,11 @@ def test_a_tolerance_that_cannot_be_met_does_not_make_the_answer_worse(
     sudden = replace(HARVESTER, motion=bd.SpinUp(50.0, duration=1e-4), damping_ratio=0.005)
     usual, tight = (bd.simulate(sudden, 0.05, tolerance=tolerance) for tolerance in (1e-5, 1e-9))
     assert tight.mode_error <= usual.mode_error and "not reached" in " ".join(tight.warnings)
+
+
+def test_a_motion_beyond_all_bounds_is_refused_where_it_gets_there():
+    """It was followed on, in finer and finer steps, until these no longer fitted into memory: 20 s."""
+    stiff = bd.Beam.rectangular(0.12, 0.01, 0.0025, 20e9, 1900.0)
+    scene = bd.Scene(stiff, bd.Mount(0.25), bd.RollingWheel(0.3, bd.SteadyRotation(80.0)), 0.05, 1e9)
+    with pytest.raises(ArithmeticError, match=r"grows without bound, past 1e\+50 before t = 0\.04"):
+        bd.simulate(scene, t_end=1.0)

@@ -1,4 +1,4 @@
-"""A choice among several solutions of an answer: which of them is drawn."""
+"""Buttons that choose which of several solutions of an answer is drawn."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from nicegui import ui
 
 
 class BranchChoice:
-    """Buttons that say which branch is drawn, and choose another; not seen where there is one.
+    """Buttons that choose which branch of an answer is drawn; hidden where the answer has a single one.
 
     Parameters
     ----------
     chosen : callable
-        Called when another has been chosen.
+        Called when another branch has been chosen.
     """
 
     def __init__(self, chosen: Callable[[], object]) -> None:
@@ -26,7 +26,7 @@ class BranchChoice:
         self._row.set_visibility(False)
 
     def choose(self, answer: Any, branches: Mapping[str, Any]) -> Any:
-        """The branch of an answer that is chosen, the first of those that there are at first."""
+        """The chosen branch of an answer: the first one until another is chosen."""
         names = [*branches]
         if names != self._toggle.options:
             kept = self._toggle.value if self._toggle.value in names else next(iter(names), None)

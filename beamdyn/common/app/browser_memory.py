@@ -1,7 +1,7 @@
-"""What the browser keeps for a page: the designs of a tab, what is being typed, named designs, the look.
+"""What the browser stores for a page: the designs of a tab, what is being typed, named designs, the look.
 
-The entries of a tab are stored by the program after each change, and each key stroke by the page itself: what
-has been typed when the program or the tab ends is there again afterwards.
+The program stores the entries of a tab after each change, and the page itself each key stroke: what has been
+typed is not lost when the program or the tab ends.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ _MOST = 100  # named designs
 
 # Width of a page below which drawings have narrow paper, as the rules of `look` have it.
 _NARROW = "(max-width: 600px)"
-# A key stroke in a field is kept until the program has stored it; a link that is put into the address of an
-# open page is followed; the keys of undo and redo wait until what has been typed is on its way; a page that
-# becomes narrow or wide says so.
+# The script keeps a key stroke in a field until the program has stored it, follows a link that is put into
+# the address of an open page, passes on the keys of undo and redo after what has been typed, and reports when
+# the page becomes narrow or wide.
 SCRIPT = """<script type="module">
 const typedKey = %(typed)s;
 document.addEventListener("input", (event) => {
@@ -45,12 +45,12 @@ document.addEventListener("keydown", (event) => {
 
 
 class BrowserMemory:
-    """The scripts that store and read what belongs to a program.
+    """Scripts that store and read a program's data in the browser.
 
     Parameters
     ----------
     program : str
-        Its name.
+        Name of the program.
     """
 
     def __init__(self, program: str) -> None:
@@ -60,12 +60,15 @@ class BrowserMemory:
 
     @property
     def script(self) -> str:
-        """What the page runs on its own."""
+        """The script that the page runs by itself."""
         return SCRIPT % {"typed": self._typed, "narrow": json.dumps(_NARROW)}
 
     @property
     def recall(self) -> str:
-        """Return as JSON what was stored, the look, the link in the address (taken from it), the width."""
+        """Script that returns, as JSON, what was stored, the look, the width, and the link in the address.
+
+        It takes the link out of the address.
+        """
         return (
             f"const kept = JSON.parse(sessionStorage.getItem({self._page}) || '{{}}');"
             f"kept.typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
@@ -76,7 +79,16 @@ class BrowserMemory:
         )
 
     def remember(self, stored: Mapping[str, Any], heard: Mapping[str, Mapping[str, str]]) -> str:
-        """Store what is on the page; what was heard, by document and path, is kept as typed no longer."""
+        """Script that stores the content of the page.
+
+        Parameters
+        ----------
+        stored : mapping
+            The content.
+        heard : mapping
+            Texts of fields that the program has received, by document and path: they need no longer be kept
+            as key strokes.
+        """
         return (
             f"sessionStorage.setItem({self._page}, {json.dumps(json.dumps(stored))});"
             f"const typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
@@ -88,24 +100,24 @@ class BrowserMemory:
 
     @property
     def forget_typed(self) -> str:
-        """Forget what was typed, when another design is shown."""
+        """Script that forgets the key strokes, for when another design is shown."""
         return f"sessionStorage.removeItem({self._typed});"
 
     def keep_look(self, look: str) -> str:
-        """Store whether the page is light or dark."""
+        """Script that stores whether the page is light or dark."""
         return f"localStorage.setItem({self._look}, {json.dumps(look)});"
 
     @property
     def designs(self) -> str:
-        """Return the named designs, as JSON."""
+        """Script that returns the named designs, as JSON."""
         return f"return localStorage.getItem({self._designs});"
 
     def keep_design(self, name: str, document: str, entries: Mapping[str, str]) -> str:
-        """Store a named design; return why not, if the browser has no room for it."""
+        """Script that stores a named design, and returns "" or why the browser has no room for it."""
         return self._with_designs(f"all[{json.dumps(name)}] = {json.dumps([document, dict(entries)])};")
 
     def drop_design(self, name: str) -> str:
-        """Forget a named design."""
+        """Script that deletes a named design."""
         return self._with_designs(f"delete all[{json.dumps(name)}];")
 
     def _with_designs(self, change: str) -> str:
@@ -117,7 +129,7 @@ class BrowserMemory:
 
 
 def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
-    """Document and entries by name, of what the browser has stored; what has another form is left out."""
+    """Document and entries of each named design that the browser has stored; malformed ones are left out."""
     try:
         held = json.loads(stored or "{}")
     except ValueError:
@@ -131,7 +143,7 @@ def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
-    """Why a design cannot be kept under a name; empty if it can."""
+    """Why a design cannot be stored under a name; empty if it can."""
     if not name.strip():
         return "give the design a name"
     if len(name) > _LONGEST:
@@ -142,7 +154,7 @@ def refused_name(name: str, present: Mapping[str, object]) -> str:
 
 
 def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
-    """Entries with what was typed but not yet stored, read as the form reads it."""
+    """Entries with the texts that were typed but not yet stored, read as the form reads them."""
     known = {entry.path: entry for entry in inputs}
     found = dict(entries)
     for path, text in typed.items() if isinstance(typed, dict) else ():

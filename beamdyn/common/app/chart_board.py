@@ -25,7 +25,7 @@ STYLE = (
 
 
 _HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
-# What the signs of a chart do, by keys; each a change of the part [%] that is shown.
+# Zooming and moving by keys: each changes the part of the x axis [%] that is shown.
 _KEYS = """(event) => {
   const chart = getElement(%d)?.chart, zoom = chart?.getOption().dataZoom?.[0];
   if (!zoom || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -51,11 +51,11 @@ _SAVE = """(model, api) => {
   link.click();
 }"""
 
-_NO_SIGNS = {"toolbox": {"show": False}}  # while something is held: they are made anew for each picture
+_NO_TOOLBOX = {"toolbox": {"show": False}}  # while something is held: it would be made anew for each picture
 
 
 class _ShownChart:
-    """A chart below its heading on the page, zoomed and moved by keys; it is kept and given new data."""
+    """A chart below its heading on the page; its element is kept and given new data."""
 
     def __init__(self, writer: PageWriter) -> None:
         self._writer = writer
@@ -84,13 +84,13 @@ class _ShownChart:
             self._element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
             others = {name: value for name, value in self._options.items() if last.get(name) != value}
-            self._writer.write(self._element, {"options": _without_scripts(others) | _NO_SIGNS})
+            self._writer.write(self._element, {"options": _without_scripts(others) | _NO_TOOLBOX})
             self._writer.tell_later(self)
         else:
             self.update()
 
     def update(self) -> None:
-        """Tell the toolkit what is shown; not while something is held, as it wraps each number of a curve."""
+        """Tell NiceGUI what is shown; not while something is held, as that takes time for each number."""
         with self._element.props.suspend_updates():
             self._element.props["options"] = self._options
         self._element.update()
@@ -102,7 +102,7 @@ class _ShownChart:
 
 
 class ChartBoard:
-    """Charts below one another; each is kept and given new data, so that zooming lasts.
+    """Charts below one another; their elements are kept and given new data, so that zooming lasts.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class ChartBoard:
     def __init__(self, words: str, writer: PageWriter) -> None:
         self._writer = writer
         self._made: list[_ShownChart] = []
-        self._shown: list[dict[str, Any]] = []  # options, but for what moves with the player
+        self._shown: list[dict[str, Any]] = []  # options of the charts without their cursors
         self._column: Any = ui.column().classes("w-full gap-0 charts")
         self._column.props["data-words"] = words
         self._how: Any = ui.label(_HOW).classes("status")
@@ -151,7 +151,7 @@ def _with_saving(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:
-    """Options without those that the component reads as scripts, which stay what they are."""
+    """Options without those that the component reads as scripts, which do not change."""
     return {
         name: _without_scripts(value) if isinstance(value, dict) else value
         for name, value in options.items()

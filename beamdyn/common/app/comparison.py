@@ -1,4 +1,4 @@
-"""Two designs compared: which inputs and results differ, and the other one's drawing beneath this one's."""
+"""Comparison of two designs: inputs and results that differ, and the other design's drawing and curves."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class OtherDesign:
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the design.
     entries : mapping
         Its entries.
     """
@@ -43,7 +43,7 @@ class OtherDesign:
 
 
 class Difference(NamedTuple):
-    """Something that differs: what it is, its value here, and that of the other design."""
+    """An input or result that differs: its name, its value here, and that of the other design."""
 
     words: str
     here: str
@@ -51,7 +51,7 @@ class Difference(NamedTuple):
 
     @property
     def change(self) -> str:
-        """By how much the value here is the larger; "" where the two are no numbers of one unit."""
+        """Relative difference of the value here from the other; "" unless both are numbers of one unit."""
         here, there = (_NUMBER.fullmatch(text) for text in (self.here, self.there))
         if here is None or there is None or here[2] != there[2] or not float(there[1]):
             return ""
@@ -180,14 +180,14 @@ def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (),
 
 
 def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str) -> Sequence[Chart]:
-    """Charts with the curves of another design's, pale and dashed, where these have the same axes."""
+    """Charts with the curves of another design's charts, pale and dashed, if these have the same axes."""
     if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
         return charts
     return [_with_curves(chart, there, name) for chart, there in zip(charts, other, strict=True)]
 
 
 def _with_curves(chart: Chart, there: Chart, name: str) -> Chart:
-    """A chart with the curves of another one, and axes that hold both."""
+    """A chart with the curves of another one, and axes long enough for both."""
     pale = [_pale(curve, name) for curve in there.curves if not curve.pale]
     return replace(
         chart,
@@ -198,7 +198,7 @@ def _with_curves(chart: Chart, there: Chart, name: str) -> Chart:
 
 
 def _around_both(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
-    """An axis as long as two; where one of them ends by its curves, it does so, too."""
+    """An axis that spans two; an end that follows from the curves in one of them does so here."""
     lows, highs = (axis.low, there.low), (axis.high, there.high)
     return replace(axis, low=_if_given(min, lows), high=_if_given(max, highs))
 
@@ -213,7 +213,7 @@ def _pale(curve: ChartCurve, name: str) -> ChartCurve:
 
 
 def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
-    """Drawings with the outlines of another design's beneath them."""
+    """Drawings with the outlines of another design beneath them."""
     if [len(row) for row in rows] != [len(row) for row in other]:
         return rows
     return [

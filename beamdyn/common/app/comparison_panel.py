@@ -17,7 +17,7 @@ from beamdyn.common.app.screens import Screen
 
 
 class ComparisonPanel:
-    """Tables of the inputs and results that differ; nothing while no other design is compared.
+    """Tables of the inputs and results that differ; hidden while no other design is compared.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class ComparisonPanel:
         self._fold.set_visibility(False)
 
     def show(self, answered: Answered) -> None:
-        """Compare an answer with that of the other design, as soon as there is one."""
+        """Compare an answer with that of the other design, if that has been solved."""
         other = self.work.other
         self._fold.set_visibility(other is not None)
         if other is None:

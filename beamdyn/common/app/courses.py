@@ -1,4 +1,4 @@
-"""How the place of a slider follows from the time that it has been played."""
+"""Position of a slider over the time for which it has been played."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from typing import Protocol
 
 
 class Course(Protocol):
-    """How the place of a slider follows from the time that it has been played [s]."""
+    """Position of a slider over the time for which it has been played."""
 
     @property
     def seconds(self) -> float:
-        """How long it takes from one end to the other [s]."""
+        """Time from one end to the other [s]."""
         ...
 
     def place(self, elapsed: float) -> float:
-        """The place after a time [s]."""
+        """Position after a time [s]."""
         ...
 
     def elapsed(self, place: float) -> float:
-        """A time at which it is at a place [s]."""
+        """A time at which it is at a position [s]."""
         ...
 
 
 @dataclass(frozen=True)
 class BackAndForth:
-    """From 0 to the last place and back again, slowly at both ends; each way takes so many seconds."""
+    """From 0 to the last position and back again, slowly at both ends; each way takes `seconds`."""
 
     last: float
     seconds: float = 2.5
@@ -36,7 +36,7 @@ class BackAndForth:
         return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
 
     def elapsed(self, place: float) -> float:
-        """When it is at a place on its way there [s]."""
+        """Time at which it is at a position on its way there [s]."""
         if place >= self.last:
             return self.seconds
         return self.seconds / math.pi * math.acos(1 - 2 * max(place, 0.0) / self.last)
@@ -44,7 +44,7 @@ class BackAndForth:
 
 @dataclass(frozen=True)
 class Onward:
-    """From 0 to the last place at one pace, then from 0 again; each time it takes so many seconds."""
+    """From 0 to the last position at a constant rate, then from 0 again; each time takes `seconds`."""
 
     last: float
     seconds: float = 10.0
@@ -54,5 +54,5 @@ class Onward:
         return self.last * (elapsed / self.seconds % 1.0)
 
     def elapsed(self, place: float) -> float:
-        """When it is at a place [s]."""
+        """Time at which it is at a position [s]."""
         return self.seconds * place / self.last

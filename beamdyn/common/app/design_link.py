@@ -18,7 +18,7 @@ _SOURCE = "the link"
 
 @dataclass(frozen=True)
 class LinkedDesign:
-    """What a link carries.
+    """A design in a link.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class LinkedDesign:
         Raises
         ------
         ConfigError
-            If there is none; the design itself is not checked.
+            If it holds none; the design itself is not checked.
         """
         packed = fragment.removeprefix("#").removeprefix("design=")
         if len(packed) > _LONGEST:

@@ -22,11 +22,11 @@ class DesignActions:
     Parameters
     ----------
     keep : callable
-        Keeps the open design under a name; says why not, or "".
+        ``keep(name)`` stores the open design under a name; returns "", or why it cannot.
     open, compare : callable
-        Name, document and entries in.
+        Called with name, document and entries of a design.
     delete : callable
-        Name in.
+        Called with the name of a design.
     """
 
     keep: Callable[[str], Any]
@@ -41,7 +41,7 @@ class DesignsDialog:
     Parameters
     ----------
     do : DesignActions
-        What its buttons do.
+        Actions of its buttons.
     """
 
     def __init__(self, do: DesignActions) -> None:
@@ -56,7 +56,7 @@ class DesignsDialog:
             ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
 
     def show(self, kept: Designs, examples: Sequence[Example], document: str) -> None:
-        """Open it; only designs of the document in front can be compared."""
+        """Open the dialog; only designs of the document in front can be compared."""
         self._said.set_text("")
         self._list.clear()
         with self._list:

@@ -1,4 +1,4 @@
-"""Files to take away, which are drawn beside the page's process."""
+"""Downloads of files that are made in another process."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from beamdyn.common.app.under_way import SOON
 
 
 async def download(making: asyncio.Future[Any], name: str) -> None:
-    """Download what is being made, bytes or a text, as a file; say so where it takes its time, or fails.
+    """Download bytes or a text as a file when they have been made; notify if that takes long, or fails.
 
     Parameters
     ----------
     making : asyncio.Future
         From `TaskTaker.submit`.
     name : str
-        Of the file.
+        Name of the file.
     """
     await asyncio.wait([making], timeout=SOON)
     if not making.done():

@@ -1,4 +1,4 @@
-"""A slider that moves by itself in the page, so that it waits for no answer while it is dragged."""
+"""A slider that the page moves itself: while it is dragged it does not wait for the program."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _OFTEN = 0.03  # least time between two messages of a slider that is dragged [s]
 
 
 class DragSlider(ui.slider, component="drag_slider.js"):
-    """A slider whose drags are told.
+    """A slider that reports while it is dragged.
 
     Parameters
     ----------
     dragged : callable
-        Called with its place, and whether it has been let go; of a step by a key or a click, it has.
+        Called with its position, and whether it has been let go, as after a step by a key or a click.
     **options
-        Of `ui.slider`.
+        Options of `ui.slider`.
     """
 
     def __init__(self, dragged: Callable[[float, bool], object], **options: Any) -> None:
@@ -30,7 +30,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
         self.on("drag", lambda e: dragged(*e.args), throttle=_OFTEN)
 
     def put(self, place: float, writer: PageWriter) -> None:
-        """Move it to a place, past the toolkit while the writer is ahead of that."""
+        """Move it to a position; in the page itself while the writer is ahead of NiceGUI."""
         with writer.writing(self):
             self.set_value(place)
         if writer.is_ahead:

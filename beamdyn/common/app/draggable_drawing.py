@@ -34,9 +34,9 @@ _OFTEN = 0.03  # least time between two messages of a moving handle [s]
 _PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
 _FAR = 10  # arrow keys' steps with shift
 
-# Sends where in the picture, in parts of its width and height, the handle would be under the pointer that
-# holds it, and whether it has been let go; by one listener, so that this comes last. The picture's place is
-# that at the start: one that a new sentence above it shifts would pull the point along.
+# Sends the position of the handle in the picture, in parts of its width and height, as the pointer drags it,
+# and whether it has been let go; by one listener, so that this message comes last. The picture's position is
+# taken at the start: if a new sentence above shifts the picture, the point does not follow.
 _HOLD = """(down) => {
   if (down.button) return;
   const handle = down.currentTarget, board = handle.parentElement;
@@ -73,14 +73,14 @@ class DraggableDrawing:
     moved : callable
         Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
     writer : PageWriter
-        What writes it while something is held.
+        Writes it into the page while something is held.
 
     Attributes
     ----------
     held : Viewport, optional
         Viewport that the drawing keeps while a handle is held.
     view : Viewport, optional
-        That of the drawing which is shown.
+        Viewport of the drawing that is shown.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class DraggableDrawing:
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
-        self._stepped_to: dict[int, Place] = {}  # by keys, further than the drawing shows
+        self._stepped_to: dict[int, Place] = {}  # where keys have moved points that are not drawn again yet
         self._handles: list[Any] = []
         self._places: dict[int, str] = {}
         self._said: Any = ui.label()
@@ -117,7 +117,7 @@ class DraggableDrawing:
         self._how.set_visibility(bool(sheet.handles))
         for element in self._handles:
             element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
-        if sheet.handles:  # of a drawing without, those before it stay: one of them may be held
+        if sheet.handles:  # else the last ones stay, hidden: one of them may be held
             self._make([handle.label for handle in sheet.handles])
             self._sheet = sheet
             for element, handle in zip(self._handles, sheet.handles, strict=True):
@@ -151,7 +151,7 @@ class DraggableDrawing:
         return made
 
     def _put(self, element: Any, handle: Handle, words: Callable[[Handle], str]) -> None:
-        """Move a handle to its place, if it is another; what stays needs no message to the page."""
+        """Move a handle to its place, with a message to the page only if that has changed."""
         x, y = self._sheet.place(handle)
         at = f"left: {100 * x:.3f}%; top: {100 * y:.3f}%"
         if self.held is not None and self._places.get(element.id) == at:
@@ -170,7 +170,7 @@ class DraggableDrawing:
         self._moved(handle, self._stepped_to[i], True)
 
     def forget_steps(self) -> None:
-        """Let steps by keys start from where the drawing has the points: it shows the present entries."""
+        """Let steps by keys start from the points as drawn, once the drawing shows the present entries."""
         self._stepped_to.clear()
 
     async def _pulled(self, i: int, event: Any) -> None:

@@ -1,4 +1,4 @@
-"""The examples that come with the packages, as designs to begin with."""
+"""The examples that come with the packages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Example:
     name : str
         Name of its file, without the suffix.
     title : str
-        What it is, in a sentence.
+        Description in a sentence.
     document : Document
         The kind of file.
     text : str
@@ -42,7 +42,7 @@ _KNOWN: dict[str, tuple[Example, ...]] = {}  # by program: it takes a second to 
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:
-    """The examples that one of a program's documents accepts, by the order of their names."""
+    """The examples that one of a program's documents accepts, in the order of their names."""
     if program.name not in _KNOWN:
         _KNOWN[program.name] = tuple(_accepted(program))
     return _KNOWN[program.name]
@@ -61,7 +61,7 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _texts() -> Iterator[Path]:
-    """The TOML files among the examples: those of the package, or of the checkout that it stands in."""
+    """The TOML files of the examples: in the installed package, or in the source tree around it."""
     packed = Path(__file__).with_name("shipped_examples")
     folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
     for place in (folder, folder / "calipers"):

@@ -1,4 +1,4 @@
-"""A folded part of a screen on the page, made only while it is open."""
+"""A part of a screen that folds out on the page, and is made only while it is open."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ STYLE = """
 
 
 class FoldedPanel:
-    """A folded part of an answer, made in another process: the last one stays until the next one has come.
+    """A part of an answer that folds out, made in another process; the last one stays until it has come.
 
     Parameters
     ----------
     title : str
-        What it shows.
+        Title of the part.
     make : callable
-        Answer in; out comes what makes the part, which gives HTML.
+        ``make(answer)`` returns a future of the part as HTML.
     """
 
     def __init__(self, title: str, make: Callable[[Any], asyncio.Future[str]]) -> None:

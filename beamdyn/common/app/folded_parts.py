@@ -1,4 +1,4 @@
-"""What folds out below the numbers of a screen: further drawings, and further tables."""
+"""Further drawings and tables of a screen, which fold out below its numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class FoldedPart(Protocol):
-    """A part of a screen that folds out; it is made when it is wanted."""
+    """A part of a screen that folds out, and is made only then."""
 
     @property
     def title(self) -> str:
@@ -41,7 +41,7 @@ class FoldedDrawings:
     title : str
         What they show.
     rows : callable
-        Answer in, rows of drawings out.
+        ``rows(answer)``: rows of drawings.
     """
 
     title: str
@@ -68,7 +68,7 @@ class FoldedTable:
     title : str
         What it shows.
     table : callable
-        Answer in, the table out.
+        ``table(answer)``: the table.
     """
 
     title: str

@@ -34,11 +34,11 @@ class Form:
     Parameters
     ----------
     inputs : sequence of Input
-        What to ask for.
+        Inputs, each with a field.
     sections : sequence of str
         Tables shown, in this order; "" for inputs outside any.
     entries : mapping
-        What stands in the fields at first.
+        Texts of the fields at first, by path.
     changed : callable
         Called with path and text when a field changes.
     drags : sequence of Drag
@@ -46,14 +46,14 @@ class Form:
     hold : callable
         Called with True when a slider is taken hold of, with False when it is let go.
     headings : mapping
-        Words above the tables, where those that follow from their names are not good ones.
+        Headings of tables, where one that is made from the table's name does not serve.
     writer : PageWriter
-        What writes into the fields while something is held.
+        Writes into the fields while something is held.
 
     Attributes
     ----------
     typed : dict
-        What was typed last into each field, by path.
+        Text that was typed last into each field, by path.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Form:
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
-        self._units: dict[str, str] = {}  # in which a bare number is taken, by path
+        self._units: dict[str, str] = {}  # units of bare numbers, by path
         self._headings = headings
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # of the fields
@@ -176,7 +176,7 @@ class Form:
         return field
 
     def _heard(self, entry: Input, typed: str) -> None:
-        """Take what was typed into a field, or written there; say how it was read."""
+        """Read a text that was typed or written into a field, and show how it was read."""
         self.typed[entry.path] = typed
         read = self._read(entry.path)
         self._units[entry.path] = unit_of(read.text, entry) or self._units[entry.path]
@@ -184,7 +184,7 @@ class Form:
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> Reading:
-        """What stands in a field, as it is read."""
+        """The text of a field, as it is read."""
         typed = self.fields[path].value or ""
         return read_entry(typed, self._inputs[path], self._units.get(path, ""))
 
@@ -194,7 +194,7 @@ class Form:
         field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
 
     def _tidy(self, entry: Input) -> None:
-        """Write a field's text as it was read, when it is left."""
+        """Replace a field's text by what was read from it, when the field is left."""
         read, field = self._read(entry.path), self.fields[entry.path]
         if read.remark and not field.error:
             field.set_value(read.text)
@@ -220,13 +220,13 @@ class Form:
         return all(self._read(path).text == entries.get(path, "") for path in self.fields)
 
     def put(self, entries: Mapping[str, str]) -> None:
-        """Make these entries stand in the fields; those that do already are left alone."""
+        """Show these entries; fields that show theirs already are left alone."""
         for path, field in self.fields.items():
             if self._read(path).text != entries.get(path, ""):
                 field.set_value(entries.get(path, ""))
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write into those fields that the form has, while they are dragged or after."""
+        """Write texts into their fields, also during a drag; paths without a field are passed over."""
         fields = {path: self.fields[path] for path in texts if path in self.fields}
         with self._writer.writing(*fields.values()):
             for path, field in fields.items():

@@ -1,4 +1,4 @@
-"""Draggable points of a drawing: their place in the picture, and the field values for a new place."""
+"""Draggable points of a drawing: their positions in the picture, and the field values for a new position."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity
 
 Place = tuple[float, float]
-_UNITS = {"m": "mm", "rad": "deg"}  # where a field does not say in which
+_UNITS = {"m": "mm", "rad": "deg"}  # of fields that have none
 _NARROW = 400.0  # width of the paper on a narrow page [pt]
-_ANGLE = math.radians(0.1)  # to what an angle is rounded
+_ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
 
 
 # In the picture -----------------------------------------------------------------------------------------
@@ -33,7 +33,7 @@ _ANGLE = math.radians(0.1)  # to what an angle is rounded
 
 @dataclass(frozen=True)
 class Viewport:
-    """Where the first drawing of a picture lies in it.
+    """Position of the first drawing of a picture in that picture.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ class Viewport:
     corners : ndarray, shape (2, 2)
         The same corners in the picture: part of its width from the left, of its height from the top.
     paper : Paper
-        Of all drawings.
+        Paper of all drawings of the picture.
     layout : Layout
-        Of the first of them.
+        Layout of the first drawing.
     """
 
     limits: np.ndarray
@@ -54,26 +54,27 @@ class Viewport:
 
     @classmethod
     def of_layout(cls, layout: Layout, paper: Paper) -> Viewport:
-        """The view of the first of the layouts on paper."""
+        """The viewport of the first drawing, by its layout."""
         left, top, right, bottom = layout.frame
         places = np.array([(left, bottom), (right, top)])
         corners = places / (paper.width, paper.height)
         return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
 
     def holds(self, rows: Rows) -> bool:
-        """Whether it is that of drawings in as many rows."""
+        """Whether it belongs to a picture with as many rows of drawings."""
         return len(self.paper.heights) == len(rows)
 
     def place(self, point: Place) -> Place:
-        """Where a point of the axes is in the picture."""
-        return _carried(point, self.limits, self.corners)
+        """The place in the picture of a point of the drawing."""
+        return _mapped(point, self.limits, self.corners)
 
     def point(self, place: Place) -> Place:
-        """The point of the axes at a place of the picture."""
-        return _carried(place, self.corners, self.limits)
+        """The point of the drawing at a place of the picture."""
+        return _mapped(place, self.corners, self.limits)
 
 
-def _carried(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
+def _mapped(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
+    """A point of one rectangle in another one; each is given by two of its corners (2, 2)."""
     x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
     return float(x), float(y)
 
@@ -85,11 +86,11 @@ class Sheet:
     Parameters
     ----------
     said : str
-        The sentence why there is none.
+        Why there is no drawing; empty if there is one.
     handles : tuple of Handle
         Its points that can be moved.
     view : Viewport, optional
-        Where the first lies; None if there is no drawing.
+        Viewport of the first drawing; None if there is no drawing.
     ratio : float
         Its width over its height.
     element : str
@@ -104,16 +105,16 @@ class Sheet:
 
     @cached_property
     def text(self) -> str:
-        """Its SVG file, or the sentence why there is none."""
+        """Its SVG file, or why there is none."""
         return as_file(self.element) if self.element else self.said
 
     @property
     def name(self) -> str:
-        """Another for another picture."""
+        """Name of the picture, a checksum of its content."""
         return f"p{crc32((self.element or self.said).encode()):08x}"
 
     def place(self, handle: Handle) -> Place:
-        """Where a handle is in the picture."""
+        """The place of a handle in the picture."""
         assert self.view is not None
         x, y = handle.at
         return self.view.place((handle.scale * x, handle.scale * y))
@@ -133,19 +134,19 @@ def draw_sheet(
     Parameters
     ----------
     screen : Screen
-        Whose answer it is.
+        The screen that shows the answer.
     answer : object
         The answer.
     progress : float
-        Place of the slider.
+        Position of the slider.
     view : Viewport, optional
-        Draw it in the same way as that one: a picture stays in place while a point of it moves.
+        Viewport to keep, so that the picture stays in place while a point of it moves.
     other : sequence of sequences of Drawing
-        Those of another design, to be drawn beneath.
+        Drawings of another design, to be drawn beneath.
     name : str
-        What that design is called.
+        Name of that design.
     narrow : bool
-        Whether the page is: then drawings stand below one another, on paper as wide as their letters ask for.
+        Whether the page is narrow: then drawings stand below one another, on narrow paper.
     """
     rows = screen.drawings(answer, progress)
     if not rows:
@@ -163,7 +164,7 @@ def draw_sheet(
 
 
 def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:
-    """The same drawings, the first with room for what it shows at each mark of the slider."""
+    """The same drawings; the first keeps room for its shapes at each mark of the slider."""
     marks = len(screen.slider.marks) if screen.slider is not None else 0
     corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
     if not corners:
@@ -199,7 +200,7 @@ def changed_texts(
     target : tuple of float
         Its new place (x, y) [m].
     entries : mapping
-        What stands in the fields; a field keeps its unit.
+        Texts of the fields; a field keeps its unit.
     inputs : sequence of Input
         Descriptions of the fields.
     """

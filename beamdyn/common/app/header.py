@@ -1,4 +1,4 @@
-"""The bar at the head of the page: name of the program, screens, undo and redo, designs, files, look."""
+"""The bar at the head of the page: title of the program, screens, undo and redo, designs, files, look."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LOOKS = {"": ("brightness_auto", None), "light": ("light_mode", False), "dark":
 
 
 class Commands(Protocol):
-    """What the buttons of the bar do."""
+    """Actions of the buttons of the bar."""
 
     def undo(self) -> None:
         """Take the last change back."""
@@ -39,20 +39,20 @@ class Commands(Protocol):
 
 
 class Header:
-    """The bar; its tabs go by the names of the screens.
+    """The bar, with a tab for each screen.
 
     Parameters
     ----------
     title : str
-        The program's name.
+        Title of the program.
     screens : sequence of str
         Names of its screens.
     turned : callable
         Called when another screen has been chosen.
     files : mapping
-        Entries of the menu of files, and what they do.
+        Entries of the menu of files, and the function that each calls.
     do : Commands
-        What the other buttons do.
+        Actions of the other buttons.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Header:
         self._do.keep_look(self._look)
 
     def show_look(self, look: str) -> None:
-        """Be "light", "dark", or "" for what the system prefers."""
+        """Show the page "light" or "dark", or as the system prefers ("")."""
         self._look = look if look in _LOOKS else ""
         icon, self._dark.value = _LOOKS[self._look]
         words = f"colours: {self._look or 'as the system'}"

@@ -9,7 +9,7 @@ from time import monotonic
 from beamdyn.common.app.form_entries import Entries
 
 _MOST = 200  # states that are kept
-_TOGETHER = 1.0  # changes of the same fields within this time are one step [s]
+_TOGETHER = 1.0  # time within which changes of the same fields are one step [s]
 
 
 @dataclass
@@ -19,7 +19,7 @@ class History:
     Parameters
     ----------
     first : mapping
-        Its entries at first.
+        The entries at first.
     """
 
     first: Entries
@@ -32,7 +32,7 @@ class History:
         self._states = [dict(self.first)]
 
     def record(self, entries: Mapping[str, str], now: float | None = None) -> None:
-        """Add a state, if it is another one; what follows the state shown is forgotten.
+        """Add a state, if it differs from the one shown; states after that are forgotten.
 
         Changes of the same fields in quick succession, as of a field that is typed into, are one step.
 
@@ -41,7 +41,7 @@ class History:
         entries : mapping
             The state.
         now : float, optional
-            When it came about [s]; now if not given.
+            Time of the change [s]; now if not given.
         """
         changed = differing(self._states[self._place], entries)
         if not changed:
@@ -62,7 +62,7 @@ class History:
         self._changed = frozenset()
 
     def go(self, steps: int) -> Entries | None:
-        """The state so many steps on, or back if it is negative; None if there is none."""
+        """Go so many steps forward, or back if negative; return that state, None if there is none."""
         if not 0 <= self._place + steps < len(self._states):
             return None
         self._place += steps
@@ -81,5 +81,5 @@ class History:
 
 
 def differing(one: Mapping[str, str], other: Mapping[str, str]) -> frozenset[str]:
-    """Paths of the entries that differ; one that is empty is as one that is not there."""
+    """Paths of the entries that differ; an empty entry counts as one that is missing."""
     return frozenset(path for path in {*one, *other} if one.get(path, "") != other.get(path, ""))

@@ -1,4 +1,4 @@
-"""What the form says of an input: its name, meaning, choices and default, in words."""
+"""Name, meaning, choices and default of an input, in the words of the form."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def label(entry: Input) -> str:
 
 
 def label_html(entry: Input) -> str:
-    """The same as HTML, its symbol set as in a sketch."""
+    """The label as HTML, with the symbol typeset as in a sketch."""
     words, _, symbol = label(entry).rpartition(", ")
     return f"{escape(words)}, {symbol_html(symbol)}" if words else escape(symbol)
 
@@ -34,23 +34,23 @@ def help_of(entry: Input) -> str:
 
 
 def given_or_default(entry: Input, text: str) -> str:
-    """What is given for an input, or its default in brackets."""
+    """The text given for an input, or else its default in brackets."""
     default = default_words(entry)
     return text.strip() or (default if default == NOT_GIVEN else f"({default})")
 
 
 def name_words(entry: Input) -> str:
-    """Its name, after that of the tables within its table."""
+    """Name of an input in words, with the names of tables nested in its table before it."""
     return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
 
 
 def table_of(path: str) -> str:
-    """The table that an input stands in; "" outside any."""
+    """Name of the table that holds an input; "" outside any."""
     return path.partition(".")[0] if "." in path else ""
 
 
 def heading_of(section: str, headings: Mapping[str, str]) -> str:
-    """What stands above a table of the form."""
+    """Heading of a table of the form."""
     return headings.get(section, section.replace("_", " ").capitalize() or "General")
 
 
@@ -67,7 +67,7 @@ def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, st
 
 
 def options_of(entry: Input) -> tuple[str, ...]:
-    """The words or numbers among which an input is chosen; none where it is typed."""
+    """The words or numbers from which an input is chosen; none where it is typed."""
     if entry.kind is bool:
         return ("true", "false")
     few = all(isinstance(choice, str | int) for choice in entry.choices)

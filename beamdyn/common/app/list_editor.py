@@ -1,4 +1,4 @@
-"""Lists of named things on the page: added and removed by buttons, joined by choosing names."""
+"""Lists of named items on the page: added and removed by buttons, joined by choosing names."""
 
 from __future__ import annotations
 
@@ -29,16 +29,18 @@ STYLE = """
 
 
 class GroupRows:
-    """Things of one sort on the page: their rows, and buttons that add one.
+    """A group of items on the page: their rows, and buttons that add one.
 
     Parameters
     ----------
     group : ListGroup
-        What they are.
+        The group.
     put : callable
-        Called with item, key and text.
-    add, remove : callable
-        Called with the kind of what is wanted; with the item that is not.
+        Called with item, key and text of a cell that changes.
+    add : callable
+        Called with the kind of item to add.
+    remove : callable
+        Called with the item to remove.
     """
 
     def __init__(
@@ -58,11 +60,11 @@ class GroupRows:
 
     @property
     def texts(self) -> list[Any]:
-        """The fields that hold texts."""
+        """The fields into which text is typed."""
         return [field for row in self._rows for field in row.texts]
 
     def show(self, items: Sequence[Item]) -> None:
-        """Show these things; rows are kept as far as they fit."""
+        """Show these items; rows are kept as far as their fields fit."""
         kept = sum(
             1 for _ in takewhile(lambda pair: pair[0].fits(pair[1]), zip(self._rows, items, strict=False))
         )
@@ -81,13 +83,13 @@ class ListEditor:
     Parameters
     ----------
     lists : Lists
-        What they are.
+        The lists.
     now : callable
-        Gives all entries as they are, also those that other fields have written.
+        Returns all present entries, also those that other fields have written.
     changed : callable
         Called with all entries after a change.
     writer : PageWriter
-        What writes into the fields while something is held.
+        Writes into the fields while something is held.
     """
 
     def __init__(
@@ -108,12 +110,12 @@ class ListEditor:
         self._advise(now())
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Make other entries stand in the lists, and say what is missing."""
+        """Show other entries in the lists, and say what is missing."""
         self.follow(entries)
         self._advise(entries)
 
     def follow(self, entries: Mapping[str, str]) -> None:
-        """Make other entries stand in the lists."""
+        """Show other entries in the lists."""
         with self._writer.writing(*(field for rows in self._groups for field in rows.texts)):
             for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
                 rows.show(group.items)

@@ -13,17 +13,17 @@ Put = Callable[[Item, str, str], object]  # item, key of its cell, and text
 
 
 class ItemRow:
-    """A listed thing: its fields, and a button that removes it.
+    """The row of an item: its fields, and a button that removes it.
 
-    It stays for other things of its kind, under other names, too: a field that is made anew loses the focus,
-    and a button the click that is under way.
+    A row is kept for other items with the same fields, since a new field would lose the focus, and a new
+    button the click on it.
 
     Parameters
     ----------
     item : Item
-        What it shows.
+        The item at first.
     put : callable
-        Called with item, key and text when something else has been typed or chosen.
+        Called with item, key and text when another text has been typed or chosen.
     remove : callable, optional
         Called with the item when it is to be removed; None if it cannot be.
     """
@@ -42,15 +42,15 @@ class ItemRow:
 
     @property
     def texts(self) -> list[Any]:
-        """The fields that hold texts."""
+        """The fields into which text is typed."""
         return [self._fields[cell.key] for cell in self._item.cells if not cell.options]
 
     def fits(self, item: Item) -> bool:
-        """Whether its fields are those of a thing."""
+        """Whether its fields are those of an item."""
         return [*map(_kind, self._item.cells)] == [*map(_kind, item.cells)]
 
     def show(self, item: Item) -> None:
-        """Show another thing; what is being typed stays where its text is the same as before."""
+        """Show another item; a field whose text is the same as before keeps what is being typed."""
         before, self._item = self._item, item
         for old, cell in zip(before.cells, item.cells, strict=True):
             field = self._fields[cell.key]
@@ -127,7 +127,7 @@ class ItemRow:
 
 
 def _kind(cell: Cell) -> tuple[str, str, bool]:
-    """What of a cell its field is made for."""
+    """The properties of a cell for which its field is made."""
     return cell.key, cell.label, bool(cell.options)
 
 

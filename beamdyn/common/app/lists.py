@@ -1,4 +1,4 @@
-"""Lists of a document that a form of fixed fields cannot show: named things, added and removed."""
+"""Lists of named items of a document, to which items are added: a form of fixed fields cannot show them."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ Entries = dict[str, str]
 
 @dataclass(frozen=True)
 class Cell:
-    """A value of a listed thing.
+    """A value of an item.
 
     Parameters
     ----------
     key : str
-        Its name within the thing.
+        Its key within the item.
     label : str
-        In words.
+        The key in words.
     text : str
-        What stands in it.
+        The value, as typed.
     options : tuple of str
-        What can be chosen; anything can be typed where there is none.
+        Values that can be chosen; if there are none, any text can be typed.
     hint : str
-        What it is, with its unit.
+        Description, with the unit.
     usual : str
-        What holds where it is empty.
+        The default that holds where it is empty, in words.
     """
 
     key: str
@@ -39,7 +39,19 @@ class Cell:
 
 @dataclass(frozen=True)
 class Item:
-    """A listed thing: path of its entry, and its number in it if the entry is a list; name, and values."""
+    """An item of a list.
+
+    Parameters
+    ----------
+    path : str
+        Path of its entry.
+    number : int, optional
+        Index in that entry, if it is a list.
+    name : str
+        Name of the item.
+    cells : tuple of Cell
+        Its values.
+    """
 
     path: str
     number: int | None
@@ -48,13 +60,25 @@ class Item:
 
     @property
     def id(self) -> str:
-        """It and no other."""
+        """Identifier of the item among all items."""
         return self.path if self.number is None else f"{self.path}.{self.number}"
 
 
 @dataclass(frozen=True)
 class ListGroup:
-    """Things of one sort: heading, what they are, items, and kinds that can be added, in words."""
+    """A group of items of one sort.
+
+    Parameters
+    ----------
+    heading : str
+        Heading of the group.
+    about : str
+        Description, in a sentence.
+    items : tuple of Item
+        The items.
+    kinds : mapping
+        Kinds of items that can be added, and what they are called; none if the group is fixed.
+    """
 
     heading: str
     about: str
@@ -63,7 +87,7 @@ class ListGroup:
 
 
 def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup]) -> list[str]:
-    """Names of what has been removed along with an item that it names."""
+    """Names of further items that have gone with one that was removed, since they refer to it."""
 
     def names(groups: Sequence[ListGroup]) -> Counter[str]:
         return Counter(one.name for group in groups for one in group.items)
@@ -73,24 +97,24 @@ def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup
 
 @dataclass(frozen=True)
 class Lists:
-    """What a screen shows as lists.
+    """The lists of a screen, as functions of the document's entries.
 
     Parameters
     ----------
     covers : callable
-        Whether the input of a path is shown in the lists, not in the form.
+        ``covers(path)``: whether an input is shown in the lists, not in the form.
     groups : callable
-        Entries in, groups out.
+        ``groups(entries)``: the groups of items.
     put : callable
-        Entries, item, key of its cell and text in; entries out.
+        ``put(entries, item, key, text)``: entries with another text in a cell.
     add : callable
-        Entries and kind in; entries with one more out.
+        ``add(entries, kind)``: entries with one more item.
     remove : callable
-        Entries and item in; entries without it, and without what names it, out.
+        ``remove(entries, item)``: entries without an item, and without the items that refer to it.
     advice : callable
-        Entries in; what is still missing out, a sentence each.
+        ``advice(entries)``: what is still missing, a sentence each.
     empty : callable
-        Entries in; those to start from nothing out.
+        ``empty(entries)``: entries of a new design.
     """
 
     covers: Callable[[str], bool]

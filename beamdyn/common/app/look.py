@@ -1,4 +1,4 @@
-"""How the page of an interactive program looks: its layout by width, its colours on light and dark ground."""
+"""Style of an interactive program's page: layout by width, colours for light and dark."""
 
 from __future__ import annotations
 
@@ -14,6 +14,32 @@ from beamdyn.common.edge.rendering import STYLE as TABLES
 BLUE, RED = "#0072B2", "#8c1c00"
 _BAR = "#005a8c"
 
+# What the toolkit's own styles take for granted of the style sheet that is left out (Tailwind's), and its few
+# classes that are used, in the layers that the toolkit has for them.
+_BASE = """
+@layer base {
+  *, ::before, ::after { margin: 0; padding: 0; border: 0 solid; box-sizing: border-box; }
+  h1, h2, h3, button, input, select, textarea { font: inherit; letter-spacing: inherit; color: inherit; }
+  button, input, select, textarea { background: transparent; border-radius: 0; }
+  a { color: inherit; text-decoration: inherit; }
+  ol, ul { list-style: none; }
+  table { border-collapse: collapse; border-color: inherit; text-indent: 0; }
+  sub, sup { font-size: 75%; line-height: 0; position: relative; vertical-align: baseline; }
+  sub { bottom: -0.25em; }
+  sup { top: -0.5em; }
+  img, svg { display: block; vertical-align: middle; }
+  html { line-height: 1.5; font-family: system-ui, sans-serif; }
+}
+@layer utilities {
+  .w-full { width: 100%; }
+  .grow { flex-grow: 1; }
+  .items-center { align-items: center; }
+  .justify-between { justify-content: space-between; }
+  .gap-0 { gap: 0; }
+  .gap-1 { gap: 0.25rem; }
+  .gap-2 { gap: 0.5rem; }
+}
+"""
 _COLOURS = """
 :root { --soft: #4a4a4a; --edge: #c8c8c8; --wrong: #8c1c00; --careful: #5a4200; --stripe: #f4f4f4;
   --beyond: #6b6b6b; --focus: #0072B2; --note: #ffffff; }
@@ -91,7 +117,7 @@ body {{ font-size: 15px; }}
 body:has(#popup[aria-hidden="false"]) #app {{ opacity: 0.5; pointer-events: none;
   transition: opacity 0.5s 2s; }}
 """
-# On a narrow page: what comes out and its picture first, then the form, then the tables.
+# On a narrow page: the main results and the picture first, then the form, then the tables.
 _NARROW = """
 @media (max-width: 1000px) {
   .nicegui-header { flex-wrap: wrap; }
@@ -121,6 +147,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH + FOLDED
+    _BASE + TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH + FOLDED
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)

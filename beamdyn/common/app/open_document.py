@@ -1,4 +1,4 @@
-"""A document that one client has open: its entries, the latest answers, mistakes, and which are stale."""
+"""A document that one client has open: its entries, the latest answers, mistakes, and what is stale."""
 
 from __future__ import annotations
 
@@ -19,7 +19,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Answered:
-    """An answer, what is said of it, the entries that it belongs to, and the results that matter most."""
+    """An answer and what a screen shows of it.
+
+    Parameters
+    ----------
+    answer : object
+        The answer.
+    tables : sequence of rich renderables
+        Tables and sentences.
+    notes : sequence of str
+        Warnings and refusals, a sentence each.
+    entries : dict
+        The entries that were solved.
+    headline : sequence of KeyResult
+        The most important results.
+    """
 
     answer: Any
     tables: Sequence[RenderableType]
@@ -30,16 +44,16 @@ class Answered:
 
 @dataclass(frozen=True)
 class OpenEntries:
-    """Entries to be solved; it shares nothing that changes, so that a thread of its own may solve it.
+    """Entries to be solved; it shares no mutable state, so that another thread may solve it.
 
     Parameters
     ----------
     screen : Screen
         The screen.
     entries : mapping
-        What its answer follows from.
+        The entries that its answer depends on.
     inputs : sequence of Input
-        Their descriptions.
+        Descriptions of the inputs.
     """
 
     screen: Screen
@@ -47,7 +61,7 @@ class OpenEntries:
     inputs: Sequence[Input] = field(compare=False)
 
     def solve(self) -> Answered | Mapping[str, list[str]]:
-        """The answer, with all that takes time, such as its model error; or what is wrong, by field."""
+        """The whole answer, also what takes time, such as its model error; or what is wrong, by field."""
         try:
             answer = self.screen.solve(tables_of(self.entries, self.inputs, self.screen.needs))
             tables, notes = [*self.screen.tables(answer)], [*self.screen.notes(answer)]
@@ -57,7 +71,7 @@ class OpenEntries:
         return Answered(answer, tables, notes, self.entries, headline)
 
     def glance(self) -> Answered | Mapping[str, list[str]]:
-        """The answer as far as a drawing shows it, without tables and notes."""
+        """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field."""
         try:
             tables = tables_of(self.entries, self.inputs, self.screen.needs)
             answer = self.screen.solve(self.screen.coarser(tables))
@@ -74,7 +88,7 @@ class OpenDocument:
     Parameters
     ----------
     document : Document
-        What it is.
+        The kind of document.
     """
 
     document: Document
@@ -124,7 +138,7 @@ class OpenDocument:
 
     @property
     def idle(self) -> set[str]:
-        """Paths of inputs that mean nothing beside the others, and are not given."""
+        """Paths of inputs that have no effect beside the others, and are not given."""
         return {path for path in self.document.idle(self.entries) if not self.entries.get(path, "").strip()}
 
     def open(self, text: str, source: str) -> None:
@@ -158,11 +172,11 @@ class OpenDocument:
         self._take(self.entries | {path: text})
 
     def _take(self, entries: Entries) -> None:
-        """Make these the entries, as far as there are inputs for them."""
+        """Replace the entries by these, as far as there are inputs for them."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
     def needed(self, screen: Screen) -> Entries:
-        """The entries that a screen's answer follows from."""
+        """The entries that a screen's answer depends on."""
         return {
             path: text.strip()
             for path, text in self.entries.items()

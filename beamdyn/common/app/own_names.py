@@ -1,4 +1,4 @@
-"""Who an interactive program answers: requests to its own names, from its own page, in no other page's frame.
+"""The requests that an interactive program answers: to its own names, from its own page, in no other's frame.
 
 A web page from elsewhere reaches a server on this computer through the visitor's browser: under a name of
 its own that is made to point to 127.0.0.1 ("DNS rebinding"), which shows in the request's Host; or as itself
@@ -105,19 +105,19 @@ def _is_address(name: str) -> bool:
 
 
 def _headers(scope: Scope, name: bytes) -> list[str]:
-    """Values of a header, as often as it stands there."""
+    """All values of a header."""
     return [value.decode("latin-1") for key, value in scope["headers"] if key == name]
 
 
 def _guarded(send: Send, host: str = "") -> Send:
-    """The same way to answer, with headers that say what the page may load, and that none may frame it.
+    """A `send` that adds headers: what the page may load, and that no other page may frame it.
 
     Parameters
     ----------
     send : callable
-        The way to answer.
+        The `send` of the request.
     host : str
-        The own name that was asked for, whose websockets are named apart: not every browser counts them
+        The name that was asked for; its websockets are listed in the policy, as not every browser counts them
         among 'self'.
     """
     sockets = f" ws://{host} wss://{host}" if host else ""

@@ -72,7 +72,7 @@ class Page:
         self._bar.client.on_delete(self._close)
 
     def _close(self) -> None:
-        """The page is gone: what it waits for is ended."""
+        """End the computations of the page, which is gone."""
         for panel in self.panels.values():
             panel.close()
 

@@ -1,4 +1,4 @@
-"""What follows a drag is written into the page at once, past the toolkit that looks through all of it."""
+"""Changes during a drag, written into the page directly: NiceGUI would render the whole page for each."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-# Writes changes of elements, by their numbers, where they are on the page; of their content what differs: for
-# new nodes the browser and the toolkit look for style rules.  A field keeps its text itself.
+# Writes changes of elements, given by their ids. Of their content only what differs is replaced, since new
+# nodes cost the browser and the toolkit a search for style rules. A field keeps its text in a property.
 SCRIPT = """<script>
 {
   const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
@@ -52,15 +52,15 @@ _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
 
 class PageWriter:
-    """Writes changes of elements into the page at once while a point or a slider is held.
+    """Writes changes of elements into the page directly while a point or a slider is held.
 
-    The toolkit renders a page as a whole, 10 to 40 ms where its form is long, for each change that it is
-    told.  It is told of what has been written when nothing is held any longer.
+    NiceGUI renders the page as a whole for each change that it is told: 10 to 40 ms where the form is long.
+    It is told of what has been written when nothing is held any longer.
 
     Parameters
     ----------
     held : callable
-        Whether one is.
+        Returns whether a point or a slider is held.
     """
 
     def __init__(self, held: Callable[[], bool] = lambda: False) -> None:
@@ -70,19 +70,23 @@ class PageWriter:
 
     @property
     def is_ahead(self) -> bool:
-        """Whether something is held, or there is what the toolkit has not been told."""
+        """Whether something is held, or NiceGUI has not been told all that was written."""
         return self._held() or bool(self._untold)
 
     @contextmanager
     def writing(self, *elements: Any) -> Iterator[None]:
-        """Write the changes within of some elements, those of components but for the text of a field."""
+        """Within it, changes of these elements are written into the page directly.
+
+        Written are text, content, style, classes and attributes, and the text of a field, but no other
+        property of a component.
+        """
         if not self.is_ahead:
             yield
             return
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # by which a field asks for what it has been told
+            element.run_method = _do_nothing  # by which a field would ask the page to update it
         try:
             yield
         finally:
@@ -95,17 +99,17 @@ class PageWriter:
             self.synchronize()
 
     def tell_later(self, element: Any) -> None:
-        """Tell the toolkit of an element when nothing is held any longer."""
+        """Tell NiceGUI of an element when nothing is held any longer."""
         self._untold[element.id] = element
 
     def synchronize(self) -> None:
-        """Tell the toolkit what has been written."""
+        """Tell NiceGUI what has been written."""
         untold, self._untold = self._untold, {}
         for element in untold.values():
             element.update()
 
     def write(self, element: Any, changed: dict[str, Any]) -> None:
-        """Write what has changed of an element, in one message with all else that has by then."""
+        """Write what has changed of an element, in one message with all other changes until it is sent."""
         if changed and not self._unwritten:
             asyncio.get_running_loop().call_soon(self._send, element.client)
         if changed:
@@ -121,7 +125,7 @@ def _do_nothing(*_: Any, **__: Any) -> None:
 
 
 def _written(element: Any) -> dict[str, Any]:
-    """What of an element can be written into the page."""
+    """The properties of an element that can be written into the page."""
     style = ";".join(f"{name}:{value}" for name, value in element.style.items())
     text, classes = getattr(element, "text", None), " ".join(element.classes)
     known = {**element.props, "style": style, "class": classes, "text": text}

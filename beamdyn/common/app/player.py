@@ -17,14 +17,14 @@ STYLE = """
 .stroke { flex-wrap: nowrap; align-items: center; gap: 0; }
 .stroke .player { order: -1; margin-bottom: 1.5rem; }
 """
-_LEAST = 0.03  # between two pictures [s]
-_LONGEST = 0.2  # what a picture that takes longer counts as: what is played goes on, and does not jump [s]
-_STILL = 1.0  # how long each picture stays for those who want no motion [s]
-_STILLS = 4  # pictures for them on the way from one end to the other
-_PATIENCE = 3.0  # a page that paints nothing for so long is not looked at [s]
+_LEAST = 0.03  # least time between two pictures [s]
+_LONGEST = 0.2  # most time by which one picture advances the motion, so that it does not jump [s]
+_STILL = 1.0  # time that each picture stays where reduced motion is preferred [s]
+_STILLS = 4  # pictures from one end to the other where reduced motion is preferred
+_PATIENCE = 3.0  # time after which a page that has painted nothing counts as not seen [s]
 
-# What has been sent is there when the script runs, and painted before the second of two frames.
-_PAINTED = """return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => {{
+# What has been sent is there when the script runs, and painted after the next frame has been begun.
+_PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
 }})))"""
@@ -33,20 +33,20 @@ _PAINTED = """return new Promise(done => requestAnimationFrame(() => requestAnim
 class Player:
     """A button before a slider, which plays it and pauses it; so does the space bar on the slider.
 
-    The next place is taken when the page has painted the last one, so that pictures never pile up.  Moving
-    the slider by hand pauses it, and so does a page that is not looked at.  Those who want less motion, as
-    their browser says, are shown stills.
+    The slider moves on when the page has painted the last picture, so that pictures never pile up.  Moving it
+    by hand pauses it, and so does a page that is not seen.  Where the browser prefers reduced motion, a few
+    stills are shown.
 
     Parameters
     ----------
     slider : DragSlider
         The slider; whoever draws follows its changes.
     label : str
-        What is played, such as "stroke".
+        Name of what is played, such as "stroke".
     course : Course
-        How the place follows from the time.
+        Position of the slider over time.
     writer : PageWriter
-        What writes into the page while it plays.
+        Writes into the page while it plays.
     rested : callable
         Called when it has been paused.
     """
@@ -82,7 +82,7 @@ class Player:
             self._show()
 
     def pause(self) -> None:
-        """Stay at the present place."""
+        """Stop at the present position."""
         task, self._task = self._task, None
         if task is not None:
             self._show()
@@ -124,7 +124,7 @@ class Player:
             self._sets = False
 
     async def _painted(self) -> str:
-        """Wait until the page has painted what it was sent; say how it is looked at."""
+        """Wait until the page has painted what it was sent; return "moving", "still" or "away" (not seen)."""
         code = _PAINTED.format(id=self._button.id)
         try:
             return str(await self._button.client.run_javascript(code, timeout=_PATIENCE))

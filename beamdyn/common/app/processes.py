@@ -1,4 +1,4 @@
-"""Answers are made in processes beside the one that serves, which goes on meanwhile and can end each."""
+"""Worker processes that compute answers: the serving process stays responsive, and can end each of them."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from typing import Any, Protocol
 
 from beamdyn.common.app.screens import Document, Program, Screen
 
-LONGEST = 120.0  # that an answer may take [s]
-MEMORY = 400  # that it may take beyond what an idle process has [MB]
+LONGEST = 120.0  # time limit of an answer [s]
+MEMORY = 400  # memory that an answer may take beyond that of an idle process [MB]
 _MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
-_NICE = 5  # how far those who serve and show pages come before them where all want the processor
-_SPARE = 0.5  # after which a task has another process started, for others [s]
+_NICE = 5  # niceness of the processes: the server and the browser come first
+_SPARE = 0.5  # time after which a task that still runs has an idle process started, for other tasks [s]
 _SERVE = "from beamdyn.common.app.processes import serve_tasks; serve_tasks({caller})"
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
@@ -28,32 +28,32 @@ Task = Callable[..., Any]  # of a document, one of its screens, and what else is
 
 
 class TakesTooLong(Exception):
-    """An answer was given up, since it would have taken more time or memory than any may."""
+    """An answer was given up, as it took more time or memory than allowed."""
 
 
 class TaskTaker(Protocol):
-    """What answers are asked of."""
+    """Runs tasks: `Processes`, or the `Share` of a page in them."""
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``; to cancel it ends it."""
+        """Start ``task(document, screen, *rest)``; cancelling the future ends the task."""
         ...
 
 
 class Processes:
-    """Worker processes of one program, which belong to the event loop that they are first used in.
+    """Worker processes of one program, which belong to the event loop in which they are first used.
 
-    Each takes one task at a time; others wait in their order.  A task that is cancelled or takes too long
-    ends with its process, for which another one is started.  The first process starts when it is asked for
-    (`start`), further ones while all are at work.  They end with the caller, however it ends.
+    Each runs one task at a time; other tasks wait in their order.  A task that is cancelled or takes too long
+    is ended with its process, and another one is started.  The first process starts when `start` is called,
+    further ones while all are busy.  They end with the calling process, however that ends.
 
     Parameters
     ----------
     make : callable
-        Makes the program; of a module, since each process calls it.
+        Makes the program; a function of a module, since each process calls it.
     longest : float
-        That a task may take [s].
+        Time limit of a task [s].
     most : int
-        Number of processes.
+        Largest number of processes.
     """
 
     def __init__(self, make: Callable[[], Program], longest: float = LONGEST, most: int = _MOST) -> None:
@@ -66,20 +66,20 @@ class Processes:
 
     @property
     def ids(self) -> set[int]:
-        """Process ids of those that there are now."""
+        """Process ids of the present processes."""
         return {worker.id for worker in self._all}
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``; to cancel it ends it.
+        """Start ``task(document, screen, *rest)``; cancelling the future ends the task.
 
         Parameters
         ----------
         task : callable
             A function of a module.
         document, screen : Document, Screen
-            Those of the program.
+            A document of the program and one of its screens.
         *rest
-            What else it takes; it pickles.
+            Further arguments, which must pickle.
 
         Returns
         -------
@@ -124,7 +124,7 @@ class Processes:
         self._free(worker)
 
     def _fail(self, why: str) -> None:
-        """Tell those who wait for a process that there will be none."""
+        """Fail the tasks that wait for a process, as none can be started."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
@@ -161,7 +161,7 @@ class Processes:
         return error
 
     async def _take(self) -> _Worker:
-        """A process that is at no task; another is started where that was the last."""
+        """An idle process; where there is none another is started, and the first that is free is taken."""
         while self._idle:
             worker = self._idle.pop()
             if worker.lives:
@@ -190,14 +190,14 @@ class Processes:
 
 
 class Share:
-    """What one page may have of the processes: never all, so that others find one, whatever it is at.
+    """The processes as one page may use them: never all at once, so that one is left for other pages.
 
     Parameters
     ----------
     solver : TaskTaker
         The processes.
     most : int
-        How many tasks of the page may be under way; others wait in their order.
+        Number of tasks of the page that may be under way; others wait in their order.
     """
 
     def __init__(self, solver: TaskTaker, most: int = _MOST - 1) -> None:
@@ -205,7 +205,7 @@ class Share:
         self._waiting: deque[asyncio.Future[None]] = deque()
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``, or have it wait; to cancel it ends it."""
+        """Start ``task(document, screen, *rest)``, or let it wait; cancelling the future ends the task."""
         given = task, document, screen, *rest
         if not self._room:
             return asyncio.ensure_future(self._later(given))
@@ -235,7 +235,7 @@ class Share:
         return await self._start(given)
 
     def _leave(self) -> None:
-        """Leave the room of a task to the next that waits."""
+        """Let the next task that waits take the room of one that has ended."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 return place.set_result(None)
@@ -278,7 +278,7 @@ class _Worker:
 
 
 def serve_tasks(caller: int) -> None:
-    """Do the tasks that arrive on the standard input; end when it is closed, in the middle of one, too."""
+    """Run the tasks that arrive on the standard input; end with the caller, also in the middle of a task."""
     import signal
 
     from beamdyn.common.parallel.workers import serve
@@ -291,7 +291,7 @@ def serve_tasks(caller: int) -> None:
 
 
 def _end_with(caller: int) -> None:
-    """End this process when its caller is gone, which the end of its input says only between two tasks."""
+    """End this process when its caller is gone; the closed input would be seen only between two tasks."""
     from threading import Thread
     from time import sleep
 
@@ -304,13 +304,13 @@ def _end_with(caller: int) -> None:
 
 
 def _prepare(make: Callable[[], Program], memory: int) -> None:
-    """Import the program, and allow so much more memory [MB]."""
+    """Import the program, and limit the memory that may be taken beyond that [MB]."""
     _screens(make)
     _limit_memory(memory)
 
 
 def _limit_memory(memory: int) -> None:
-    """Let what takes more memory than this [MB] raise `MemoryError`; on systems that can tell."""
+    """Raise `MemoryError` when so much more memory [MB] is taken, on systems that can limit it."""
     try:
         import resource
 
@@ -323,7 +323,7 @@ def _limit_memory(memory: int) -> None:
 
 
 def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
-    """Do a task for the screen of that name."""
+    """Run a task for the screen of that name."""
     return task(*_screens(make)[document, screen], *rest)
 
 

@@ -12,7 +12,7 @@ _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _BARE = re.compile(_NUMBER, re.ASCII)
 _QUANTITY = re.compile(rf"({_NUMBER})(\s*[^\d\s.,+-].*|\s+1/.*)?", re.ASCII | re.DOTALL)
 _PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # between the coordinates of a point
-_USUAL = {"m": "mm", "rad": "deg"}  # where nothing is shown yet
+_USUAL = {"m": "mm", "rad": "deg"}  # units shown before one has been chosen
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class Reading:
     Parameters
     ----------
     text : str
-        As a file has it.
+        The text as a file has it.
     remark : str
-        How it was read, if that is not as it was typed.
+        How it was read, if that differs from what was typed.
     """
 
     text: str
@@ -39,9 +39,9 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
     typed : str
         The text.
     entry : Input
-        What the field is for.
+        The input of the field.
     unit : str
-        The unit shown, in which a bare number is taken.
+        The unit shown, which a bare number is given.
     """
     if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
         return _read_pair(typed, parts, unit)
@@ -80,7 +80,7 @@ def unit_of(text: str, entry: Input) -> str:
 
 
 def usual_unit(entry: Input) -> str:
-    """The unit in which a field is taken, as long as none has been chosen."""
+    """The unit of a field as long as none has been chosen."""
     unit = entry.quantity.unit
     return _USUAL.get(unit, unit)
 

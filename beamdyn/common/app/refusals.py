@@ -1,4 +1,4 @@
-"""Why there is no answer, in sentences that stand at the fields, also where it was ended."""
+"""Why there is no answer, also where its computation was ended, in sentences for the fields."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.common.app.tasks import Outcome
 
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:
-    """The outcome of a computation that is done; where it was ended, why, and what has changed before."""
+    """The outcome of a computation that is done; if it was ended: why, and what had changed."""
     if future.cancelled():
         return {"": ["Cancelled. The next change of an input is computed again."]}
     error = future.exception()
@@ -25,7 +25,7 @@ def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Scre
 
 
 def _explained(reason: str, work: OpenDocument, screen: Screen) -> Mapping[str, list[str]]:
-    """What made it long: what has changed since the last answer, each at its field."""
+    """Why an answer was given up, and at their fields the inputs that have changed since the last answer."""
     known = f" {screen.effort}" if screen.effort else ""
     sentence = f"Given up: {reason}.{known}"
     before = work.answered.get(screen.name)

@@ -32,15 +32,15 @@ class Sweeps:
     Parameters
     ----------
     names : callable
-        Tables in, names of the results out; it may raise `ConfigError`.
+        ``names(tables)``: names of the results; it may raise `ConfigError`.
     example : str
-        A sweep to begin with, such as "stop.speed=10:30:9 km/h".
+        The sweep that is shown at first, such as "stop.speed=10:30:9 km/h".
     results : str
-        Names of results to begin with, separated by commas.
+        Names of the results chosen at first, separated by commas.
     run : callable
-        Tables, text of the sweep and names of results in; a sweep out.
+        ``run(tables, text, names)``: the sweep that a text describes, of the results with these names.
     draw : callable
-        The sweep in, its figure out.
+        ``draw(sweep)``: its figure.
     """
 
     names: Callable[[Mapping[str, Any]], Sequence[str]]
@@ -57,15 +57,15 @@ class Slider:
     Parameters
     ----------
     label : str
-        What it is.
+        Name of the quantity that it sets.
     marks : tuple of str
-        What its whole numbers from 0 on are.
+        Labels of its positions 0, 1, ...
     step : float
-        Between places that are drawn when it is moved by hand.
+        Step between positions when it is moved by hand.
     seconds : float
-        How long it takes to play from one end to the other [s].
+        Time to play it from one end to the other [s].
     course : callable
-        Its last place and these seconds in, how it is played out: back and forth, or from the start again.
+        ``course(last, seconds)``: its position over time when played, such as back and forth.
     """
 
     label: str
@@ -82,7 +82,7 @@ class Drag:
     Parameters
     ----------
     path : str
-        The field's input.
+        Path of the field's input.
     low, high, step : float
         Its range and step, in `unit`.
     unit : str
@@ -102,7 +102,7 @@ class KeyResult(NamedTuple):
     Parameters
     ----------
     words : str
-        What it is.
+        Name of the result.
     value : str
         The number with its unit, or a word.
     """
@@ -118,16 +118,16 @@ class Handle:
     Parameters
     ----------
     label : str
-        What it is.
+        Name of the point.
     at : tuple of float
-        Where it is drawn, (x, y) [m].
+        Its place (x, y) [m].
     moved : callable
-        A new place (x, y) [m] in; values by the path of their input out, in SI: a number, or a pair for
+        ``moved(x, y)``: values in SI for a new place [m], by the path of their input: a number, or a pair for
         a point.
     scale : float
         Units of the drawing in a metre: 1000 where it is in mm.
     step : float
-        How far an arrow key moves it [m].
+        Distance by which an arrow key moves it [m].
     grain : float
         Step to which a length is rounded [m].
     """
@@ -147,25 +147,25 @@ class Screen:
     Parameters
     ----------
     name : str
-        On its tab.
+        Name on its tab.
     purpose : str
-        What it is for, in a sentence.
+        Purpose, in a sentence.
     sections : tuple of str
         Tables whose inputs stand on its form; "" for inputs outside any table.
     needs : tuple of str
         Tables, or inputs outside any, that the answer depends on.
     solve : callable
-        Tables in, answer out.
+        ``solve(tables)``: the answer.
     tables : callable
-        The answer as tables and sentences.
+        ``tables(answer)``: tables and sentences on the answer.
     draw : callable
-        Answer and place of the slider in; the figure for files out.
+        ``draw(answer, place)``: the figure for files, with the slider at a position.
     notes : callable
-        Warnings and refusals of an answer, a sentence each.
+        ``notes(answer)``: warnings and refusals, a sentence each.
     rows : callable
-        Rows of the answer's CSV file.
+        ``rows(answer)``: rows of the CSV file.
     slider : Slider, optional
-        For the drawing.
+        The slider above the drawing.
     sweeps : Sweeps, optional
         Its sweeps.
     drags : tuple of Drag
@@ -173,28 +173,28 @@ class Screen:
     more : tuple of FoldedPart
         Drawings and tables that fold out; made when they are wanted.
     handles : callable
-        Answer and place of the slider in; points of the first drawing that can be moved out.
+        ``handles(answer, place)``: points of the first drawing that can be moved.
     drawings : callable
-        Answer and place of the slider in; rows of drawings out. None on a screen of charts.
+        ``drawings(answer, place)``: rows of drawings; empty on a screen of charts.
     coarser : callable
-        Tables in, those of a question out whose drawing is the same and that is answered sooner: solved while
-        a point is moved.
+        ``coarser(tables)``: tables with the same drawing that are solved sooner, for use while a point is
+        moved.
     lists : Lists, optional
-        Lists of named things that stand above its form.
+        Lists of named items above its form.
     headline : callable
-        Answer in; the two to four results that matter most out, each in a few words.
+        ``headline(answer)``: the two to four most important results, each in a few words.
     quick_headline : callable, optional
-        The same while something is held, without what takes time; the headline if not given.
+        The same without what takes time, for use while something is held; `headline` if not given.
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
-        Answer and place of the slider in; charts out, which are shown below the drawings.
+        ``charts(answer, place)``: charts below the drawings.
     branches : callable
-        Answer in; out, by their names, the same answer with each of several solutions drawn, the usual one
-        first, among which the page lets one choose. None where there is one.
+        ``branches(answer)``: where there are several solutions, the answer with each of them drawn, by name,
+        the usual one first; empty where there is one.
     sketch : callable
-        Entries of its form in; rows of drawings out that show what its symbols mean, for the kinds that are
-        chosen there.
+        ``sketch(entries)``: rows of drawings that show what the symbols of the form mean, for the kinds that
+        are chosen there.
     """
 
     name: str
@@ -223,7 +223,7 @@ class Screen:
 
     @property
     def last(self) -> float:
-        """Place of the slider at its end."""
+        """Position of the slider at its end."""
         return len(self.slider.marks) - 1.0 if self.slider is not None else 0.0
 
 
@@ -238,19 +238,20 @@ class Document:
     base : str
         Text of the file that is shown on opening.
     inputs : callable
-        Entries in, the descriptions of the inputs out, each path once.
+        ``inputs(entries)``: descriptions of the inputs, each path once.
     check : callable
-        Parses the text of a file; it takes the text and its name, and raises `ConfigError`.
+        ``check(text, name)``: parse the text of a file, raising `ConfigError`.
     screens : tuple of Screen
-        In the order in which results are handed on.
+        Screens, each of which may use results of those before it.
     aside : mapping
         Initial entries that are not part of the file, such as options of a command.
     in_fields : callable
-        The tables of a file as the form has them, each value at the path of its input.
+        ``in_fields(tables)``: tables of a file with each value at the path of its input on the form.
     headings : mapping
-        Words above the tables of the form; those of a table's name where there are none.
+        Headings of tables of the form; the name of a table where there is none.
     idle : callable
-        Entries in, paths of inputs out that mean nothing beside them: shown only where something is given.
+        ``idle(entries)``: paths of inputs that have no effect beside these entries; they are shown only if
+        something is given for them.
     """
 
     name: str
@@ -264,12 +265,19 @@ class Document:
     idle: Callable[[Mapping[str, str]], Iterable[str]] = lambda _: ()
 
     def opened(self, text: str, source: str) -> Entries:
-        """Entries for the text of a file, which the parser of the commands accepts.
+        """Entries for the text of a file.
+
+        Parameters
+        ----------
+        text : str
+            The text.
+        source : str
+            Name of the file, for messages.
 
         Raises
         ------
         ConfigError
-            If it does not.
+            If the parser of the commands does not accept it.
         """
         self.check(text, source)
         tables = self.in_fields(parse(text, source))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
@@ -115,6 +115,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
+            tailwind=False,  # it looks through the page after each change
             ws_per_message_deflate=False,  # each message would wait for it, on a way that is short
             reconnect_timeout=30.0,
         )
@@ -124,9 +125,9 @@ def _free(host: str, port: int) -> None:
     """Refuse an address that cannot be listened on, before the server tries."""
     import socket
 
+    family, address = _resolved(host, port)
     try:
-        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        with socket.socket(family, kind, protocol) as trial:
+        with socket.socket(family, socket.SOCK_STREAM) as trial:
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(address)
     except OSError as error:
@@ -134,3 +135,17 @@ def _free(host: str, port: int) -> None:
         raise ValueError(
             f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); {remedy}"
         ) from None
+
+
+def _resolved(host: str, port: int) -> tuple[int, Any]:
+    """Family and address of a host, which is refused if it is blank or has none."""
+    import socket
+
+    remedy = f"give an address or a name of this computer, such as {_HOME}, or leave --host out"
+    if not host.strip():
+        raise ValueError(f'--host = "{host}": it is blank; {remedy}')
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    except (OSError, UnicodeError):  # the latter of labels that are empty or too long
+        raise ValueError(f'--host = "{host}": no address is known for it; {remedy}') from None
+    return family, address

@@ -18,14 +18,14 @@ STYLE = """
 
 
 class SketchPanel:
-    """The sketch of a form; nothing where there is none.
+    """The sketch of a form, which can be folded; nothing is shown where there is none.
 
     Parameters
     ----------
     sketch : callable
-        Entries of the form in, drawings out.
+        ``sketch(entries)``: rows of drawings.
     entries : mapping
-        What stands in the form.
+        Entries of the form at first.
     shown : bool
         Whether it is unfolded.
     """
@@ -40,7 +40,7 @@ class SketchPanel:
                 self._drawing: Any = ui.html(made, sanitize=False)
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Sketch what is chosen in a form now."""
+        """Show the sketch for other entries."""
         if self._fold is not None:
             self._drawing.set_content(_drawn(self._sketch, entries))
 

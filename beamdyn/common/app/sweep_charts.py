@@ -10,7 +10,7 @@ from beamdyn.common.curves import input_words, panels_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.input_sweep import InputSweep
 
-_FEW = 60  # values up to which the designs of a sweep are marked
+_FEW = 60  # most values of a sweep whose points are marked on the curves
 
 
 def sweep_charts(swept: InputSweep) -> list[Chart]:

@@ -22,19 +22,32 @@ from beamdyn.common.app.processes import TakesTooLong, TaskTaker
 from beamdyn.common.app.screens import Screen, Sweeps
 from beamdyn.common.app.sweep_charts import sweep_charts
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.input_sweep import Coordinate, InputSweep, numbers, sweep_csv
+from beamdyn.common.edge.input_sweep import InputSweep, sweep_csv
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text
+from beamdyn.common.edge.varied_inputs import Coordinate, numbers
 
-_USUAL = {"m": "mm", "rad": "deg"}  # where no unit is given
-_COUNT, _AROUND = 21, 0.2  # values of a sweep to begin with, and how far they go, as a part of the value
+_USUAL = {"m": "mm", "rad": "deg"}  # units where none is given
+_COUNT, _AROUND = 21, 0.2  # number of values suggested for a sweep, and their range over the present value
 
 
 _Request = tuple[Entries, str, str]  # the design, the input with its values, the results
 
 
 class SweepPanel:
-    """A folded panel below a screen's results."""
+    """A panel below a screen's results that sweeps an input, and can be folded.
+
+    Parameters
+    ----------
+    work : OpenDocument
+        The document.
+    screen : Screen
+        Which of its screens.
+    sweeps : Sweeps
+        The sweeps that the screen offers.
+    solver : TaskTaker
+        Runs the sweeps.
+    """
 
     def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: TaskTaker) -> None:
         self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
@@ -96,7 +109,7 @@ class SweepPanel:
         return tables_of(self.work.needed(self.screen), self.work.inputs)
 
     def _suggest(self) -> None:
-        """Values around that of the input that has been chosen."""
+        """Suggest values around the present one of the input that has been chosen."""
         if (entry := self._inputs().get(self._input.value)) is not None:
             self._values.set_value(around(entry, self.work.entries))
 
@@ -116,7 +129,7 @@ class SweepPanel:
         return swept
 
     async def _swept(self, text: str, names: str) -> tasks.Swept:
-        """The sweep, or why there is none; another one that is under way is ended."""
+        """The sweep, or why there is none; one that is under way is ended first."""
         self.close()
         document, entries = self.work.document, dict(self.work.entries)
         future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
@@ -157,7 +170,7 @@ class SweepPanel:
         return title, swept
 
     async def csv(self) -> None:
-        """Download its rows."""
+        """Download the rows of the sweep."""
         if swept := await self._run():
             ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
 
@@ -176,7 +189,7 @@ class SweepPanel:
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
-    """Values around that of an input, as start:stop:count unit."""
+    """Values around the present one of an input, as text: start:stop:count unit."""
     number, unit = _given(entry, entries)
     low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
     return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()
@@ -196,7 +209,7 @@ def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
 
 
 def _text_and_default(entry: Input, entries: Mapping[str, str]) -> tuple[str, Any]:
-    """The text of an input's field (of a coordinate: its part of it), and the default."""
+    """The text of an input's field (of a coordinate its part of the point's text), and the default."""
     if not isinstance(entry, Coordinate):
         return entries.get(entry.path, ""), entry.default
     whole: Any = entry.of.default or (0.0, 0.0)

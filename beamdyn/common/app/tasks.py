@@ -19,17 +19,17 @@ Swept = InputSweep | str  # a sweep, or why there is none
 
 
 def solve(document: Document, screen: Screen, entries: Entries) -> Outcome:
-    """The answer to these entries, with all that takes time."""
+    """The whole answer to these entries, also what takes time; or what is wrong, by field."""
     return _opened(document, entries).attempt(screen).solve()
 
 
 def glance(document: Document, screen: Screen, entries: Entries) -> Outcome:
-    """The answer as far as a drawing shows it, without tables and notes."""
+    """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field."""
     return _opened(document, entries).attempt(screen).glance()
 
 
 def sweep(document: Document, screen: Screen, entries: Entries, text: str, results: str) -> Swept:
-    """A sweep of one of these entries."""
+    """A sweep of one of these entries, or why there is none."""
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
@@ -38,7 +38,7 @@ def sweep(document: Document, screen: Screen, entries: Entries, text: str, resul
         return reason_of(error)
 
 
-# What is made of an answer and takes long: it would hold up the pages -------------------------------------
+# Parts and files that are made from an answer, and would hold up the pages --------------------------------
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
@@ -47,7 +47,7 @@ def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
 
 
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:
-    """The numbers of an answer as a CSV file; of the beam's with its model error, which takes time."""
+    """The numbers of an answer as a CSV file; for a beam they include the model error, which takes time."""
     return csv_text(screen.rows(answer))
 
 
@@ -66,7 +66,7 @@ def sweep_file(document: Document, screen: Screen, swept: InputSweep, kind: str)
 
 
 def sweep_picture(document: Document, screen: Screen, swept: InputSweep, words: str) -> str:
-    """The same in HTML."""
+    """The picture of a sweep in HTML."""
     return picture(sweep_file(document, screen, swept, "svg").decode(), words)
 
 

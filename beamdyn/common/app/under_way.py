@@ -1,4 +1,4 @@
-"""What a page has asked for and waits for: one computation at a time, and of those that wait the newest."""
+"""The computations of a page: one at a time; of those asked for meanwhile only the newest follows."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from typing import Any
 
 from nicegui import background_tasks
 
-SOON = 0.15  # after which the page says that it computes [s]; it has said so within 0.3 s
+SOON = 0.15  # time after which the page says that it computes [s]; the message is there within 0.3 s
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 2.0  # after which what is no longer wanted is ended [s]; to start another process costs one
+_PATIENCE = 2.0  # time after which what is no longer wanted is ended [s]; another process takes 1 s to start
 
 
 class UnderWay:
-    """The computation that is under way, and what is wanted next.
+    """The computation that is under way, and the one that follows it.
 
     Parameters
     ----------
     settle : callable
-        Called with the future of each that is done, and whether nothing newer is wanted.
+        Called with the future of each computation that is done, and whether nothing newer is wanted.
     fail : callable
-        Called with the error that `settle` has ended in, an unforeseen one: what is done cannot be shown.
+        Called with the error if `settle` raises one: the result cannot be shown.
     tell : callable
         Called when `slow` or `busy` has changed.
 
     Attributes
     ----------
     slow : bool
-        Whether something has been under way for so long that the page should say so.
+        Whether a computation has taken so long that the page should say so.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class UnderWay:
         return self._task is not None
 
     def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
-        """Start something, or have it started after what is under way, in place of what waited for that."""
+        """Start a computation, or let it follow the one under way in place of another that waited."""
         self._wanted = start
         if self._task is None:
             future = self._next()
@@ -61,13 +61,13 @@ class UnderWay:
                 self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
-        """End what is under way; nothing else starts."""
+        """End the computation under way; nothing follows it."""
         self._wanted = None
         if self._future is not None:
             self._future.cancel()
 
     async def done(self) -> None:
-        """Wait until nothing is under way."""
+        """Wait until no computation is under way."""
         if self._task is not None:
             await asyncio.wait([self._task])
 
@@ -99,7 +99,7 @@ class UnderWay:
         self._settle(future, True)
 
     async def _wait(self, future: asyncio.Future[Any]) -> None:
-        """Wait for what is under way, and end it where it takes long and is no longer wanted."""
+        """Wait for the computation under way; end it if it takes long and is no longer wanted."""
         start = monotonic()
         await asyncio.wait([future], timeout=SOON)
         while not future.done():
@@ -112,7 +112,7 @@ class UnderWay:
 
 
 def _started(start: Callable[[], asyncio.Future[Any]]) -> asyncio.Future[Any]:
-    """What is started; a future with the error where it cannot be."""
+    """The future of a computation; one with the error if it cannot be started."""
     try:
         return start()
     except Exception as error:

@@ -1,4 +1,4 @@
-"""Curves as data: over a common x, with points, upright marks and greyed stretches."""
+"""Charts as data: curves over a common x, with points, vertical marks and grey bands."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class ChartAxis:
     Parameters
     ----------
     name : str
-        What it shows.
+        Name of its quantity.
     unit : str
         Unit of its numbers; "" for none.
     logarithmic : bool
-        Whether it has decades.
+        Whether its scale is logarithmic.
     low, high : float, optional
-        Its ends; by the curves if not given.
+        Its limits; chosen by the curves if not given.
     """
 
     name: str
@@ -45,17 +45,17 @@ class ChartCurve:
     Parameters
     ----------
     name : str
-        In the legend and when pointed at.
+        Name in the legend and at the pointer.
     x, y : ndarray, shape (n,)
         Its points, in the units of the axes; a gap where y is not finite.
     dashed : bool
         Whether it is dashed.
     pale : bool
-        Whether it is grey and thin, as what is only compared with.
+        Whether it is grey and thin, as a reference for others.
     points : bool
-        Whether its points are marked, too.
+        Whether its points are marked.
     most : int
-        How many points are drawn: least and largest of parts, where there are more.
+        Most points that are drawn; of more, the smallest and the largest value of each part.
     """
 
     name: str
@@ -69,16 +69,16 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class ChartPoints:
-    """Points with a word each.
+    """Points with a text each.
 
     Parameters
     ----------
     name : str
-        In the legend.
+        Name in the legend.
     at : sequence of (x, y, words)
-        Where they are, and what is said when one is pointed at.
+        Their coordinates, and the text of each at the pointer.
     role : str
-        Its colour: a name in `beamdyn.common.drawing.style`.
+        Role that gives their colour: a name in `beamdyn.common.drawing.style`.
     """
 
     name: str
@@ -88,18 +88,18 @@ class ChartPoints:
 
 @dataclass(frozen=True)
 class ChartMark:
-    """An upright line with a text, at its head, or at its foot where curves pass the head.
+    """A vertical line with a text at its top, or at its foot where curves pass the top.
 
     Parameters
     ----------
     at : float
         Its x.
     text : str
-        What it says.
+        The text.
     at_foot : bool
-        Whether it says so at its foot.
+        Whether the text is at its foot.
     curve : str
-        Name of the curve that it is about, whose colour it has; "" for none.
+        Name of the curve that it belongs to, whose colour it has; "" for none.
     """
 
     at: float
@@ -110,7 +110,7 @@ class ChartMark:
 
 @dataclass(frozen=True)
 class ChartBand:
-    """A stretch of x, greyed, with a text."""
+    """A grey band over an interval of x, with a text."""
 
     low: float
     high: float
@@ -124,19 +124,19 @@ class Chart:
     Parameters
     ----------
     title : str
-        What it shows.
+        Title.
     x, y : ChartAxis
-        Its axes.
+        The axes.
     curves : sequence of ChartCurve
         Curves.
     points : sequence of ChartPoints
         Single points.
     marks : sequence of ChartMark
-        Upright lines.
+        Vertical lines.
     bands : sequence of ChartBand
-        Greyed stretches.
+        Grey bands.
     cursor : float, optional
-        Where a player is.
+        The x of a cursor, such as the present time of a player.
     """
 
     title: str
@@ -150,13 +150,13 @@ class Chart:
 
     @property
     def colour_numbers(self) -> list[int | None]:
-        """Which of the colours each curve has, in turn; None for those that are pale."""
+        """Number of the colour of each curve, counted from 0; None for those that are pale."""
         numbers = count()
         return [None if curve.pale else next(numbers) for curve in self.curves]
 
     @property
     def words(self) -> str:
-        """What it shows, for those who do not see it."""
+        """Description for screen readers."""
         names = ", ".join(each.name for each in (*self.curves, *self.points))
         marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
         over = f"{self.y.title} over {self.x.title}"

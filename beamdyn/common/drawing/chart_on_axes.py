@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 _LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
 _PALE, _GRID, _CURSOR = "0.6", "0.9", "0.4"
-_GAP = 0.01  # between a line and its text, as a part of the axes
-_BEHIND_LEGEND = 0.92  # height of texts at the head of marks
+_GAP = 0.01  # between the foot of the axes and a text, over the height of the axes
+_BEHIND_LEGEND = 0.92  # height of texts at the top of marks, over that of the axes
 
 
 def plot_chart(ax: Axes, chart: Chart) -> Axes:
@@ -79,7 +79,7 @@ def _colours(chart: Chart) -> list[str]:
 
 
 def _plot_marks(ax: Axes, chart: Chart) -> None:
-    """Plot upright lines with their texts, and the cursor."""
+    """Plot vertical lines with their texts, and the cursor."""
     colour_of = {curve.name: colour for curve, colour in zip(chart.curves, _colours(chart), strict=True)}
     for mark in chart.marks:
         _plot_mark(ax, mark, colour_of.get(mark.curve, _CURSOR))
@@ -88,7 +88,7 @@ def _plot_marks(ax: Axes, chart: Chart) -> None:
 
 
 def _plot_mark(ax: Axes, mark: ChartMark, colour: str) -> None:
-    """Plot an upright line; its text along it at the head, or beside it at the foot."""
+    """Plot a vertical line; its text along it at the top, or beside it at the foot."""
     ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
     text = f" {mark.text} "
     across = ax.get_xaxis_transform()

@@ -1,4 +1,4 @@
-"""Free places for labels: none covers another, a sign or the end of a line, and none leaves the frame.
+"""Free places for labels: none covers another, a symbol or the end of a line, and none leaves the frame.
 
 Each label has candidates around its anchors.  What is drawn is entered into a grid of small cells, whose sums
 over rectangles say at once how much of it a candidate would cover.  Labels choose in turn, the most
@@ -19,18 +19,18 @@ _CELL = 2.5  # of the grid [pt]
 _APART = 2.0  # least distance of two texts [pt]
 _GAP = 5.0  # from an anchor to its label [pt]
 FAR = 18.0  # from here on a line leads from the label to its anchor [pt]
-_STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])  # more than the gap [pt]
+_STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])  # distances beyond the gap [pt]
 _TURNS = 12  # directions around an anchor
-_TURNED = 9.0  # cost of standing at a right angle to where a label should stand [pt]
-_NEXT = 5.0  # cost of the next anchor [pt]
-_COVERED = 120.0  # cost of standing on lines over the whole of its area [pt]
-_FIRST = 40  # candidates that are looked at before all others
-_TRIED = 30  # places of others that are tried
+_TURNED = 9.0  # cost of a direction at a right angle to the wanted one [pt]
+_NEXT = 5.0  # cost of each further anchor [pt]
+_COVERED = 120.0  # cost of a label whose whole area covers lines [pt]
+_FIRST = 40  # candidates that are tried before the rest
+_TRIED = 30  # candidates for which another label may be displaced
 
 
 @dataclass(frozen=True, eq=False)
-class Wish:
-    """A label that wants a place, on paper: y points down, all lengths in [pt].
+class LabelRequest:
+    """A label for which a place is to be found, on paper: y points down, all lengths in [pt].
 
     Parameters
     ----------
@@ -60,19 +60,19 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
-    """What is drawn, on paper: y points down, all lengths in [pt].
+class Obstacles:
+    """What is drawn already, and the frame, on paper: y points down, all lengths in [pt].
 
     Parameters
     ----------
     frame : tuple of float
-        Left, top, right, bottom: within these labels stand.
+        Left, top, right, bottom of the area in which labels must stand.
     lines : ndarray, shape (n, 4)
         Segments x, y, x, y that labels should not cover.
     points : ndarray, shape (m, 2)
-        Signs and ends of lines that labels must not cover.
+        Centres of symbols, and ends of lines, that labels must not cover.
     reach : float
-        How far such a sign reaches.
+        Radius around these points that must stay free.
     """
 
     frame: tuple[float, float, float, float]
@@ -87,7 +87,7 @@ class Ground:
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
-        """Sums over cells with signs."""
+        """The same sums over cells with symbols and ends of lines."""
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
         around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]
@@ -103,14 +103,14 @@ class Ground:
         return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
 
     def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Part of boxes (k, 4) that lines cross, and whether they lie within the frame and cover no sign."""
+        """Share of boxes (k, 4) that lines cover; whether they lie in the frame and cover no symbol."""
         x0, y0, x1, y1 = boxes.T
         corners = self._corners(boxes)
         lines = _difference(self._covered, corners)
         return lines * _CELL**2 / ((x1 - x0) * (y1 - y0)), self._is_free(boxes, corners)
 
     def is_free(self, boxes: np.ndarray) -> np.ndarray:
-        """Whether boxes (k, 4) lie within the frame and cover no sign."""
+        """Whether boxes (k, 4) lie within the frame and cover no symbol."""
         return self._is_free(boxes, self._corners(boxes))
 
     def _is_free(self, boxes: np.ndarray, corners: tuple[np.ndarray, ...]) -> np.ndarray:
@@ -152,7 +152,10 @@ def _along(lines: np.ndarray) -> np.ndarray:
 
 @dataclass(eq=False)
 class _Candidates:
-    """Candidates of a label, the cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,)."""
+    """Candidates of a label, the cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,).
+
+    Of all labels at first, by anchor: boxes (n, k, 4), anchors (n, 2), distances and costs (n, k).
+    """
 
     boxes: np.ndarray
     anchors: np.ndarray
@@ -180,49 +183,71 @@ _BESIDE = np.repeat(
 )  # cost of standing beside where it should stand on [pt]
 
 
-def _candidates(wishes: Sequence[Wish], ground: Ground) -> list[_Candidates]:
+def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[_Candidates]:
     """Candidates of all labels: around each anchor by direction and distance."""
-    counts = [len(wish.anchors) for wish in wishes]
-    anchors = np.concatenate([wish.anchors for wish in wishes])
-    half = np.repeat([wish.size for wish in wishes], counts, axis=0) / 2
-    wanted = np.repeat(np.array([wish.towards for wish in wishes], dtype=float), counts, axis=0)
-    on_it: np.ndarray = np.hypot(*wanted.T) == 0
-    reach = (half[:, None] * _SPREAD).min(axis=2)  # from the centre to the edge of the box, (anchors, turns)
-    out = np.where(on_it[:, None, None], _STEPS[:, None], _GAP + _STEPS[:, None] + reach[:, None])
-    distances = np.where(on_it[:, None, None], np.maximum(out - reach[:, None], 0.0), _STEPS[:, None])
-    aside = np.broadcast_to(_STEPS[:, None], (len(anchors), len(_STEPS), len(_CORNERS)))
-    distances = np.concatenate([distances, aside], axis=2)
-    corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
-    offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
-    wanted[~on_it] /= np.hypot(*wanted[~on_it].T)[:, None]
-    turned = np.where(on_it[:, None], _BESIDE, _TURNED * (1 - wanted @ _AWAY.T))
-    nth = np.concatenate([np.arange(count) for count in counts])
-    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).reshape(len(anchors), -1)
+    counts = [len(request.anchors) for request in requests]
+    anchors = np.concatenate([request.anchors for request in requests])
+    half = np.repeat([request.size for request in requests], counts, axis=0) / 2
+    towards = np.repeat(np.array([request.towards for request in requests], dtype=float), counts, axis=0)
+    offsets, distances = _around(half, np.hypot(*towards.T) == 0)
     centres = (anchors[:, None, None] + offsets).reshape(len(anchors), -1, 2)
     boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2)
-    covered, free = ground.judge(boxes.reshape(-1, 4))
+    covered, free = obstacles.judge(boxes.reshape(-1, 4))
+    nth = np.concatenate([np.arange(count) for count in counts])
+    costs = (_STEPS[:, None] + _turned(towards)[:, None] + _NEXT * nth[:, None, None]).reshape(len(nth), -1)
     costs = costs + _COVERED * covered.reshape(costs.shape)
+    every = _Candidates(boxes, anchors, distances.reshape(costs.shape), costs)
     ends = np.cumsum(counts)
-    made = []
-    for start, end in zip(ends - counts, ends, strict=True):
-        part = slice(start, end)
-        which = np.flatnonzero(free.reshape(costs.shape)[part])
-        cost = costs[part].ravel()[which]
-        order = np.argsort(cost, kind="stable")
-        which, of_anchor = which[order], which[order] // costs.shape[1] + start
-        made.append(
-            _Candidates(
-                boxes[part].reshape(-1, 4)[which],
-                anchors[of_anchor],
-                distances[part].ravel()[which],
-                cost[order],
-            )
-        )
-    return made
+    parts = [slice(start, end) for start, end in zip(ends - counts, ends, strict=True)]
+    return [_free_ones(every, free.reshape(costs.shape), part) for part in parts]
+
+
+def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Candidates of a label around each of n anchors, in s steps by t directions.
+
+    Parameters
+    ----------
+    half : ndarray, shape (n, 2)
+        Half the size of the label.
+    on_it : ndarray of bool, shape (n,)
+        Whether it should stand on the anchor.
+
+    Returns
+    -------
+    offsets : ndarray, shape (n, s, t, 2)
+        From the anchor to the centres of the label.
+    distances : ndarray, shape (n, s, t)
+        From the anchor to the edge of the label.
+    """
+    on_it = on_it[:, None, None]
+    reach = (half[:, None] * _SPREAD).min(axis=2)  # from the centre to the edge of the box, (anchors, turns)
+    out = np.where(on_it, _STEPS[:, None], _GAP + _STEPS[:, None] + reach[:, None])
+    distances = np.where(on_it, np.maximum(out - reach[:, None], 0.0), _STEPS[:, None])
+    aside = np.broadcast_to(_STEPS[:, None], (len(half), len(_STEPS), len(_CORNERS)))
+    corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
+    offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
+    return offsets, np.concatenate([distances, aside], axis=2)
+
+
+def _turned(towards: np.ndarray) -> np.ndarray:
+    """Costs (n, t) of the t directions from each anchor, by where the label should stand (n, 2)."""
+    on_it: np.ndarray = np.hypot(*towards.T) == 0
+    length = np.where(on_it, 1.0, np.hypot(*towards.T))
+    return np.where(on_it[:, None], _BESIDE, _TURNED * (1 - (towards / length[:, None]) @ _AWAY.T))
+
+
+def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
+    """The free candidates of one label, the cheapest first, of those of all, by anchor (n, k)."""
+    which = np.flatnonzero(free[part])
+    cost = every.costs[part].ravel()[which]
+    order = np.argsort(cost, kind="stable")
+    which, of_anchor = which[order], which[order] // free.shape[1] + part.start
+    boxes, distances = every.boxes[part].reshape(-1, 4)[which], every.distances[part].ravel()[which]
+    return _Candidates(boxes, every.anchors[of_anchor], distances, cost[order])
 
 
 class _Chosen:
-    """Labels that have a place: which candidate each has, by its index."""
+    """The labels that have a place, and the index of the candidate that each has taken."""
 
     def __init__(self, candidates: Sequence[_Candidates]) -> None:
         self._of = candidates
@@ -257,7 +282,7 @@ class _Chosen:
         return found
 
     def best(self, label: int, before: int | None = None) -> int | None:
-        """The cheapest candidate of a label that is free, among those before one."""
+        """The cheapest free candidate of a label, among those before a given one; None if none is free."""
         for count in (_FIRST, None) if before is None else (before,):
             free = ~self.in_the_way(label, count).any(axis=1)
             if free.any():
@@ -284,21 +309,26 @@ def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     return enter < leave
 
 
-def place_labels(wishes: Sequence[Wish], ground: Ground) -> list[Place | None]:
-    """Find free places for labels; None for a label for which there is none.
+def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[Place | None]:
+    """Find free places for labels.
 
     Parameters
     ----------
-    wishes : sequence of Wish
+    requests : sequence of LabelRequest
         The labels.
-    ground : Ground
-        What is drawn.
+    obstacles : Obstacles
+        What is drawn already.
+
+    Returns
+    -------
+    list of Place or None
+        For each label; None if there is no place for it.
     """
-    if not wishes:
+    if not requests:
         return []
-    candidates = _candidates(wishes, ground)
+    candidates = _candidates(requests, obstacles)
     chosen = _Chosen(candidates)
-    order = sorted(range(len(wishes)), key=lambda i: (-wishes[i].priority, len(candidates[i].costs), i))
+    order = sorted(range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].costs), i))
     for label in order:
         if (best := chosen.best(label)) is not None:
             chosen.take(label, best)
@@ -308,28 +338,35 @@ def place_labels(wishes: Sequence[Wish], ground: Ground) -> list[Place | None]:
         now = chosen.choice.get(label, 0)
         if now and (best := chosen.best(label, now)) is not None:
             chosen.take(label, best)
-    return [candidates[i].place(chosen.choice[i]) if i in chosen.choice else None for i in range(len(wishes))]
+    return [
+        candidates[i].place(chosen.choice[i]) if i in chosen.choice else None for i in range(len(requests))
+    ]
 
 
 def keep_places(
-    before: Sequence[Place | None], wishes: Sequence[Wish], ground: Ground
+    before: Sequence[Place | None], requests: Sequence[LabelRequest], obstacles: Obstacles
 ) -> list[Place | None] | None:
-    """Places beside the anchors as before, while these move; None where one is not free any more.
+    """Places beside the anchors as before, while the anchors move.
 
     Parameters
     ----------
     before : sequence of Place
-        Where the labels stood; with one that had no place, all are to be found anew.
-    wishes : sequence of Wish
+        Where the labels stood.
+    requests : sequence of LabelRequest
         The same labels now.
-    ground : Ground
+    obstacles : Obstacles
         What is drawn now.
+
+    Returns
+    -------
+    list of Place, or None
+        None if all places have to be found anew: a label had none, or its place is not free any more.
     """
-    pairs = zip(before, wishes, strict=True)
-    places = [_beside(place, wish) for place, wish in pairs if place is not None]
-    if not places or len(places) < len(wishes):
-        return None if wishes else []
-    half = np.array([wish.size for wish in wishes]) / 2
+    pairs = zip(before, requests, strict=True)
+    places = [_beside(place, request) for place, request in pairs if place is not None]
+    if not places or len(places) < len(requests):
+        return None if requests else []
+    half = np.array([request.size for request in requests]) / 2
     centres, anchors = (np.array([getattr(p, key) for p in places]) for key in ("centre", "anchor"))
     boxes = np.hstack([centres - half, centres + half])
     apart = boxes + _APART * np.array([-1, -1, 1, 1])
@@ -338,17 +375,17 @@ def keep_places(
     meets = _overlap(boxes, apart)
     meets[far] |= _crossing(leaders, apart)
     np.fill_diagonal(meets, False)
-    return [*places] if ground.is_free(boxes).all() and not meets.any() else None
+    return [*places] if obstacles.is_free(boxes).all() and not meets.any() else None
 
 
-def _beside(place: Place, wish: Wish) -> Place:
-    """A place as far from the anchor that is now nearest to its own."""
-    anchor = wish.anchors[np.hypot(*(wish.anchors - place.anchor).T).argmin()]
+def _beside(place: Place, request: LabelRequest) -> Place:
+    """The place with the same offset from the anchor that is now nearest to its earlier one."""
+    anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]
     return place._replace(centre=anchor + place.centre - place.anchor, anchor=anchor)
 
 
 def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
-    """Take the place of another label that finds a new one; none if there is no such label."""
+    """Give a label the place of another one, if that finds a new place; else leave it without."""
     found = chosen.in_the_way(label, None)
     for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
         other = int(found[candidate].argmax())

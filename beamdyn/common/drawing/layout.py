@@ -1,4 +1,4 @@
-"""A drawing on paper: its scale and place, and every text with its place; lengths in [pt], y downwards."""
+"""Layout of a drawing on paper: its scale, and the places of all texts; lengths in [pt], y points down."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.drawing.label_places import FAR, Ground, Place, Wish, keep_places, place_labels
+from beamdyn.common.drawing.label_places import FAR, LabelRequest, Obstacles, Place, keep_places, place_labels
 from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, arc, points_of_shape
 from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
 
@@ -21,14 +21,14 @@ _CROWDED = 30.0  # a label farther than this from its point asks for a larger ma
 _SWATCH, _SPACE = 16.0, 14.0  # length of a line in the key, and what follows its text
 _BAR = 0.22  # longest scale bar over the width of the frame
 _SMALL_DISC = 30.0  # radius up to which labels should not stand on it
-# Points that cover the round handle of a point that can be moved, from its place: 16 px of the page.
+# Points that cover the handle of a point that can be moved, relative to it: 16 px of the page across.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
 _PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Where the machine's coordinates are on paper.
+    """Transformation from the coordinates of a drawing to paper.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ class Fit:
         return np.asarray(points, dtype=float) * (self.scale, -self.scale) + (self.left, self.top)
 
     def from_paper(self, places: Any) -> np.ndarray:
-        """Points (..., 2) of the machine."""
+        """Points (..., 2) in the drawing's coordinates."""
         return (np.asarray(places, dtype=float) - (self.left, self.top)) / (self.scale, -self.scale)
 
     @classmethod
     def of(cls, low: np.ndarray, high: np.ndarray, frame: Frame, margin: float) -> Fit:
-        """The largest scale at which a rectangle of the machine lies within a frame, in its middle."""
+        """The largest scale at which a rectangle of the drawing lies in the middle of a frame."""
         left, top, right, bottom = frame
         room = np.array([right - left, bottom - top])
         margin = min(margin, 0.3 * float(room.min()))
@@ -105,15 +105,15 @@ class Layout:
     frame : tuple of float
         Left, top, right, bottom.
     fit : Fit
-        Where the machine's coordinates are.
+        Transformation from the drawing's coordinates to the paper.
     texts : tuple of Text
         All texts.
     rules : tuple of Rule
         Lines from labels to their points, of the key and of scales.
     numbered : tuple of str
-        Labels without a free place: they have a number, and stand in a list.
-    places : tuple
-        Of the labels, None for one without.
+        Labels without a free place: a number stands at their point, and they in a list.
+    places : tuple of Place or None
+        Places of the labels; None for one without.
     """
 
     drawing: Drawing
@@ -135,27 +135,27 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
     frame : tuple of float
         Left, top, right, bottom.
     fit : Fit, optional
-        Where its coordinates are; by what is drawn if not given.
+        Transformation to paper; chosen by what is drawn if not given.
     """
     chosen, places = min(_tries(drawing, _inner(drawing, frame), fit), key=lambda found: _trouble(found[1]))
     return _composed(drawing, frame, chosen, places, fit)
 
 
 def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
-    """Lay out a drawing that has changed a little: coordinates stay, and labels beside what they name.
+    """Lay out a drawing that has changed a little: its scale stays, and its labels keep their offsets.
 
-    Only where one of them would cover another, a sign or the frame are places found anew.
+    All places are found anew only if a label would cover another one, a symbol or the frame.
     """
     if len(before.places) == len(drawing.labels):
-        wishes = [_wish(label, before.fit) for label in drawing.labels]
-        ground = _ground(drawing, _inner(drawing, frame), before.fit)
-        if (kept := keep_places(before.places, wishes, ground)) is not None:
+        requests = [_request(label, before.fit) for label in drawing.labels]
+        obstacles = _obstacles(drawing, _inner(drawing, frame), before.fit)
+        if (kept := keep_places(before.places, requests, obstacles)) is not None:
             return _composed(drawing, frame, before.fit, kept, before.fit)
     return arrange(drawing, frame, before.fit)
 
 
 def _inner(drawing: Drawing, frame: Frame) -> Frame:
-    """What title and key leave of a frame."""
+    """The part of a frame that title and key leave free."""
     left, top, right, bottom = frame
     below = top + heading(drawing.title, right - left, bottom - top).height
     return (left, below, right, bottom - _key_height(drawing, frame))
@@ -164,7 +164,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """The layout with these places of the labels."""
+    """The layout of a drawing whose labels have these places."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -174,12 +174,12 @@ def _composed(
 
 
 def _tries(drawing: Drawing, inner: Frame, fit: Fit | None) -> Iterator[tuple[Fit, list[Place | None]]]:
-    """Places of the labels with growing margins, until none stands far from its point."""
+    """Yield fits and places of the labels, with growing margins until no label is far from its point."""
     low, high = drawing.extent()
     for margin in _MARGINS[1:] if drawing.points else _MARGINS:  # points need room to be moved outwards
         found = fit or Fit.of(low, high, inner, margin)
         places = place_labels(
-            [_wish(label, found) for label in drawing.labels], _ground(drawing, inner, found)
+            [_request(label, found) for label in drawing.labels], _obstacles(drawing, inner, found)
         )
         yield found, places
         if fit is not None or _trouble(places) == 0:
@@ -187,18 +187,18 @@ def _tries(drawing: Drawing, inner: Frame, fit: Fit | None) -> Iterator[tuple[Fi
 
 
 def _trouble(places: Sequence[Place | None]) -> float:
-    """How much labels lack a place near their points."""
+    """Penalty of labels that are far from their points, or have no place."""
     return sum(1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places)
 
 
-def _wish(label: Label, fit: Fit) -> Wish:
+def _request(label: Label, fit: Fit) -> LabelRequest:
     width, height = text_size(label.text, label.size, label.symbol)
     (x, y), anchors = label.towards, fit.to_paper(np.reshape(label.anchors, (-1, 2)))
-    return Wish((width + _PADDING[0], height + _PADDING[1]), anchors, (x, -y), label.priority)
+    return LabelRequest((width + _PADDING[0], height + _PADDING[1]), anchors, (x, -y), label.priority)
 
 
-def _ground(drawing: Drawing, inner: Frame, fit: Fit) -> Ground:
-    """What labels should not and must not cover."""
+def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
+    """Lines that labels should not cover, and points that they must not cover."""
     segments, points = [np.empty((0, 4))], [np.empty((0, 2))]
     for shape in drawing.shapes:
         along = fit.to_paper(points_of_shape(shape))
@@ -217,14 +217,14 @@ def _ground(drawing: Drawing, inner: Frame, fit: Fit) -> Ground:
     points += [fit.to_paper(at) + _HANDLE for at in drawing.points.values()]
     left, top, right, bottom = inner
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
-    return Ground(within, _clipped(np.vstack(segments), inner), np.vstack(points))
+    return Obstacles(within, _clipped(np.vstack(segments), inner), np.vstack(points))
 
 
-def _marks(sign: Symbol) -> np.ndarray:
-    """Points (k, 2) that cover a sign, from its place on paper [pt]."""
-    if sign.kind != "ground":
+def _marks(symbol: Symbol) -> np.ndarray:
+    """Points (k, 2) that cover a symbol, relative to it [pt]."""
+    if symbol.kind != "ground":
         return np.zeros((1, 2))
-    w, h = sign.size / 2, 0.85 * sign.size
+    w, h = symbol.size / 2, 0.85 * symbol.size
     return np.array(
         [(0.0, -0.2 * w), (0.0, 0.0), (0.0, 0.5 * h), (-0.7 * w, 0.9 * h), (0.0, 0.9 * h), (0.7 * w, 0.9 * h)]
     )
@@ -240,7 +240,7 @@ def _chords(disc: Disc, fit: Fit) -> np.ndarray:
 
 
 def _clipped(lines: np.ndarray, frame: Frame) -> np.ndarray:
-    """Segments whose ends are not far out of the frame: of a picture that a point was moved out of."""
+    """Segments without those far outside the frame, where a point may have been moved."""
     left, top, right, bottom = frame
     reach = 3 * max(right - left, bottom - top)
     return lines[(np.abs(lines - np.tile([(left + right) / 2, (top + bottom) / 2], 2)) < reach).all(axis=1)]
@@ -259,42 +259,60 @@ def _leader(place: Place, text: Text) -> Rule:
 # Labels without a place ---------------------------------------------------------------------------
 
 
+class _Listed(NamedTuple):
+    """Indices of the labels in the list, the height at which it begins, fit and places of the drawing."""
+
+    labels: list[int]
+    bottom: float
+    fit: Fit
+    places: Sequence[Place | None]
+
+
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Texts and leaders of the labels; those without a place get a number, and a list at the bottom.
-
-    The list takes room from the drawing, which is made smaller; so that what had a place may have none then,
-    and the list is made again with those.
-    """
-    labels, listed = list(drawing.labels), [i for i, place in enumerate(places) if place is None]
-    size, inside = _SMALL, inner
-    while listed:
-        lines = _list_lines([labels[i].said for i in listed], inner, size)
-        inside = (*inner[:3], inner[3] - LINE_HEIGHT * size * len(lines))
-        fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
-        wishes = [_wish(label, fit) for label in labels]
-        for number, i in enumerate(listed, 1):
-            width, height = text_size(f"({number})", size)
-            wishes[i] = Wish((width + 2, height), wishes[i].anchors, wishes[i].towards, 10)
-        places = place_labels(wishes, _ground(drawing, inside, fit))
-        more = [i for i, place in enumerate(places) if place is None and i not in listed]
-        if not more:
-            break
-        listed = sorted({*listed, *more})
+    """Texts and leaders of the labels; those without a place get a number, and a list at the bottom."""
+    listed, bottom, fit, places = _make_room(drawing, inner, _Listed([], inner[3], fit, places), held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
-    for i, (label, place) in enumerate(zip(labels, places, strict=True)):
+    for i, (label, place) in enumerate(zip(drawing.labels, places, strict=True)):
         if place is None:  # a number for which there is no room either stands in the list alone
             continue
-        shown = Label(numbers[i], label.anchors, label.role, size=size) if i in numbers else label
+        shown = Label(numbers[i], label.anchors, label.role, size=_SMALL) if i in numbers else label
         texts.append(_text(shown, place))
         if place.distance > FAR:
             rules.append(_leader(place, texts[-1]))
-    said = tuple(labels[i].said.replace("\n", ", ") for i in listed)
+    said = tuple(drawing.labels[i].said.replace("\n", ", ") for i in listed)
     if listed:
-        texts += _rows(_list_lines(said, inner, size), inner[0] + _EDGE, inside[3], size, "text")
+        texts += _rows(_list_lines(said, inner, _SMALL), inner[0] + _EDGE, bottom, _SMALL, "text")
     return said, texts, rules, fit
+
+
+def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None) -> _Listed:
+    """Make the drawing smaller, so that a list of the labels without a place fits below it.
+
+    In the smaller drawing further labels may be without a place: the list is made again with these.
+    """
+    listed, bottom, fit, places = first
+    more = [i for i, place in enumerate(places) if place is None]
+    while more:
+        listed = sorted({*listed, *more})
+        lines = _list_lines([drawing.labels[i].said for i in listed], inner, _SMALL)
+        bottom = inner[3] - LINE_HEIGHT * _SMALL * len(lines)
+        inside = (*inner[:3], bottom)
+        fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
+        places = place_labels(_numbered_requests(drawing, listed, fit), _obstacles(drawing, inside, fit))
+        more = [i for i, place in enumerate(places) if place is None and i not in listed]
+    return _Listed(listed, bottom, fit, places)
+
+
+def _numbered_requests(drawing: Drawing, listed: Sequence[int], fit: Fit) -> list[LabelRequest]:
+    """Requests of all labels; a number in brackets takes the place of each that is listed."""
+    requests = [_request(label, fit) for label in drawing.labels]
+    for number, i in enumerate(listed, 1):
+        width, height = text_size(f"({number})", _SMALL)
+        requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
+    return requests
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:

@@ -71,11 +71,11 @@ def draw_on(ax: Axes, drawing: Drawing, fit: Fit | None = None) -> Axes:
     Parameters
     ----------
     ax : Axes
-        Where to draw, in the drawing's unit; with the title in them.
+        Where to draw, in the drawing's unit; the title stands within them.
     drawing : Drawing
         The drawing.
     fit : Fit, optional
-        Where its coordinates are; by what is drawn if not given.
+        Transformation to paper; chosen by what is drawn if not given.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def _fill(ax: Axes, layout: Layout) -> Axes:
     ax.set_title(_literal("\n".join(above.lines)), fontsize=above.letters, color=ink("text").line, y=1.0,
                  pad=-_EDGE, va="top", linespacing=LINE_HEIGHT)  # fmt: skip
     for order, shape in enumerate(drawing.shapes):
-        _draw(ax, shape, _LOWEST + 0.01 * order, fit)
+        _DRAW[type(shape)](ax, shape, _LOWEST + 0.01 * order, fit)
     for rule in layout.rules:
         _draw_rule(ax, rule, fit)
     for text in layout.texts[len(above.lines) :]:  # the title's come first
@@ -105,14 +105,14 @@ def _fill(ax: Axes, layout: Layout) -> Axes:
 
 
 def frame_of(ax: Axes) -> Frame:
-    """Frame of axes on paper: 0, 0, width, height [pt]."""
+    """The frame (0, 0, width, height) of axes on paper [pt]."""
     figure: Any = ax.figure
     width, height = ax.get_position().size * figure.figure.get_size_inches() * _INCH
     return 0.0, 0.0, float(width), float(height)
 
 
 def _literal(text: str) -> str:
-    """A text in which matplotlib finds no formulas."""
+    """A text in which matplotlib reads no formula."""
     return text.replace("$", r"\$")
 
 
@@ -121,18 +121,7 @@ def _colours(shape: DrawnShape) -> tuple[str, str]:
     return found.line, found.area
 
 
-def _draw(ax: Axes, shape: DrawnShape, order: float, fit: Fit) -> None:
-    if isinstance(shape, Outline):
-        _draw_outline(ax, shape, order)
-    elif isinstance(shape, Disc):
-        _draw_disc(ax, shape, order)
-    elif isinstance(shape, Symbol):
-        _draw_symbol(ax, shape, order, fit)
-    else:
-        _draw_arrow(ax, shape, order)
-
-
-def _draw_outline(ax: Axes, shape: Outline, order: float) -> None:
+def _draw_outline(ax: Axes, shape: Outline, order: float, _: Fit) -> None:
     (line, area), points = _colours(shape), np.asarray(shape.points, dtype=float).reshape(-1, 2)
     if shape.filled:
         ax.fill(*points.T, facecolor=area, edgecolor="none", alpha=AREA, zorder=order)
@@ -143,7 +132,7 @@ def _draw_outline(ax: Axes, shape: Outline, order: float) -> None:
                 solid_capstyle="butt", solid_joinstyle="round")  # fmt: skip
 
 
-def _draw_disc(ax: Axes, shape: Disc, order: float) -> None:
+def _draw_disc(ax: Axes, shape: Disc, order: float, _: Fit) -> None:
     from matplotlib.patches import Circle
 
     line, area = _colours(shape)
@@ -166,7 +155,7 @@ def _draw_symbol(ax: Axes, shape: Symbol, order: float, fit: Fit) -> None:
     ax.plot(x, y, _MARKERS[shape.kind], color=face, markeredgecolor=edge, markersize=shape.size, zorder=order)
 
 
-def _draw_arrow(ax: Axes, shape: Arrow, order: float) -> None:
+def _draw_arrow(ax: Axes, shape: Arrow, order: float, _: Fit) -> None:
     (x0, y0), (x1, y1) = shape.foot, shape.tip
     how = {
         "arrowstyle": "<|-|>" if shape.both else "-|>",
@@ -176,6 +165,14 @@ def _draw_arrow(ax: Axes, shape: Arrow, order: float) -> None:
         "shrinkB": 0,
     }
     ax.annotate("", (x1, y1), (x0, y0), arrowprops=how, zorder=order, annotation_clip=False)
+
+
+_DRAW: dict[type[DrawnShape], Any] = {
+    Outline: _draw_outline,
+    Disc: _draw_disc,
+    Symbol: _draw_symbol,
+    Arrow: _draw_arrow,
+}
 
 
 def _draw_rule(ax: Axes, rule: Rule, fit: Fit) -> None:

@@ -1,4 +1,4 @@
-"""What a drawing consists of: outlines, discs, symbols, arrows and labels, in the machine's coordinates."""
+"""Elements of a drawing: outlines, discs, symbols, arrows and labels, in the coordinates of the machine."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ class Outline:
     points : ndarray, shape (k, 2)
         The points; the line has a gap where they are not numbers.
     role : str
-        What it is: a name in `beamdyn.common.drawing.style`.
+        Role that gives its colour: a name in `beamdyn.common.drawing.style`.
     width : float
-        Of the line [pt]; 0 for none.
+        Width of the line [pt]; 0 for none.
     dash : tuple of float
-        Lengths of dashes and gaps [pt]; of a solid line none.
+        Lengths of dashes and gaps [pt]; empty for a solid line.
     closed, filled : bool
-        Whether the line comes back to its start, and whether the area within is coloured.
+        Whether the line is closed, and whether the area within is coloured.
     """
 
     points: Any
@@ -57,16 +57,16 @@ class Disc:
 
 @dataclass(frozen=True, eq=False)
 class Symbol:
-    """A sign of one size on paper.
+    """A symbol of a fixed size on paper.
 
     Parameters
     ----------
     kind : {"pin", "ground", "dot", "cross", "diamond"}
-        A pin, a pin's support, a point, a centre, a place of contact.
+        For a pin, a pin's support, a point, a centre, a contact.
     at : array of two floats
-        Where.
+        Its position.
     role : str
-        As of `Outline`.
+        As for `Outline`.
     size : float
         Its width [pt].
     """
@@ -86,13 +86,13 @@ class Arrow:
     foot, tip : array of two floats
         Its ends.
     role : str
-        As of `Outline`.
+        As for `Outline`.
     name : str
-        Of what it shows, such as a force.
+        Name of what it shows, such as a force.
     width : float
-        Of its shaft [pt].
+        Width of its shaft [pt].
     both : bool
-        Whether its foot has a head, too, as in a dimension line.
+        Whether both ends have heads, as in a dimension line.
     """
 
     foot: Any
@@ -119,15 +119,15 @@ class Label:
     anchors : ndarray, shape (k, 2)
         Points at one of which it may stand, the best first.
     role : str
-        As of `Outline`.
+        As for `Outline`.
     towards : tuple of float
-        Direction in which it should stand from its point; (0, 0) on it.
+        Direction in which it should stand from its point; (0, 0) for on it.
     symbol : str
-        Symbol before it, such as "N_1".
+        Symbol before the text, such as "N_1".
     priority : int
         Labels of higher priority choose first.
     size : float
-        Of its letters [pt].
+        Size of its letters [pt].
     """
 
     text: str
@@ -154,27 +154,27 @@ class Drawing:
     Parameters
     ----------
     shapes : sequence
-        What is drawn, the lowest first.
+        Shapes, the lowest first.
     labels : sequence of Label
         Texts.
     title : str
-        Above it.
+        Title.
     words : str
-        What it shows, for those who do not see it.
+        Description for screen readers.
     unit : {"m", "mm", ""}
-        Of its coordinates; none of a sketch that has no scale.
+        Unit of its coordinates; "" for a sketch without a scale.
     newton : float
         Length of an arrow for 1 N, in the drawing's unit; 0 where there are no forces.
     key : mapping
-        What roles mean, in words; only those of its shapes are listed.
+        Meaning of roles, in words; only roles of its shapes are listed.
     points : mapping
         Points (x, y) that can be moved, by their names.
     room : ndarray, shape (k, 2)
-        Points for which there is room beside what is drawn, such as those of other positions.
+        Further points that the drawing has room for, such as those of other positions.
     own_scale : bool
-        Whether it has a scale of its own beside others, as a detail has.
+        Whether its scale differs from that of others in its row, as in a detail.
     scale : str
-        In words, that of deflections, where they are not drawn to that of lengths.
+        Scale of the deflections in words, where it is not that of lengths.
     """
 
     shapes: Sequence[DrawnShape]
@@ -201,7 +201,7 @@ class Drawing:
         return {s.name: s.vector for s in self.shapes if isinstance(s, Arrow) and s.name}
 
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates (2,) of what needs room; a unit square where there is nothing."""
+        """Least and greatest coordinates (2,) of shapes and `room`; a unit square if there are none."""
         room = np.reshape(np.asarray(self.room, dtype=float), (-1, 2))
         points = np.vstack([room, *map(points_of_shape, self.shapes)])
         points = points[np.isfinite(points).all(axis=1)]

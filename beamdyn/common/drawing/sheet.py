@@ -31,12 +31,12 @@ class Paper:
 
     @classmethod
     def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
-        """Paper for drawings: rows as high as what is drawn in them asks for, within bounds."""
+        """Paper for drawings, with the height of each row chosen by its drawings, within bounds."""
         return cls(width, tuple(_height(row, width) for row in rows))
 
     @classmethod
     def of_squares(cls, rows: Rows) -> Paper:
-        """Paper with a square for each drawing, as for free bodies."""
+        """Paper with a square for each drawing, as for free-body diagrams."""
         return cls(_SQUARE * max(map(len, rows)), (_SQUARE,) * len(rows))
 
 
@@ -57,7 +57,7 @@ def _height(row: Sequence[Drawing], width: float) -> float:
 
 
 def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
-    """Frames of the drawings of a row, beside one another."""
+    """Frames of the drawings of the row of this number, beside one another [pt]."""
     top, ends = sum(paper.heights[:number]), [0.0, *accumulate(_widths(row, paper.width))]
     return [(left, top, right, top + paper.heights[number]) for left, right in pairwise(ends)]
 
@@ -72,8 +72,8 @@ def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layo
     paper : Paper
         The paper.
     before : Layout, optional
-        Of the first drawing, a little earlier while something moves: its coordinates stay where they are, and
-        its labels where they are free.
+        Last layout of the first drawing, while something moves: its scale is kept, and its labels as far as
+        their places are free.
     """
     layouts: list[Layout] = []
     for number, row in enumerate(rows):
@@ -89,7 +89,7 @@ def _arranged(drawing: Drawing, frame: Frame, before: Layout | None) -> Layout:
 
 
 def _to_one_scale(layouts: Sequence[Layout]) -> list[Layout]:
-    """The same layouts, all but details at the least of their scales."""
+    """The layouts at the least of their scales, except for details."""
     scale = min((layout.fit.scale for layout in layouts if not layout.drawing.own_scale), default=0.0)
     return [
         layout if layout.drawing.own_scale or layout.fit.scale == scale else _at_scale(layout, scale)
@@ -98,7 +98,7 @@ def _to_one_scale(layouts: Sequence[Layout]) -> list[Layout]:
 
 
 def _at_scale(layout: Layout, scale: float) -> Layout:
-    """A layout at another scale, what is drawn about the same middle."""
+    """A layout at another scale, about the same middle of the drawing."""
     low, high = layout.drawing.extent()
     middle = (low + high) / 2
     x, y = layout.fit.to_paper(middle)

@@ -23,14 +23,14 @@ Point = tuple[float, float] | np.ndarray
 
 
 class Sketch:
-    """A schematic drawing that grows; its proportions are its own, and its size means nothing.
+    """A schematic drawing to which shapes and symbols are added; it has no scale.
 
     Attributes
     ----------
     shapes, labels : list
-        What has been drawn.
+        Shapes and labels so far.
     room : list of points
-        For which there is room beside that.
+        Further points that the drawing has room for.
     """
 
     def __init__(self) -> None:
@@ -69,13 +69,13 @@ class Sketch:
         self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
 
     def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load", words: str = "") -> None:
-        """Draw a force, or a way that something goes; its symbol stands at its free end."""
+        """Draw a force or a direction of motion; its symbol stands at its free end."""
         ends = np.array([foot, tip], dtype=float)
         self.add(Arrow(ends[0], ends[1], role, symbol or words, 1.8))
         self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role, words)
 
     def moment(self, symbol: str, centre: Point, radius: float, start: float, end: float, role: str) -> None:
-        """Draw a turn about a point, from an angle to another [rad]."""
+        """Draw a moment or a rotation about a point, as an arc between two angles [rad]."""
         way = arc(centre, radius, start, end)
         self.add(Outline(way[:-5], role, 1.6), Arrow(way[-8], way[-1], role, symbol, 1.6))
         self.say(symbol, way[[20, 12, 28]], way[20] - np.asarray(centre, dtype=float), role)
@@ -90,7 +90,7 @@ class Sketch:
 
 
 def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
-    """A wall through a point, of a half length, hatched on its back."""
+    """A wall through a point, hatched on one side: `half` is half of it, `back` a line of the hatching."""
     at, way, behind = (np.asarray(each, dtype=float) for each in (middle, half, back))
     ends = np.array([at - way, at + way])
     ticks = ends[0] + np.linspace(0, 1, 6)[:, None] * (ends[1] - ends[0])

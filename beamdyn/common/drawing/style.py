@@ -1,4 +1,4 @@
-"""Colours of what is drawn, by its role, on light and on dark ground."""
+"""Colours of drawings by the role of each shape, on light and on dark ground."""
 
 from __future__ import annotations
 

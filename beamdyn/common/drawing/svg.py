@@ -1,4 +1,4 @@
-"""Drawings as SVG: text only, no script, colours that follow light and dark."""
+"""Drawings as SVG, without scripts; their colours follow the reader's preference for light or dark."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ def element(layouts: Sequence[Layout], paper: Paper) -> str:
 
 
 def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
-    """A circle, not seen, around a point that can be moved."""
+    """An invisible circle around a point that can be moved."""
     x, y = fit.to_paper(at)
     known = f"{name}-{'-'.join(point.split())}"
     return f'<circle id="{escape(known)}" class="grip" cx="{x:.4f}" cy="{y:.4f}" r="7" fill="none"/>'
 
 
 def page_colours(selector: str, dark: bool = False) -> str:
-    """Style rules that set the colours of drawings within what a selector selects."""
+    """Style rules that set the colours of the drawings in the elements of a CSS selector."""
     inks = {"paper": PAPER} | INKS
     values = [(role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in inks.items()]
     variables = "".join(f"--{role}:{line};--{role}-area:{area};" for role, (line, area) in values)
@@ -79,7 +79,7 @@ def page_colours(selector: str, dark: bool = False) -> str:
 
 
 def _paint(role: str, part: str = "line") -> str:
-    """A role's colour: of the page or file, else on light ground."""
+    """A role's colour, as a variable of the page or file; where that is not set, the one on light ground."""
     colours = PAPER if role == "paper" else ink(role)
     return f"var(--{role}{'-area' if part == 'area' else ''},{getattr(colours, part)})"
 
@@ -92,7 +92,7 @@ def _parts(layout: Layout) -> Iterator[str]:
         f'height="{bottom - top:g}"/></clipPath><g clip-path="url(#{clip})">'
     )
     for shape in layout.drawing.shapes:
-        yield _shape(shape, layout.fit)
+        yield _SHAPES[type(shape)](shape, layout.fit)
     yield "</g>"
     yield from map(_rule, layout.rules)
     yield (
@@ -102,17 +102,6 @@ def _parts(layout: Layout) -> Iterator[str]:
     for text in layout.texts:
         yield from _text(text)
     yield "</g>"
-
-
-def _shape(shape: DrawnShape, fit: Fit) -> str:
-    if isinstance(shape, Outline):
-        return _outline(shape, fit)
-    if isinstance(shape, Disc):
-        (x, y), r = fit.to_paper(shape.centre), shape.radius * fit.scale
-        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}"{_line(shape)}/>'
-    if isinstance(shape, Symbol):
-        return _SIGNS[shape.kind](shape, *fit.to_paper(shape.at))
-    return _arrow(shape, fit)
 
 
 def _line(shape: Outline | Disc) -> str:
@@ -130,6 +119,11 @@ def _outline(shape: Outline, fit: Fit) -> str:
     end = "Z" if shape.closed else ""
     way = "".join(f"M{_pairs(run)}{end}" for run in runs if len(run))
     return f'<path d="{way}"{_line(shape)} stroke-linejoin="round"/>' if way else ""
+
+
+def _disc(shape: Disc, fit: Fit) -> str:
+    (x, y), r = fit.to_paper(shape.centre), shape.radius * fit.scale
+    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}"{_line(shape)}/>'
 
 
 def _pairs(points: np.ndarray) -> str:
@@ -185,7 +179,14 @@ def _diamond(s: Symbol, x: float, y: float) -> str:
     return f'<path d="{way}" fill="{_paint(s.role)}" stroke="{_paint("paper", "area")}"/>'
 
 
-_SIGNS: dict[str, Any] = {"pin": _pin, "dot": _dot, "ground": _ground, "cross": _cross, "diamond": _diamond}
+_SYMBOLS: dict[str, Any] = {"pin": _pin, "dot": _dot, "ground": _ground, "cross": _cross, "diamond": _diamond}
+
+
+def _draw_symbol(shape: Symbol, fit: Fit) -> str:
+    return _SYMBOLS[shape.kind](shape, *fit.to_paper(shape.at))
+
+
+_SHAPES: dict[type[DrawnShape], Any] = {Outline: _outline, Disc: _disc, Symbol: _draw_symbol, Arrow: _arrow}
 
 
 def _rule(rule: Rule) -> str:

@@ -1,4 +1,4 @@
-"""Symbols of quantities as they are set: letters slanted, Greek ones as such, what marks them lowered."""
+"""Typesetting of symbols: letters in italics, names of Greek letters as these, indices as subscripts."""
 
 from __future__ import annotations
 
@@ -10,12 +10,17 @@ _GREEK: dict[str, str] = dict(zip(_NAMES.split(" "), "αβγδεζηθκλμνξ
 
 
 def typeset(symbol: str) -> str:
-    """A symbol as labels of drawings take it, such as "α_1" of "alpha1".
+    """Typeset a symbol for labels of drawings: "α_1" for "alpha1".
 
     Parameters
     ----------
     symbol : str
-        A letter, or the name of a Greek one, with what marks it behind it, such as "m_t", "a1" or "zeta_k".
+        A letter, or the name of a Greek letter, and an index, such as "m_t", "a1" or "zeta_k".
+
+    Returns
+    -------
+    str
+        The letter, and behind an underscore the index, if there is one.
     """
     found = re.fullmatch(r"([^\W\d_]+)_?(\w*)", symbol)
     if found is None:

@@ -1,4 +1,4 @@
-"""How wide texts are: advance widths of DejaVu Sans, the font that comes with matplotlib."""
+"""Widths of texts, by the advance widths of DejaVu Sans, the font that comes with matplotlib."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def line_width(text: str) -> float:
 
 
 def symbol_width(symbol: str) -> float:
-    """Width of a symbol such as "N_1", whose part behind the underscore is lowered and smaller."""
+    """Width of a symbol such as "N_1", whose part behind the underscore is a subscript."""
     letter, _, index = symbol.partition("_")
     return line_width(letter) + SUBSCRIPT * line_width(index)
 
@@ -155,7 +155,7 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
 
 
 def shortened(text: str, width: float, size: float) -> str:
-    """A text cut to a width [pt], with dots at its end."""
+    """A text, cut to a width [pt] with dots at its end if it is longer, in letters of a size [pt]."""
     if size * line_width(text) <= width:
         return text
     kept = text

@@ -1,4 +1,4 @@
-"""Tables of rows in files: a row of heads with units, such as "twist [deg]", then rows of plain numbers."""
+"""Tables in TOML files: a row of heads with units, such as "twist [deg]", then rows of plain numbers."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
     rows : list of list
         The heads, then the numbers of each row.
     known : mapping
-        What the columns may be, by name.
+        Quantities that columns may have, by name.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
     Raises
     ------
     InvalidInput
-        At the first place that is wrong, such as "stations[2][0]": row and column count from 0.
+        At the first mistake; its field is the place, such as "stations[2][0]", counted from 0.
     """
     heads, *rest = _checked_rows(place, rows)
     units: dict[str, str] = {}

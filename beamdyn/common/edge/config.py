@@ -146,7 +146,6 @@ _WORDS = {
     "dict_type": "give a table",
     "list_type": "give a list in brackets",
     "model_type": "give a table with keys",
-    "too_short": "give at least one value",
 }
 
 
@@ -166,9 +165,12 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
         case "literal_error":
             return str(InvalidInput(place, error["input"], f"give {context.get('expected')}")), path
         case "too_long":
-            return str(
-                InvalidInput(place, error["input"], f"give at most {context['max_length']} values")
-            ), path
+            bound = f"give at most {context['max_length']} values"
+            return str(InvalidInput(place, error["input"], bound)), path
+        case "too_short":
+            least = context["min_length"]
+            bound = f"give at least {'one value' if least == 1 else f'{least} values'}"
+            return str(InvalidInput(place, error["input"], bound)), path
     return str(InvalidInput(place, error["input"], _WORDS.get(error["type"], error["msg"]))), path
 
 

@@ -26,7 +26,7 @@ class CsvColumn:
     head : str
         Its head, without the unit.
     name : str
-        What it is, by the names asked for; empty if it is none of them.
+        Name of its quantity, among those asked for; empty if it is none of them.
     unit : str
         Its unit, as written.
     values : tuple of float
@@ -61,7 +61,7 @@ class CsvTable:
     columns: tuple[CsvColumn, ...]
 
     def named(self) -> dict[str, CsvColumn]:
-        """The columns that are known, by name."""
+        """The columns whose quantity is known, by its name."""
         return {column.name: column for column in self.columns if column.name}
 
 
@@ -76,14 +76,14 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
     text : DataText
         The file.
     known : mapping
-        What columns may be, by name.
+        Quantities that columns may have, by name.
     names : mapping
-        The name of a head, by its plain name: several heads may stand for one.
+        Names of quantities by the plain names of heads: several heads may stand for one quantity.
 
     Raises
     ------
     ConfigError
-        At the first head or cell that is wrong: names file, line, and what was expected.
+        At the first head or cell that is wrong; the message names file, line, and what was expected.
     """
     lines = [line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)]
     if not lines:
@@ -103,7 +103,7 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
 
 
 def _delimiter(heads: str) -> str:
-    """What separates the columns: what stands most often outside the units' brackets."""
+    """The delimiter of the columns: the one that occurs most often outside the brackets of units."""
     outside = re.sub(r"[\[(][^\])]*[\])]", "", heads)
     return max(_DELIMITERS, key=outside.count)
 
@@ -140,7 +140,7 @@ class _ColumnHead:
 
 
 def _usual_spelling(unit: str) -> str:
-    """A unit as it is read elsewhere: N m2 for Nm^2 and N-m^2, which turbine people write."""
+    """A unit in the spelling read elsewhere: N m2 for Nm^2 and N-m^2, as in files on wind turbines."""
     return re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", unit))
 
 
@@ -190,7 +190,7 @@ def _read_cell(text: DataText, line: int, cell: str, head: _ColumnHead) -> float
 
 
 def check_places(table: CsvTable, name: str) -> None:
-    """Refuse positions that do not ascend; one that stands twice with other values is a jump.
+    """Refuse positions that do not ascend; a position given twice with other values is a jump.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def check_places(table: CsvTable, name: str) -> None:
     Raises
     ------
     ConfigError
-        If a position follows a greater one, is repeated without a jump, or stands three times.
+        If a position follows a greater one, is repeated without a jump, or is given three times.
     """
     column, rows = table.named()[name], list(zip(*(c.values for c in table.columns), strict=True))
     x, last = column.values, len(rows) - 1

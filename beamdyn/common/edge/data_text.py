@@ -1,6 +1,6 @@
 """Text files of numbers that other programs write: their lines, and numbers as FORTRAN reads them.
 
-What is refused names the file, the line and what was expected there.
+Messages name the file, the line and what was expected there.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ class DataText:
     lines: tuple[str, ...]
 
     def refusal(self, line: int, sentence: str) -> ConfigError:
-        """The error that a sentence about a line is."""
+        """The error with a sentence about a line."""
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """The error that something is missing from the whole file."""
+        """The error with a sentence about something that the file lacks."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
@@ -110,7 +110,7 @@ def _decoded(file: Path, content: bytes) -> str:
 
 
 def to_number(word: str) -> float | None:
-    """The number that FORTRAN reads in a word, also 1.0D+03; None if it is none, or too large."""
+    """The number that FORTRAN reads in a word, such as 1.0D+03; None if there is none, or it is too large."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         return None
@@ -119,7 +119,7 @@ def to_number(word: str) -> float | None:
 
 
 def as_decimal(word: str) -> str:
-    """A number's word with e in place of FORTRAN's letters."""
+    """The word of a number with e in place of FORTRAN's letters."""
     match = _NUMBER.fullmatch(word)
     assert match is not None
     return match[1] + (f"e{match[2]}" if match[2] else "")
@@ -141,7 +141,7 @@ def quote(word: str) -> str:
 
 
 def _advice(word: str) -> str:
-    """What is wrong with a word that is no number."""
+    """What is wrong with a word that is not a number."""
     if strange := next((c for c in word if not c.isascii()), ""):
         name = unicodedata.name(strange, "no name").lower()
         return f" with the character U+{ord(strange):04X} ({name}); write it in plain characters"
@@ -150,12 +150,12 @@ def _advice(word: str) -> str:
     return "" if word.lower().lstrip("+-") not in ("nan", "inf", "infinity") else "; give a finite one"
 
 
-# Values with their names behind them --------------------------------------------------------------
+# Values followed by their names -------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class NamedValue:
-    """A value and where it stands.
+    """A value with its name and line.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class NamedValue:
 
 
 def plain_name(name: str) -> str:
-    """A name without what programs write differently: capitals, brackets, colons, underscores, blanks."""
+    """A name in lower case, without brackets, colons, underscores and blanks, which programs vary."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
@@ -190,12 +190,12 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
     Returns
     -------
     dict
-        By plain name; those that the file does not have are missing.
+        Values by plain name, for those names that the file has.
 
     Raises
     ------
     ConfigError
-        If a name stands twice.
+        If a name occurs twice.
     """
     found: dict[str, NamedValue] = {}
     bare: dict[str, NamedValue] = {}
@@ -213,7 +213,22 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
 
 
 def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapping[str, str]) -> None:
-    """Refuse a file that lacks names; `names` are those it must have, by plain name, as shown."""
+    """Refuse a file that lacks names or their values.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    found : mapping
+        Values that it has, by plain name.
+    names : mapping
+        Names that it must have, as shown in messages, by plain name.
+
+    Raises
+    ------
+    ConfigError
+        If a name or its value is missing.
+    """
     for key in names:
         if key in found and not found[key].word:
             raise text.refusal(found[key].line, f"expected a value before {found[key].name}, found none")
@@ -223,18 +238,18 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
 
 
 def named_number(text: DataText, named: NamedValue) -> float:
-    """The number that a name has."""
+    """The number of a named value."""
     return number_at(text, named.line, named.word, named.name)
 
 
 def check_named(text: DataText, named: NamedValue, good: bool, wanted: str) -> None:
-    """Refuse the value of a name unless it is good."""
+    """Refuse a named value unless it is good; `wanted` says what was expected."""
     if not good:
         raise text.refusal(named.line, f"expected {named.name} {wanted}, found {quote(named.word)}")
 
 
 def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
-    """The whole number that a name has."""
+    """The whole number of a named value, which must not be less than `least`."""
     number = named_number(text, named)
     if number != int(number) or number < least:
         said = f"expected a whole number of {least} or more for {named.name}, found {quote(named.word)}"

@@ -1,4 +1,4 @@
-"""Sentences of the core in the terms of files and commands; it loads nothing heavy."""
+"""Sentences of the core in the terms of files and commands; a module without slow imports."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _PHYSICS = re.compile(r"Physics\((.*?)\)")
 
 
 def as_in_files(sentence: str) -> str:
-    """What the core says in Python's terms, in those of files and commands.
+    """A sentence of the core, written in Python's terms, in the terms of files and commands.
 
     "Physics(shear=True)" becomes "[physics] shear = true", and a function the command that does the same.
     """

@@ -1,4 +1,4 @@
-"""A table that is never cut: what does not fit beside each other follows below."""
+"""A table that is never cut: columns that do not fit on the screen follow below."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 _BETWEEN, _EDGES = 3, 1  # characters that a column, and a table, have beside their text
-_WORDS = 16  # characters to which a column of words may shrink
+_WORDS = 16  # least width of a column of words, in characters
 
 
 class FittedTable(Table):
@@ -29,7 +29,7 @@ class FittedTable(Table):
     left : sequence of int
         Columns of words, which are flush left and may be wrapped; numbers are flush right.
     keys : int
-        Number of first columns that say what a row is.
+        Number of first columns that identify a row.
     """
 
     def __init__(self, columns: Sequence[str], left: Sequence[int], keys: int = 1) -> None:
@@ -50,7 +50,7 @@ class FittedTable(Table):
     # Widths -----------------------------------------------------------------------------------------
 
     def _widths(self, columns: Sequence[int], broken: bool = False) -> list[int]:
-        """Characters that columns need, of words at least; headings may be broken between words."""
+        """Least widths of columns, in characters; headings may be broken between words if `broken`."""
         return [self._width(i, broken) for i in columns]
 
     def _width(self, i: int, broken: bool) -> int:
@@ -63,7 +63,7 @@ class FittedTable(Table):
     # Parts ------------------------------------------------------------------------------------------
 
     def _parts(self, width: int) -> Iterator[Table]:
-        """Yield tables of some of the columns each, that are no wider than the screen."""
+        """Yield tables with some of the columns each, no wider than the screen."""
         places = [*range(len(self.columns))]
         keys, others = places[: self._keys], places[self._keys :]
         needed = dict(zip(places, self._widths(places, broken=True), strict=True))
@@ -81,7 +81,7 @@ class FittedTable(Table):
         yield self._part([*keys, *group], needed, numbered)
 
     def _part(self, places: Sequence[int], needed: dict[int, int], numbered: bool) -> Table:
-        """A table of some columns, with numbers of the rows in front if these are asked for."""
+        """A table of some columns, with the numbers of the rows in front if `numbered`."""
         made = Table(box=self.box, padding=self.padding)
         if numbered:
             made.add_column("", justify="right", no_wrap=True)

@@ -25,14 +25,14 @@ pre { background: #f4f4f4; padding: 1rem; white-space: pre-wrap; overflow-wrap: 
 
 @dataclass(frozen=True)
 class Question:
-    """A command with its options and its input file, for the head of a report.
+    """A command with its options and its input file, as a report shows them.
 
     Parameters
     ----------
     title : str
         Command and file.
     inputs : str
-        The command with its options, in a comment, above the text of its file: TOML still.
+        The command with its options in a comment, above the text of its file: valid TOML as a whole.
     """
 
     title: str
@@ -40,13 +40,13 @@ class Question:
 
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """From the text of the file; options that are None or empty are left out."""
+        """Make one from the text of the file; options that are None or empty are left out."""
         words = [*command.split(), str(file), *_options(options)]
         return cls(f"{command}: {file}", f"# {_line(shlex.join(words))}\n\n{text}")
 
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """From a file; raises `ConfigError` if it cannot be read."""
+        """Make one from a file; raises `ConfigError` if it cannot be read."""
         from beamdyn.common.edge.config import read
 
         return cls.of(command, file, read(file), **options)
@@ -73,11 +73,11 @@ class Report:
     question : Question
         The command and its input.
     tables : sequence of rich renderables
-        As printed.
+        Tables and sentences, as printed.
     warnings : sequence of str
         Warnings, and why there is no answer.
     more : sequence of (title, callable)
-        Further parts, whose callables give HTML.
+        Further parts; each callable returns HTML.
     """
 
     question: Question
@@ -86,7 +86,7 @@ class Report:
     more: Sequence[tuple[str, Callable[[], str]]] = ()
 
     def page(self, draw: Callable[[], Figure] | None) -> str:
-        """The report as HTML; without its main drawing where there is none."""
+        """The report as HTML, with a main drawing unless `draw` is None."""
         tables = html(self.tables) + further(self.more)
         title = self.question.title
         made = "" if draw is None else picture(drawing(draw), title)
@@ -105,11 +105,11 @@ def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str
     Parameters
     ----------
     title : str
-        Of the report.
+        Title of the report.
     inputs : str
         The design as TOML.
     parts : iterable of (name, warnings, tables, drawing)
-        Of each screen; tables are HTML, drawings are elements as `picture` makes them.
+        Content for each screen; tables are HTML, drawings are elements as `picture` makes them.
     """
     body = "".join(
         f"<h2>{escape(name)}</h2>{''.join(_warning(said) for said in dict.fromkeys(warnings))}{made}{tables}"

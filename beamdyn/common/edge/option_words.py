@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from contextvars import ContextVar
+from itertools import chain, pairwise
 
 from cyclopts import App, CycloptsError
 
@@ -54,6 +55,26 @@ def as_typed(sentence: str) -> str:
     if named is not None and (option := f"--{named[1].replace('_', '-')}") in _options():
         said = option + said[named.end() :]
     return _QUOTED.sub(r'\1"\2"', said)
+
+
+def as_given(error: Exception) -> str:
+    """What a refusal says, its number in the unit in which the option that gave it was typed."""
+    from beamdyn.common.checks import InvalidValue  # here, for the time that it takes to import
+    from beamdyn.common.edge.wording import in_unit_of
+
+    if not isinstance(error, InvalidValue) or not error.unit:
+        return str(error)
+    text = _text_of(f"--{error.field.replace('_', '-')}")
+    return str(in_unit_of(error, text) if text else error)
+
+
+def _text_of(option: str) -> str:
+    """The text that was typed for an option; empty if there is none."""
+    typed = TYPED.get()
+    arguments = [] if typed is None else [str(each) for each in typed[1]]
+    after = (text for name, text in pairwise(arguments) if name == option)
+    joined = (each.partition("=")[2] for each in arguments if each.startswith(f"{option}="))
+    return next(chain(after, joined), "")
 
 
 def _options() -> set[str]:

@@ -101,7 +101,21 @@ def write(
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,
 ) -> None:
-    """Write the requested files; `rows` are those of the CSV file, `draw` makes the picture."""
+    """Write the requested files.
+
+    Parameters
+    ----------
+    result : Result
+        The result, for the JSON file.
+    outputs : Outputs
+        The files, which have been checked.
+    rows : iterable of sequence
+        Rows of the CSV file, heads first.
+    draw : callable, optional
+        Makes the picture.
+    report : Report, optional
+        Contents of the HTML report.
+    """
     if outputs.json is not None:
         write_text(outputs.json, result.to_json())
     if outputs.csv is not None:
@@ -133,7 +147,7 @@ def check_folder(option: str, folder: Path) -> None:
 
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """Turn a function that draws on axes into one that makes a figure."""
+    """Return a function that makes a figure with what `draw` draws on axes."""
 
     def made() -> Figure:
         from beamdyn.common.pictures import figure_of
@@ -144,10 +158,10 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
 
 
 def _named_by(scene: Path) -> list[Path]:
-    """The files that a scene file names as its stations or a record, if it is a scene file and names some."""
+    """The files of stations or records that a scene file names; none if it is not a scene file."""
     try:
         tables = tomllib.loads(scene.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):  # what it is instead is said when it is read
+    except (OSError, ValueError, RecursionError):  # the message comes when the file is read
         return []
     named = []
     for *path, key in (("beam", "stations"), ("motion", "file"), ("motion", "rotation", "file")):

@@ -12,9 +12,9 @@ from typing import Any
 from cyclopts import App, CycloptsError
 
 from beamdyn.common.announced import OutsideLinearTheory
-from beamdyn.common.edge.option_words import TYPED, as_typed
+from beamdyn.common.edge.option_words import TYPED, as_given, as_typed
 from beamdyn.common.edge.progress import at_work, quiet
-from beamdyn.common.edge.usage_words import say_mistake
+from beamdyn.common.edge.usage_words import check_names, say_mistake
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -28,13 +28,13 @@ _EXAMPLES = "{}, in the folder of the source:"
 
 
 def examples(*lines: str) -> str:
-    """What follows the help of a command: lines that may be typed as they stand, and the exit codes."""
+    """The end of a command's help: examples, which can be typed as they stand, and the exit codes."""
     head = _EXAMPLES.format("Example" if len(lines) == 1 else "Examples")
     return "\n\n".join([head, *(f"`{line}`" for line in lines), EXIT_CODES])
 
 
 class NoAnswer(Exception):
-    """The model has no answer; the message says which part and where."""
+    """The model has no answer; the message says why, and where."""
 
 
 class Interrupted(Exception):
@@ -84,6 +84,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 def _call(app: App, arguments: Sequence[str]) -> None:
     from beamdyn.common.edge.tables import Terminal, spell_output
 
+    check_names(arguments)
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
     app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
@@ -91,13 +92,13 @@ def _call(app: App, arguments: Sequence[str]) -> None:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """Within it, a warning of the packages is a sentence of the program, without a place in the code."""
+    """Within it, warnings of the packages are printed as sentences, without their place in the code."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if category is UserWarning:
             warn(name, [str(message)])
-        else:  # of another package, to its developers
+        else:  # a warning of another package, meant for developers
             usual(message, category, *place)
 
     with warnings.catch_warnings():
@@ -120,10 +121,10 @@ def _refused(name: str, error: Exception) -> int:
     from beamdyn.common.checks import NoModelAnswer
 
     if isinstance(error, NoModelAnswer):
-        return _complain(name, f"no answer: {as_typed(str(error))}", NO_ANSWER)
+        return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)
     if isinstance(error, LinAlgError):
         return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
-    return _complain(name, as_typed(str(error)), BAD_INPUT)
+    return _complain(name, as_typed(as_given(error)), BAD_INPUT)
 
 
 def _complain(name: str, sentence: str, code: int) -> int:

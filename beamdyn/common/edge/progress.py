@@ -1,29 +1,53 @@
-"""A line on standard error that says what a command is busy with, after a second of silence."""
+"""A progress line on standard error, which appears when a command takes more than a second."""
 
 from __future__ import annotations
 
 import sys
 import time
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from datetime import timedelta
 from threading import RLock, Timer
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-SILENCE = 1.0  # after which the line appears [s]
+SILENCE = 1.0  # time after which the line appears [s]
 
-_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)  # the one that may be shown
+_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)  # the present line
+
+
+class Pace:
+    """How long the remaining steps take, by those of the last half of the time: steps may be ever shorter."""
+
+    def __init__(self) -> None:
+        self._times: list[float] = []
+        self._counts: list[int] = []
+
+    def note(self, now: float, done: int) -> None:
+        """Note at a time [s] how many steps are done."""
+        self._times.append(now)
+        self._counts.append(done)
+
+    def left(self, now: float, total: int) -> float | None:
+        """Time [s] that the rest of so many steps takes; None as long as none has been seen to end."""
+        if not self._times or self._counts[-1] == self._counts[0]:
+            return None
+        last, done = self._times[-1], self._counts[-1]
+        since = bisect_right(self._times, (self._times[0] + last) / 2) - 1
+        each = (last - self._times[since]) / max(done - self._counts[since], 1)
+        return max((total - done) * each - (now - last), 0.0)
 
 
 class _ProgressLine:
-    """The line: the time that has passed, or a bar with the remaining time where steps are counted."""
+    """The line: the elapsed time, and a bar with the remaining time where steps are counted."""
 
     def __init__(self, what: str) -> None:
         self._what, self._began = what, time.monotonic()
-        self._done, self._total = 0, None
+        self._done, self._total, self._pace = 0, None, Pace()
         self._lock, self._timer, self._shown = RLock(), None, None
 
     def begin(self) -> None:
@@ -33,7 +57,7 @@ class _ProgressLine:
         self._timer.start()
 
     def hide(self) -> None:
-        """Take it from the screen; what is counted meanwhile is kept."""
+        """Take it from the screen; counts are kept."""
         with self._lock:
             timer, self._timer = self._timer, None
             shown, self._shown = self._shown, None
@@ -43,9 +67,10 @@ class _ProgressLine:
             shown.stop()
 
     def count(self, done: int, total: int) -> None:
-        """Say how many steps of how many are done."""
+        """Set the numbers of steps that are done, and of all."""
         with self._lock:
             self._done, self._total = done, total
+            self._pace.note(time.monotonic(), done)
             if self._shown is not None:
                 self._update(self._shown)
 
@@ -53,7 +78,7 @@ class _ProgressLine:
         with self._lock:
             if self._timer is None:  # hidden while this waited
                 return
-            self._shown = _bar()
+            self._shown = _bar(self._pace)
             self._shown.add_task(self._what, total=None, count="")
             self._shown.tasks[0].start_time = self._began
             self._update(self._shown)
@@ -64,16 +89,22 @@ class _ProgressLine:
         bar.update(bar.task_ids[0], completed=self._done, total=self._total, count=count)
 
 
-def _bar() -> Progress:
+def _bar(pace: Pace) -> Progress:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, Task, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
     from rich.text import Text
 
-    class Remaining(TimeRemainingColumn):
+    class Remaining(ProgressColumn):
         """The remaining time, where steps are counted."""
 
+        max_refresh = 0.5
+
         def render(self, task: Task) -> Text:
-            return Text() if task.total is None else super().render(task).append(" left")
+            if task.total is None:
+                return Text()
+            left = pace.left(time.monotonic(), int(task.total))
+            shown = "-:--:--" if left is None else str(timedelta(seconds=round(left)))
+            return Text(f"{shown} left", style="progress.remaining")
 
     counted = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}")
     screen = Console(stderr=True, force_terminal=True)
@@ -86,17 +117,17 @@ def _bar() -> Progress:
 
 @contextmanager
 def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Within it, a line on standard error, if that is a terminal, says what takes over a second.
+    """Within it, a line shows progress on standard error, if that is a terminal.
 
     Parameters
     ----------
     what : str
-        What is done, such as "designs". A line within another takes its place.
+        Name of the work, such as "designs". A line within another one takes its place.
 
     Yields
     ------
     callable
-        To be called with the numbers of steps that are done and of all; without, the line has the time alone.
+        To be called with the numbers of steps that are done and of all; the line has a bar only then.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None
@@ -114,7 +145,7 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Within it, as where something is printed, no line is shown; afterwards again after a second."""
+    """Within it no line is shown, so that something can be printed; it returns after a second."""
     line = _LINE.get()
     if line is None:
         yield

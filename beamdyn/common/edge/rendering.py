@@ -1,4 +1,4 @@
-"""Figures as SVG and PNG, tables as HTML, rows as CSV: text out, nothing written."""
+"""Figures as SVG and PNG, tables as HTML, rows as CSV, returned as text or bytes."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def picture(text: str, words: str) -> str:
     text : str
         The SVG.
     words : str
-        What it shows, for those who do not see it.
+        Description for screen readers.
     """
     if not text.startswith("<?xml"):
         return f"<p>{escape(text)}</p>"
@@ -76,7 +76,7 @@ def data_url(text: str) -> str:
 def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
     """Tables and sentences, as the commands print them, in HTML.
 
-    Of a table with more than `most` rows the first and the last ones are shown, and how many there are.
+    If a table has more than `most` rows, the first and last ones are shown, and how many are not.
     """
     return "\n".join(_html(part, most) for part in parts)
 
@@ -108,7 +108,7 @@ def _table(made: Table, most: int | None) -> str:
 
 
 def _ends(rows: list[str], most: int | None, columns: int) -> list[str]:
-    """The rows, or the first and the last of many with a row between them that counts those left out."""
+    """The rows; if they are too many the first and last ones, with a row between that counts the others."""
     if most is None or len(rows) <= most:
         return rows
     tail = most // 2

@@ -1,4 +1,4 @@
-"""Tables of a file made from core classes whose fields are described: no input is described twice."""
+"""Tables of files, made from core classes whose fields are described, so that no input is described twice."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from beamdyn.common.edge.wording import of_file
 
 
 class MadeSection(CoreSection):
-    """A table made from a core class: its keys are the arguments of the class."""
+    """A table made from a core class; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
     key_of: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
@@ -142,7 +142,7 @@ def _key(name: str, hint: Any) -> str:
 
 
 def _refuse_truth(given: object) -> object:
-    """Refuse a truth value where the number that it equals is a choice."""
+    """Refuse a truth value where the number that equals it can be chosen."""
     if isinstance(given, bool):
         raise InvalidInput("", given, "give a number")
     return given

@@ -1,8 +1,9 @@
-"""Options of commands that give inputs a spread: which tolerances, how many random designs."""
+"""Options of commands for ranges over tolerances of inputs: the tolerances, the number of random designs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -85,23 +86,27 @@ def _key(text: str) -> str:
 def parse_spreads(
     inputs: Sequence[Input], texts: Sequence[str], nominal: Callable[[Input], tuple[float, str]]
 ) -> tuple[SpreadInput, ...]:
-    """Inputs with their tolerances.
+    """Read inputs with their tolerances.
 
     Parameters
     ----------
     inputs : sequence of Input
-        Those that may have one.
+        Those that may have a tolerance.
     texts : sequence of str
         KEY=TOLERANCE of each; the key as for `parse_axis`.
     nominal : callable
-        Value of an input and its unit, in SI.
+        ``nominal(input)``: value of an input in SI, and its SI unit.
+
+    Returns
+    -------
+    tuple of SpreadInput
 
     Raises
     ------
     ValueError
-        If there is no such input, it is given twice, or its tolerance is none.
+        If there is no such input, it is given twice, or its tolerance cannot be read.
     """
-    from beamdyn.common.edge.input_sweep import find_input
+    from beamdyn.common.edge.varied_inputs import find_input
 
     made: dict[str, SpreadInput] = {}
     for text in texts:
@@ -113,6 +118,19 @@ def parse_spreads(
             raise ValueError(f"{words}: {entry.path} has a spread already; give each input once")
         made[entry.path] = _parse_spread(entry, text.partition("=")[2].strip(), *nominal(entry))
     return tuple(made.values())
+
+
+@contextmanager
+def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
+    """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
+    from beamdyn.common.checks import InvalidValue
+    from beamdyn.common.edge.wording import in_unit_of
+
+    texts = {each.name: each.text for each in given}
+    try:
+        yield
+    except InvalidValue as error:
+        raise in_unit_of(error, texts.get(error.field, "")) from None
 
 
 def _parse_spread(entry: Input, tolerance: str, value: float, unit: str) -> SpreadInput:

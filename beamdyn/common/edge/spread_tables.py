@@ -21,7 +21,7 @@ _SMALL = 0.01  # share of a variance that is not told from others below it
 
 
 def spread_table(result: Spread) -> Group:
-    """What holds of the answers in a sentence each, their ranges and scatter, and what the inputs do."""
+    """A sentence on each answer, then tables of ranges, scatter, and shares of the inputs in the variance."""
     said = [Text(headline(result, k)) for k in _told(result)[:_HEADLINES]]
     return Group(*said, _ranges(result), _scatter(result), *_inputs(result), Text(_note(result)))
 
@@ -48,7 +48,7 @@ def headline(result: Spread, answer: int) -> str:
 
 
 def _most(result: Spread, answer: int) -> list[str]:
-    """What matters most, in words."""
+    """The inputs that matter most, in words; none if there is only one input."""
     names = result.matters_most(answer)
     if not names or len(result.inputs) == 1:
         return []
@@ -104,7 +104,7 @@ def _number(value: float, error: float) -> str:
 
 
 def _share(value: float, error: float) -> str:
-    """A share of a variance; only that it is small, where it is within three standard errors."""
+    """A share of a variance as text; "< 0.01" if it is surely small."""
     if abs(value) + 3 * error < _SMALL:
         return f"< {_SMALL:g}"
     return supported(value, error, 3).replace("none", "-")
@@ -162,7 +162,7 @@ def _inputs(result: Spread) -> Iterator[Group]:
 
 
 def _fitting(firsts: Sequence[Sequence[str]], answers: Sequence[str]) -> int:
-    """How many answers stand in a table beside the first columns of the inputs."""
+    """Number of answers that fit into a table beside the first columns of the inputs."""
     left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
     return max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, answers), 0) + _GAP))
 
@@ -206,7 +206,7 @@ def spread_csv(result: Spread) -> Iterator[Sequence[object]]:
 
 
 def _answer_head(name: str, unit: str) -> str:
-    """That of an answer; of the frequency of a mode "frequency_Hz_1", as in all tables."""
+    """Head of an answer's column; for the frequency of a mode "frequency_Hz_1", as in all tables."""
     mode = re.fullmatch(r"mode (\d+)", name)
     return f"{_head('frequency', unit)}_{mode[1]}" if mode else _head(name, unit)
 

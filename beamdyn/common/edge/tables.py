@@ -18,7 +18,7 @@ from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.fitted_table import FittedTable
 from beamdyn.common.edge.progress import quiet
 
-_PIPE_WIDTH = 120  # of tables that go to a file or another program
+_PIPE_WIDTH = 120  # width of tables that go to a file or another program
 
 
 # ASCII for characters of our tables that a console without Unicode may lack.
@@ -39,7 +39,7 @@ _SPELLED = {
 
 
 def spell(text: str, encoding: str) -> str:
-    """Write a text with the characters that an encoding has: "omega^2" where it has no Greek."""
+    """Replace the characters that an encoding lacks: "omega^2" where it has no Greek letters."""
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
@@ -55,7 +55,7 @@ def _spell_character(character: str, encoding: str) -> str:
 
 
 def spell_output(stream: TextIOWrapper) -> None:
-    """Let a stream spell the characters that its encoding lacks, where nothing else has."""
+    """Let a stream replace the characters that its encoding lacks."""
     codecs.register_error("beamdyn.spell", _spell_error)
     stream.reconfigure(errors="beamdyn.spell")
 
@@ -66,9 +66,9 @@ def _spell_error(error: UnicodeError) -> tuple[str, int]:
 
 
 class Terminal(Console):
-    """A console on standard output whose columns are laid out for the characters it has.
+    """A console on standard output whose columns are laid out for the characters that it can show.
 
-    The reader of a pipe may leave.
+    If the reader of a pipe closes it, as `head` does, the command goes on without output.
     """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -84,7 +84,7 @@ class Terminal(Console):
             raise OSError(f"the standard output cannot be written ({error.strerror or error})") from None
 
     def on_broken_pipe(self) -> None:
-        """Print no more to a reader that has closed the pipe, as `head` does, but let the command finish."""
+        """Send further output nowhere, and let the command finish."""
         self.quiet = True
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -125,7 +125,7 @@ def table(
     Parameters
     ----------
     title : str
-        Above it.
+        Title above the table.
     columns : sequence of str
         Headings.
     rows : iterable of sequences of str or Text
@@ -133,7 +133,7 @@ def table(
     left : sequence of int
         Columns that are flush left, such as words; numbers are flush right.
     keys : int
-        Number of first columns that say what a row is.
+        Number of first columns that identify a row.
 
     Returns
     -------

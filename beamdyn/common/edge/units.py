@@ -106,7 +106,7 @@ def _quantity(text: object, unit: str) -> float:
 
 @lru_cache(4096)
 def _known(text: str, unit: str) -> float:
-    """As `quantity`: while a value changes, all others are read again and again."""
+    """As `quantity`, cached: while one input changes, a form reads all others again and again."""
     return _quantity(text, unit)
 
 
@@ -200,7 +200,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """What is wrong with a value that is no number with a unit, and what to give."""
+    """What is wrong with a value that is not a number with a unit, and what to give."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"

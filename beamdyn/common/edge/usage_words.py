@@ -1,21 +1,22 @@
-"""What is wrong with a command line that cannot be understood, in a sentence."""
+"""Messages on command lines that cannot be understood."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Literal, get_args, get_origin
 
 from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
 
-_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # under which options are looked for
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # names under which options are looked for
 _KINDS = {"float": "is not a number", "int": "is not a whole number", "bool": "is no value of a switch"}
 _CONVERSION = re.compile(r'unable to convert "(.*)" into (\w+)')
-_QUOTED_OPTION = re.compile(r'"(--?[\w-]+)"')  # as the lowest version admitted writes them
+_QUOTED_OPTION = re.compile(r'"(--?[\w-]+)"')  # as the oldest version of cyclopts that we admit writes them
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
-    """A sentence on what cannot be understood, and where help is.
+    """Say in a sentence what cannot be understood, and where help is.
 
     Parameters
     ----------
@@ -31,7 +32,15 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
     return f"{said} See {' '.join([app.name[0], *command])} --help."
 
 
+def check_names(given: Sequence[str]) -> None:
+    """Refuse an empty word in place of a file's name, which would be the current folder."""
+    if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
+        raise ValueError('one of the names is empty (""); give the name of a file')
+
+
 def _say(error: CycloptsError, given: Sequence[str]) -> str:
+    if "-" in given:
+        return "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
     if isinstance(error, UnknownOptionError):
         return _with_meant_option(error, given)
     if isinstance(error, UnusedCliTokensError) and error.unused_tokens:
@@ -42,7 +51,7 @@ def _say(error: CycloptsError, given: Sequence[str]) -> str:
 
 
 def _say_kind(error: CoercionError, given: Sequence[str]) -> str:
-    """What a value is not; the lowest version admitted leaves out what a switch is given."""
+    """Say what kind of value is wanted; the oldest cyclopts that we admit omits what a switch is given."""
     start = f"{error.token.keyword}=" if error.token else "="
     joined = next((text.removeprefix(start) for text in given if text.startswith(start)), "")
     return _CONVERSION.sub(
@@ -51,7 +60,7 @@ def _say_kind(error: CoercionError, given: Sequence[str]) -> str:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Words that belong to nothing, most often a unit that the shell has parted from its number."""
+    """Say which words belong to no option, most often a unit that the shell has parted from its number."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -60,7 +69,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """The message, with the option that is meant: under another name, or as it takes the word given."""
+    """Say that an option is unknown, and which is meant: by a known other name, or by the value given."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"

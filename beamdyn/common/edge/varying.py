@@ -19,7 +19,7 @@ _MOST_WORKERS = 128
 
 
 def folder(_: object, tokens: Sequence[Token]) -> Path:
-    """The name of a folder; an empty one would be the current folder."""
+    """Convert the name of a folder, and refuse an empty one, which would be the current folder."""
     if not tokens[0].value.strip():
         raise ValueError("the name is empty; give a folder, or leave the option out.")
     return Path(tokens[0].value)

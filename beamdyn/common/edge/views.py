@@ -1,4 +1,4 @@
-"""What a result looks like: table and picture in a notebook, columns of a data frame, text."""
+"""Views of results: tables and a picture in a notebook, columns of a data frame, text."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-_PLACES = {"beamdyn": "beamdyn.views", "brakes": "brakes.views"}  # of `VIEWS`, by package
-_MOST_ROWS = 30  # of a table in a notebook
-_WIDTH = 120  # letters of a table as text
+_PLACES = {"beamdyn": "beamdyn.views", "brakes": "brakes.views"}  # modules of `VIEWS`, by package
+_MOST_ROWS = 30  # rows of a table in a notebook
+_WIDTH = 120  # characters of a table as text
 _UNIT = re.compile(r"\[([^\[\]]*)\]")
 _NOT_SHOWN = ("provenance", "warnings")
-_DEEPEST = 1  # level of objects within a result whose fields are shown
+_DEEPEST = 1  # deepest level of objects within a result whose fields are shown
 
 Rows = Iterable[Sequence[object]]
 
@@ -45,13 +45,13 @@ class View:
     Parameters
     ----------
     tables : callable, optional
-        Makes the tables and sentences for people.
+        ``tables(result)``: tables and sentences for people.
     rows : callable, optional
-        Yields the rows of the CSV file, heads first.
+        ``rows(result)``: rows of the CSV file, heads first.
     index : int
-        How many of the first columns the others are given over.
+        Number of first columns that are the index of a data frame.
     figure : callable, optional
-        Draws the picture.
+        ``figure(result)``: the picture.
     """
 
     tables: Callable[[Any], RenderableType] | None = None
@@ -85,7 +85,7 @@ def rows_of(result: Result) -> Iterator[Sequence[object]]:
 
 
 def figure_from(result: Result) -> Figure | None:
-    """The picture of a result, with the axes that only it has; None if there is none."""
+    """The picture of a result, by its view or by `plot`; None if it has neither."""
     made = view_of(result).figure
     if made is not None:
         return made(result)
@@ -105,7 +105,7 @@ def text_of(result: Result) -> str:
 
 
 def _in_python(text: str) -> str:
-    """What tables say of the options of a command, in terms of Python."""
+    """A text whose references to options of a command are replaced by methods."""
     return text.replace("--json and --csv", "to_dict and to_pandas").replace("--csv", "to_pandas")
 
 
@@ -134,7 +134,7 @@ def frame_of(result: Result) -> DataFrame:
 
 # Notebooks ------------------------------------------------------------------------------------------
 
-# Colours are those of the page, so that dark ones are as legible; a picture brings its own white ground.
+# Colours are inherited from the page, light or dark; the picture has a white ground of its own.
 _STYLE = """
 .beamdyn-result { overflow-x: auto; }
 .beamdyn-result h3 { font-size: 1em; font-weight: 600; margin: 0.8em 0 0.3em; }
@@ -201,15 +201,13 @@ def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
     """Names, values and units of the public fields; arrays entry by entry."""
     yield "name", "value", "unit"
     for name, value, unit in _named_fields(result):
-        if isinstance(value, np.ndarray) and value.size > 1:
+        if not isinstance(value, np.ndarray) or not value.size:
+            yield name, plain(value), unit
+        elif value.size == 1:
+            yield name, plain(np.ravel(value)[0]), unit
+        else:
             for place, entry in np.ndenumerate(value):
                 yield f"{name}[{','.join(map(str, place))}]", plain(entry), unit
-        else:
-            yield (
-                name,
-                plain(np.ravel(value)[0] if isinstance(value, np.ndarray) and value.size else value),
-                unit,
-            )
 
 
 def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:

@@ -1,4 +1,4 @@
-"""What the core says about a value, in the words of a file: its keys, and degrees for radians."""
+"""Messages of the core about a value, in the terms of a file: its keys, and degrees for radians."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from pydantic import BaseModel
 
 from beamdyn.common.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.units import unit_as_written
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
     rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
 )
+_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
@@ -26,7 +28,7 @@ _SMALLER = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}
 
 @contextmanager
 def of_file(keys: Mapping[str, str]) -> Iterator[None]:
-    """Within it, an `InvalidValue` names the keys of a file in place of the core's names, and degrees.
+    """Within it, an `InvalidValue` names the keys of a file in place of arguments, with angles in degrees.
 
     Parameters
     ----------
@@ -44,12 +46,17 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def in_range(design: BaseModel) -> Iterator[None]:
-    """Within it, numbers that overflow are a ValueError: a mistyped exponent has no answer.
+    """Within it, an overflow raises a ValueError, as a mistyped exponent is the likely cause.
 
     Parameters
     ----------
     design : BaseModel
-        What is computed. The message names its number that is the farthest from 1, if it is a likely cause.
+        The design that is computed. The message names its number farthest from 1, if that is far enough.
+
+    Raises
+    ------
+    ValueError
+        In place of an overflow or a division by zero.
     """
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
@@ -83,22 +90,32 @@ def _decades(number: float) -> float:
 
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
-    """The same about an angle in degrees."""
+    """The same error, about an angle, in degrees."""
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
 
 
 def in_millimetres(error: InvalidValue) -> InvalidValue:
-    """The same about a length below a metre in mm; any other as it is."""
+    """The same error in mm, if it is about a length below a metre; else unchanged."""
     if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
         return error
     limit = None if error.limit is None else 1e3 * error.limit
     return replace(error, value=1e3 * error.value, limit=limit, unit="mm", cases=None)
 
 
+def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
+    """The same in the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
+    if not isinstance(error.value, float):
+        return error
+    last = _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
+    written, convert = unit_as_written(last, error.unit)
+    limit = None if error.limit is None else convert(error.limit)
+    return replace(error, value=convert(error.value), limit=limit, unit=written, cases=None)
+
+
 def in_small_units(sentence: str) -> str:
-    """A sentence of the core with its lengths and angles in mm and degrees, as drawings have them."""
+    """A sentence of the core with its lengths and angles in mm and degrees, as in drawings."""
 
     def convert(found: re.Match[str]) -> str:
         unit, factor = _SMALLER[found[2]]

@@ -1,0 +1,189 @@
+"""An input of a file and the values that it takes, such as "stop.speed=10:30:9 km/h"."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import get_args, get_origin
+
+import numpy as np
+
+from beamdyn.common.designs import Designs, VariedInput
+from beamdyn.common.edge.inputs import Input, parts_of
+from beamdyn.common.edge.units import InvalidInput
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(?::?\s*(log)\b)?\s*([^:]*?)\s*")
+_LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(.*?)\s*")
+MOST_AT_ONCE = 100_000  # designs that are answered together, by arrays
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An input that is varied, and its values.
+
+    Parameters
+    ----------
+    input : Input
+        The input.
+    unit : str
+        Unit in which the values were given.
+    given : ndarray, shape (n,)
+        The values in that unit.
+    values : ndarray, shape (n,)
+        The values in SI.
+    """
+
+    input: Input
+    unit: str
+    given: np.ndarray
+    values: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """Key and unit, for tables and pictures."""
+        return f"{self.input.name} [{self.unit}]" if self.unit else self.input.name
+
+
+@dataclass(frozen=True)
+class Coordinate(Input):
+    """One coordinate of an input that is a point.
+
+    Parameters
+    ----------
+    of : Input
+        The point.
+    place : int
+        Index of the coordinate.
+    """
+
+    of: Input
+    place: int
+
+
+def numbers(inputs: Sequence[Input]) -> list[Input]:
+    """The inputs that can be varied: numbers, and the coordinates of points."""
+    return [number for entry in inputs for number in _numbers(entry)]
+
+
+def _numbers(entry: Input) -> Iterator[Input]:
+    parts = [*parts_of(entry.kind)]
+    if get_origin(entry.kind) is tuple:
+        for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
+            words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
+            path = f"{entry.path}.{axis}"
+            yield Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
+    elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
+        yield entry
+
+
+def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most: int = MOST_AT_ONCE) -> Axis:
+    """Read an input and its values.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+        Those that may be varied.
+    text : str
+        KEY=start:stop:count unit, at equal steps; start:stop:count:log unit, at equal ratios; or a list,
+        KEY=1,2,5 unit.  The key is a path, or its last part where that is unique.
+    option : str
+        Name of the option that gives the text, for messages.
+    most : int
+        Largest count.
+
+    Returns
+    -------
+    Axis
+
+    Raises
+    ------
+    ValueError
+        If there is no such input, or the values do not fit it.
+    """
+    key, _, rest = text.partition("=")
+    words = f'{option} = "{text}"'
+    entry = find_input(inputs, key.strip(), words)
+    if match := _RANGE.fullmatch(rest):
+        return _range(entry, match, words, most)
+    if match := _LIST.fullmatch(rest):
+        return _list(entry, match[1].split(","), match[2], words)
+    unit = f" {entry.quantity.unit}".rstrip()
+    form = f'"{entry.path}=1:2:11{unit}", at equal ratios "1:2:11:log{unit}", or a list, "1,1.5,2{unit}"'
+    raise ValueError(f"{words}: give KEY=start:stop:count unit, e.g. {form}")
+
+
+def _range(entry: Input, match: re.Match[str], words: str, most: int) -> Axis:
+    """Values at equal steps, or at equal ratios."""
+    start, stop, count, unit = float(match[1]), float(match[2]), int(match[3]), match[5]
+    if not 2 <= count <= most or start == stop:
+        raise ValueError(f"{words}: give two different ends, and a count from 2 to {most}")
+    if match[4] and not start * stop > 0:
+        raise ValueError(f"{words}: equal ratios need two ends of one sign, neither of them 0")
+    low, high = (_in_si(entry, number, unit, words) for number in match.group(1, 2))
+    spaced = np.geomspace if match[4] else np.linspace
+    return Axis(entry, unit, spaced(start, stop, count), spaced(low, high, count))
+
+
+def _list(entry: Input, numbers: Sequence[str], unit: str, words: str) -> Axis:
+    values = [_in_si(entry, number.strip(), unit, words) for number in numbers]
+    return Axis(entry, unit, np.array([*map(float, numbers)]), np.array(values))
+
+
+def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
+    """A value in SI, checked against the bounds of the input."""
+    quantity = entry.quantity
+    given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
+    try:
+        return quantity.within_bounds(given, quantity.convert(given))
+    except InvalidInput as error:
+        raise ValueError(f"{words}: {replace(error, field=entry.path)}") from None
+
+
+def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
+    """Find the input with a key: its path, or the last part of it.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+        Those in question.
+    key : str
+        The key.
+    words : str
+        The option as it was given, for messages.
+
+    Raises
+    ------
+    ValueError
+        If no input has this key, or several have.
+    """
+    matches = [i for i in inputs if key in (i.path, i.name)]
+    if all(i.required or i.default is None for i in matches):
+        matches = [i for i in matches if i.required] or matches  # the others follow it, as a second shoe does
+    if len(matches) > 1:
+        raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
+    if not matches:
+        raise ValueError(f"{words}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
+    return matches[0]
+
+
+def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
+    """Sentence on an unknown name, with the nearest known name, or all."""
+    near = difflib.get_close_matches(key, [*names, *more], n=1)
+    advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
+    return f"unknown name {key!r}; {advice}"
+
+
+def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
+    """The designs that varied inputs make, with values in the units given.
+
+    Parameters
+    ----------
+    axes : sequence of Axis
+        The inputs.
+    combine : {"product", "zip"}
+        Whether they are combined each with each, or taken together.
+    """
+    return Designs([VariedInput(axis.input.path, axis.unit, axis.given) for axis in axes], combine)
