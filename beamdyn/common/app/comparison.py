@@ -154,15 +154,15 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
     if not differences:
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(
-        f'<tr><td class="words">{escape(d.words)}</td><td class="number">{escape(d.here)}</td>'
-        f'<td class="number">{escape(d.there)}</td><td class="number">{d.change}</td></tr>'
+        f'<tr><td class="words">{escape(d.words)}</td><td class="number design">{escape(d.here)}</td>'
+        f'<td class="number design">{escape(d.there)}</td><td class="number">{d.change}</td></tr>'
         for d in differences[:_MOST]
     )
     more = len(differences) - _MOST
     said = f"<p>{more} more differ.</p>" if more > 0 else ""
     return (
         f'<div class="scrolls" tabindex="0"><table><thead><tr><th class="words">{escape(what)}</th>'
-        f'<th class="number">here</th><th class="number">{escape(other)}</th>'
+        f'<th class="number">here</th><th class="number design">{escape(other)}</th>'
         f'<th class="number">change</th></tr></thead>'
         f"<tbody>{rows}</tbody></table></div>{said}"
     )

@@ -79,6 +79,7 @@ body {{ font-size: 15px; }}
 .headline dd {{ font-size: 1.5rem; font-weight: 600; line-height: 1.25; margin: 0;
   font-variant-numeric: tabular-nums; }}
 .headline .other {{ font-size: 0.85rem; font-weight: 400; color: var(--soft); display: block; }}
+.shown .design {{ white-space: normal; }}
 .shown {{ display: grid; grid-template-columns: minmax(0, 1fr); gap: 0.5rem 1.5rem; }}
 .pictures, .numbers {{ min-width: 0; width: 100%; flex-wrap: nowrap; }}
 @container (min-width: 1050px) {{
