@@ -35,6 +35,7 @@ def bent_beam(
     label: str = "",
     envelope: Sequence[np.ndarray] = (),
     room: float = 0.0,
+    scale: str = "",
 ) -> Drawing:
     """Draw a beam with its root at the left.
 
@@ -52,6 +53,8 @@ def bent_beam(
         Further deflections as drawn [m], in grey.
     room : float
         Largest deflection as drawn [m] for which to leave room.
+    scale : str
+        To which the deflection is drawn, in words.
     """
     length = float(x[-1])
     half = 0.5 * _DEEP * length
@@ -61,7 +64,6 @@ def bent_beam(
     edge = np.vstack([np.column_stack([x, deflection + half]), np.column_stack([x, deflection - half])[::-1]])
     corners = np.array([[0.0, -room], [1.1 * length, room]])
     shapes: list[DrawnShape] = [
-        Outline(corners, "axis", 0.0),  # room for all that follows
         Outline([(0, 0), (length, 0)], "axis", 0.9, (5.0, 3.0)),
         *(Outline(np.column_stack([x, other]), "ghost", 1.4) for other in envelope),
         *(Outline([tick, tick + back], "ground", 0.9) for tick in ticks),
@@ -71,4 +73,5 @@ def bent_beam(
     ]
     tip = (length, float(deflection[-1]))
     labels = [Label(label, tip, "mark", (1.0, 0.4))] if label else []
-    return Drawing(shapes, labels, title, "A bent beam, drawn along its own axis, clamped at the left")
+    words = "A bent beam, drawn along its own axis, clamped at the left"
+    return Drawing(shapes, labels, title, words, room=corners, scale=scale)

@@ -39,7 +39,7 @@ _MOST_PERIODS = 20_000  # of the first mode at rest in a run
 _PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
 _SAMPLES = 40  # number of the largest samples near which the peak is sought
 _CLOSE = 4  # periods of the first mode before and after the present time in the close-up
-_MOST_SENT = 1000  # points of the whole run on the page
+_MOST_SENT = 4000  # points of the whole run on the page: enough to see its periods when zoomed
 _MODES = 3  # whose resonances are marked
 NEEDS = ("run", *SCENE_TABLES)
 
@@ -163,6 +163,7 @@ def _beam(answer: Playable, place: float, direction: int) -> Drawing:
         unit.say(float(shape[-1]), 3),
         (larger * low, larger * high),
         larger * run.largest,
+        scale,
     )
 
 

@@ -14,7 +14,7 @@ from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.app.chart_options import options_of
+from beamdyn.common.app.chart_options import options_of, thinned
 from beamdyn.common.app.form_entries import tables_of
 from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.input_words import as_on_form
@@ -213,6 +213,15 @@ def test_transient_plays_what_simulate_finds():
     x, y = beam_of(drawing).T
     shape = run.shape(x, [1.0])[0]
     assert np.allclose(y / y[-1], shape / shape[-1], rtol=1e-6, atol=1e-6)
+
+
+def test_every_period_of_a_run_is_seen_when_its_chart_is_zoomed():
+    answer = solved(TRANSIENT)
+    whole, _ = TRANSIENT.charts(answer, 0.5)
+    x, y = thinned(whole.curves[0].x, whole.curves[0].y, whole.curves[0].most)
+    late = answer.run.t > 9.0  # where it vibrates with its first frequency
+    turns = np.count_nonzero(np.diff(np.sign(answer.run.tip[late])))
+    assert np.count_nonzero(np.diff(np.sign(y[x > 9.0]))) == pytest.approx(turns, rel=0.01)
 
 
 def test_transient_marks_the_passage_of_a_resonance():

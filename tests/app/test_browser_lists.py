@@ -66,3 +66,15 @@ def test_a_second_pin_where_the_first_is_can_be_moved_on(clamp):
         button(clamp, "add pin").click()
     expect(field(clamp, "pin.1.at")).to_be_visible()
     expect(clamp.get_by_text("a reason that the program does not know")).to_have_count(0)
+
+
+def test_long_names_leave_the_cells_of_a_part_in_their_place(clamp):
+    part = clamp.locator(".listed-part .cells:visible").last
+    before = part.evaluate("it => it.scrollWidth")
+    field(clamp, "bodies.0.name").fill("the arm that is held by both pins of the frame")
+    field(clamp, "bodies.0.name").press("Tab")
+    expect(clamp.locator(".listed-part", has_text="held by both pins").first).to_be_visible(timeout=20_000)
+    widths = clamp.locator(".listed-part .cells:visible").evaluate_all(
+        "them => them.map(it => it.scrollWidth)"
+    )
+    assert max(widths) <= before

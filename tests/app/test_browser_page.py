@@ -187,3 +187,36 @@ def test_chart_is_zoomed_moved_and_shown_whole_by_keys(opened):
         page.keyboard.press("+")
     pressed("ArrowRight")
     assert pressed("0") == whole
+
+
+def test_all_of_a_chart_is_that_of_the_present_entries(opened):
+    page = opened("beamdyn")
+    chart = page.locator(".chart:visible").first
+    expect(chart.get_by_text("above: from 386 Hz")).to_be_visible()
+    field(page, "radius, r").fill("220 mm")
+    expect(chart.get_by_text("above: from 385.4 Hz")).to_be_visible()
+    box = chart.bounding_box()
+    page.mouse.click(box["x"] + box["width"] - 64, box["y"] + 25)  # the sign "all of it"
+    page.wait_for_timeout(1000)  # a chart of before would stay
+    assert chart.get_by_text("above: from 385.4 Hz").count() == 1
+
+
+def test_long_words_in_a_table_have_a_column_on_a_phone(opened):
+    page = opened("beamdyn")
+    page.set_viewport_size({"width": 390, "height": 844})
+    go(page, "Steady response")
+    cell = page.locator("td:visible", has_text="the equations are linear").first
+    assert cell.bounding_box(timeout=20_000)["width"] >= 150
+
+
+def test_saved_chart_is_a_picture_for_programs_that_know_no_colours_of_the_page(opened):
+    page = opened("beamdyn")
+    chart = page.locator(".chart:visible").first
+    chart.wait_for()
+    box = chart.bounding_box()
+    with page.expect_download(timeout=20_000) as saved:
+        page.mouse.click(box["x"] + box["width"] - 35, box["y"] + 25)  # the sign "save as picture"
+    assert saved.value.suggested_filename == "natural-frequencies-over-speed.svg"
+    text = saved.value.path().read_text()
+    assert "mode 1" in text and "#0072b2" in text
+    assert "var(" not in text and "inherit" not in text

@@ -178,3 +178,27 @@ def test_a_mark_has_its_text_where_curves_leave_room():
     chart = made(marks=[ChartMark(1.0, "critical"), ChartMark(2.0, "the motion's speed", at_foot=True)])
     critical, motion = options_of(chart)["series"][0]["markLine"]["data"]
     assert "position" not in critical["label"] and motion["label"]["position"] == "insideStartTop"
+
+
+def test_what_is_said_at_the_pointer_has_the_units_of_the_axes():
+    label = options_of(made())["xAxis"]["axisPointer"]["label"]
+    assert label["formatter"] == "speed {value} rad/s\nfrequency [Hz]"
+
+
+def channels(colour):
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_colours_of_curves_are_told_apart(dark):
+    more = re.findall(r":(#[0-9a-f]{6})", chart_colours(":root", dark))
+    inks = [INKS[role] for role in ("normal", "friction", "reaction")]
+    colours = [channels(each) for each in (*(ink.dark_line if dark else ink.line for ink in inks), *more)]
+    apart = [np.abs(a - b).max() for i, a in enumerate(colours) for b in colours[:i]]
+    assert min(apart) >= 60
+
+
+def test_curves_stay_what_they_are_whichever_way_they_are_zoomed():
+    options = options_of(made())
+    zooms = [*options["dataZoom"], options["toolbox"]["feature"]["dataZoom"]]
+    assert [zoom["filterMode"] for zoom in zooms] == ["none", "none"]  # points outside are kept

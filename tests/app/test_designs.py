@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.app import tasks
 from beamdyn.common.app.browser_memory import named_designs, read_typed, refused_name
@@ -31,6 +32,7 @@ from beamdyn.common.app.handles import draw_sheet
 from beamdyn.common.app.history import History
 from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.tables import table
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]
@@ -202,6 +204,33 @@ def test_results_that_differ_are_those_of_the_answers(compared):
     assert [*result_differences(here.tables, here.tables)] == []
 
 
+HEADS = "speed [rad/s]", "deflection [mm]", "status"
+
+
+@pytest.mark.parametrize(
+    "here, there, found",
+    [
+        (
+            [("1.0", "2", "stable"), ("5.0", "3", "stable"), ("7.0", "4", "stable"), ("9.0", "5", "stable")],
+            [("1.0", "2", "stable"), ("5.0", "6", "stable"), ("8.0", "7", "stable"), ("9.0", "8", "peak")],
+            [
+                ("speed [rad/s] 5.0, deflection [mm]", "3", "6"),
+                ("speed [rad/s] 9.0, deflection [mm]", "5", "8"),
+            ],
+        ),
+        (
+            [("1.0", "2", "road"), ("4.0", "3", "road")],
+            [("1.5", "2", "road"), ("4.0", "6", "road")],
+            [("road, row 1, speed [rad/s]", "1.0", "1.5"), ("road, row 2, deflection [mm]", "3", "6")],
+        ),
+    ],
+    ids=["curve", "few"],
+)
+def test_rows_that_have_the_same_words_are_compared_at_the_same_place(here, there, found):
+    tables = ([table("Response", HEADS, rows, left=(2,))] for rows in (here, there))
+    assert [(d.words, d.here, d.there) for d in result_differences(*tables)] == found
+
+
 @pytest.mark.parametrize(
     "here, there, change",
     [
@@ -242,6 +271,17 @@ def test_ghost_lies_beneath_and_keeps_to_its_role(compared):
     assert {shape.role for shape in drawn.shapes[:number]} == {"other"}
     assert drawn.shapes[number:] == list(here[0][0].shapes)
     assert drawn.legend["other"] == "fast"
+
+
+def test_ghost_of_a_bent_beam_says_its_scale_and_has_no_lines_that_are_not_drawn():
+    x = np.linspace(0.0, 1.0, 5)
+    here, there = (
+        bent_beam(x, 0.1 * x**2, "At 1 s", room=0.2, scale=f"drawn {n} times larger") for n in (2, 5)
+    )
+    drawn = with_ghost([[here]], [[there]], "thick")[0][0]
+    assert drawn.legend["other"] == "thick, drawn 5 times larger"
+    assert with_ghost([[here]], [[here]], "thick")[0][0].legend["other"] == "thick"
+    assert max(np.abs(np.asarray(s.points)[:, 1]).max() for s in drawn.shapes if s.role == "other") < 0.15
 
 
 def test_markup_in_names_and_values_stays_text():

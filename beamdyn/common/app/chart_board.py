@@ -39,6 +39,18 @@ _KEYS = """(event) => {
   chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
 }"""
 
+# Saves what is seen, on paper: programs that draw and write know neither the page's colours nor its letters.
+_SAVE = """(model, api) => {
+  const [head, ...seen] = api.getDataURL({excludeComponents: ["toolbox"]}).split(",");
+  const picture = decodeURIComponent(seen.join(",")).replace('fill="none"', 'fill="#ffffff"')
+    .replace(/var\\(--[\\w-]+,(#\\w+|none)\\)/g, "$1")
+    .replace(/font-family: ?inherit/g, "font-family:sans-serif");
+  const name = model.getComponent("toolbox").get(["feature", "mySave", "name"]);
+  const link = Object.assign(document.createElement("a"),
+    {href: `${head},${encodeURIComponent(picture)}`, download: `${name}.svg`});
+  link.click();
+}"""
+
 _NO_TOOLBOX = {"toolbox": {"show": False}}  # while something is held: it would be made anew for each picture
 
 
@@ -51,6 +63,8 @@ class _ShownChart:
         self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
         self._element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self._element.on("keydown", js_handler=_KEYS % self._element.id)
+        # What the component restores is what it was given first: the present data follow.
+        self._element.on("chart:restore", self.update, args=[])
 
     @property
     def id(self) -> int:
@@ -65,7 +79,7 @@ class _ShownChart:
     def fill(self, chart: Chart) -> None:
         """Show another chart."""
         self.heading.set_text(chart.title)
-        last, self._options = self._options, options_of(chart)
+        last, self._options = self._options, _with_saving(options_of(chart))
         with self._element.props.suspend_updates():
             self._element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
@@ -83,7 +97,8 @@ class _ShownChart:
 
     def move_cursor(self, chart: Chart) -> None:
         """Show the marks of a chart, of which nothing else has changed."""
-        self._element.run_chart_method("setOption", {"series": [marks_of(chart)]})
+        self._options["series"][0] = marks_of(chart)
+        self._element.run_chart_method("setOption", {"series": self._options["series"][:1]})
 
 
 class ChartBoard:
@@ -127,6 +142,12 @@ class ChartBoard:
                 made.move_cursor(chart)
             else:
                 made.fill(chart)
+
+
+def _with_saving(options: dict[str, Any]) -> dict[str, Any]:
+    """Options whose sign for saving does so."""
+    options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
+    return options
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:

@@ -17,8 +17,8 @@ _MOST_DIGITS = 10  # of a curve that varies little
 _WIDE = 0.15  # of the axis: a narrower band has no room for its text
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
 # Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
-_MORE = {"chart-4": "#a3527f", "chart-5": "#8a6100", "chart-6": "#1b7fb0"}
-_MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f0b429", "chart-6": "#8ad0f5"}
+_MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
+_MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
 # What the chart component rounds steps of an axis to, for leading digits below a number.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
@@ -26,6 +26,7 @@ _FEW = 8  # decades of an axis up to which its small ticks are drawn, too
 _NAMED, _PALE = 12, 11  # sizes of letters [px]
 _WIDE_CHART = 700  # from which on a chart is wide [px]
 _LETTERS, _LETTERS_WIDE = 52, 100  # in a row of the legend of a narrow chart, and of a wide one
+_SAVE_SIGN = "path://M4.7,22.9L29.3,45.5L54.7,23.4M4.6,43.6L4.6,58L53.8,58L53.8,43.6M29.2,45.1L29.2,0"
 _DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # of curves that are compared with, in turn
 
 
@@ -72,7 +73,7 @@ def options_of(chart: Chart) -> dict[str, Any]:
         "dataZoom": [{"type": "inside", "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "ctrl",
                       "moveOnMouseWheel": False, "preventDefaultMouseMove": False,
                       "filterMode": "none"}],
-        "xAxis": _axis(chart.x, [curve.x for curve in chart.curves], 28, "middle"),
+        "xAxis": _axis(chart.x, [curve.x for curve in chart.curves], 28, "middle") | _pointed(chart),
         "yAxis": _axis(chart.y, [curve.y for curve in chart.curves], 12, "end"),
         "series": [*_series(chart)],
     }  # fmt: skip
@@ -103,12 +104,18 @@ def _axis(axis: ChartAxis, values: Sequence[Any], gap: float, place: str) -> dic
         "axisTick": {"show": True, "lineStyle": {"color": _paint("axis")}},
         "splitLine": {"show": True, "lineStyle": {"color": _paint("ghost"), "width": 0.6}},
         "minorTick": {"show": False},
-        "axisPointer": {"label": {"show": False}, "lineStyle": {"color": _paint("axis")}},
         "scale": upright,
     }
     return (
         _over_decades(made, axis, values) if axis.logarithmic else made | {"min": axis.low, "max": axis.high}
     )
+
+
+def _pointed(chart: Chart) -> dict[str, Any]:
+    """The line at the pointer, and the heading of what is said there: quantities and units."""
+    heading = f"{chart.x.name} {{value}} {chart.x.unit}".rstrip() + f"\n{chart.y.title}"
+    line = {"color": _paint("axis")}
+    return {"axisPointer": {"label": {"show": False, "formatter": heading}, "lineStyle": line}}
 
 
 def _numbers(axis: ChartAxis) -> dict[str, Any]:
@@ -192,13 +199,9 @@ def _toolbox(chart: Chart) -> dict[str, Any]:
         "iconStyle": {"borderColor": _paint("dimension")},
         "emphasis": {"iconStyle": {"borderColor": _paint("normal"), "textFill": _paint("text")}},
         "feature": {
-            "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}},
+            "dataZoom": {"title": {"zoom": "zoom: draw a box", "back": "zoom back"}, "filterMode": "none"},
             "restore": {"title": "all of it"},
-            "saveAsImage": {
-                "title": "save as picture",
-                "name": name or "chart",
-                "backgroundColor": PAPER.area,
-            },
+            "mySave": {"title": "save as picture", "name": name or "chart", "icon": _SAVE_SIGN},
         },
     }
 

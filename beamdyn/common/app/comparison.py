@@ -97,15 +97,47 @@ def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
 
 
 def _cells_that_differ(one: Table, other: Table) -> Iterator[Difference]:
-    """Cells of the same row and column that differ; rows are matched by their words, or else by number."""
-    theirs = dict(_rows(other))
-    for name, cells in _rows(one):
-        there = theirs.get(name, cells)
-        yield from (Difference(name + head, a, there[head]) for head, a in cells.items() if a != there[head])
+    """Cells of the same row and column."""
+    here, there = [*_rows(one)], [*_rows(other)]
+    name_of = _naming(here, there)
+    theirs = {name_of(row): row.numbers for row in there}
+    for row in here:
+        numbers = theirs.get(name_of(row), row.numbers)
+        name = name_of(row) + row.unit
+        yield from (Difference(name + h, a, numbers[h]) for h, a in row.numbers.items() if a != numbers[h])
 
 
-def _rows(table: Table) -> Iterator[tuple[str, dict[str, str]]]:
-    """Name of each row, and its numbers by the heads of their columns ("" for a single column)."""
+class _Row(NamedTuple):
+    """A row of a table: its number, words and unit, and its numbers by the heads of their columns."""
+
+    number: int
+    words: str
+    unit: str
+    numbers: dict[str, str]
+
+    @property
+    def place(self) -> str:
+        """Its first number, such as the speed of which the others are results."""
+        head, text = next(iter(self.numbers.items()), ("", ""))
+        return f"{head.removeprefix(', ')} {text}"
+
+    @property
+    def counted(self) -> str:
+        """Its words and its number."""
+        return ", ".join(filter(None, (self.words, f"row {self.number}")))
+
+
+def _naming(here: Sequence[_Row], there: Sequence[_Row]) -> Callable[[_Row], str]:
+    """What rows of two tables are known by: words of their own, else places that both have, else numbers."""
+    if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
+        return lambda row: row.words or row.counted
+    common = {row.place for row in here} & {row.place for row in there}
+    by_place = len(common) > 1 and len(here[0].numbers) > 1
+    return (lambda row: row.place) if by_place else (lambda row: row.counted)
+
+
+def _rows(table: Table) -> Iterator[_Row]:
+    """Rows of a table; the head is "" of a single column of numbers."""
     heads = [str(column.header) for column in table.columns]
     words = {head for head, column in zip(heads, table.columns, strict=True) if column.justify == "left"}
     single = len(heads) - len(words) == 1
@@ -113,10 +145,8 @@ def _rows(table: Table) -> Iterator[tuple[str, dict[str, str]]]:
         cells = {head: str(cell) for head, cell in zip(heads, row, strict=True)}
         name = ", ".join(cells[head] for head in heads if head in words - {"unit"} and cells[head])
         unit = f" [{cells['unit']}]" if cells.get("unit") else ""
-        yield (
-            f"{name or f'row {number}'}{unit}",
-            {"" if single else f", {head}": cells[head] for head in heads if head not in words},
-        )
+        numbers = {"" if single else f", {head}": cells[head] for head in heads if head not in words}
+        yield _Row(number, name, unit, numbers)
 
 
 def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
@@ -124,15 +154,15 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
     if not differences:
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(
-        f'<tr><td class="words">{escape(d.words)}</td><td class="number">{escape(d.here)}</td>'
-        f'<td class="number">{escape(d.there)}</td><td class="number">{d.change}</td></tr>'
+        f'<tr><td class="words">{escape(d.words)}</td><td class="number design">{escape(d.here)}</td>'
+        f'<td class="number design">{escape(d.there)}</td><td class="number">{d.change}</td></tr>'
         for d in differences[:_MOST]
     )
     more = len(differences) - _MOST
     said = f"<p>{more} more differ.</p>" if more > 0 else ""
     return (
         f'<div class="scrolls" tabindex="0"><table><thead><tr><th class="words">{escape(what)}</th>'
-        f'<th class="number">here</th><th class="number">{escape(other)}</th>'
+        f'<th class="number">here</th><th class="number design">{escape(other)}</th>'
         f'<th class="number">change</th></tr></thead>'
         f"<tbody>{rows}</tbody></table></div>{said}"
     )
@@ -194,7 +224,8 @@ def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
 
 def _with_ghost(drawing: Drawing, other: Drawing, name: str) -> Drawing:
     ghosts = [_ghost(s) for s in other.shapes if isinstance(s, Outline | Disc)]
-    key = {**drawing.key, "other": name[:40]}
+    said = [name[:40], other.scale] if other.scale != drawing.scale else [name[:40]]
+    key = {**drawing.key, "other": ", ".join(said)}
     return replace(drawing, shapes=[*ghosts, *drawing.shapes], key=key)
 
 

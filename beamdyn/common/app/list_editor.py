@@ -19,7 +19,7 @@ STYLE = """
 .listed { display: flex; gap: 4px; align-items: start; width: 100%; }
 .listed > .q-field { flex: 1 1 0; min-width: 0; }
 .listed-part { border-left: 3px solid #0072B2; padding-left: 6px; width: 100%; }
-.listed-part .cells { display: grid; grid-template-columns: 1fr 1fr; gap: 4px 6px; }
+.listed-part .cells { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 4px 6px; }
 .left .lists .nicegui-expansion-content { display: flex; flex-direction: column; gap: 6px; }
 .lists .rows { gap: 6px; }
 .lists .rows:empty { display: none; }

@@ -79,6 +79,7 @@ body {{ font-size: 15px; }}
 .headline dd {{ font-size: 1.5rem; font-weight: 600; line-height: 1.25; margin: 0;
   font-variant-numeric: tabular-nums; }}
 .headline .other {{ font-size: 0.85rem; font-weight: 400; color: var(--soft); display: block; }}
+.shown .design {{ white-space: normal; }}
 .shown {{ display: grid; grid-template-columns: minmax(0, 1fr); gap: 0.5rem 1.5rem; }}
 .pictures, .numbers {{ min-width: 0; width: 100%; flex-wrap: nowrap; }}
 @container (min-width: 1050px) {{
@@ -140,6 +141,7 @@ _NARROW = """
   .slider .q-slider__marker-labels { white-space: normal; width: 5.2rem; text-align: center;
     font-size: 0.8rem; line-height: 1.15; }
   .headline dd { font-size: 1.25rem; }
+  .shown .sentence { min-width: 11rem; }
   .nicegui-content { padding: 0.25rem 0.5rem 1rem; }
   .section .q-btn { min-width: 40px; min-height: 40px; }
   .handle::after { inset: -14px; }

@@ -173,6 +173,8 @@ class Drawing:
         Further points that the drawing has room for, such as those of other positions.
     own_scale : bool
         Whether its scale differs from that of others in its row, as in a detail.
+    scale : str
+        Scale of the deflections in words, where it is not that of lengths.
     """
 
     shapes: Sequence[DrawnShape]
@@ -185,6 +187,7 @@ class Drawing:
     points: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     room: Any = ()
     own_scale: bool = False
+    scale: str = ""
 
     @property
     def legend(self) -> dict[str, str]:

@@ -14,6 +14,8 @@ import numpy as np
 
 from beamdyn.common.checks import reason_of
 
+_SENTENCE = 36  # letters from which on the words of a cell are a sentence
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
@@ -126,11 +128,14 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    made = (
-        f'<{tag} class="{"words" if w else "number"}">{cell}</{tag}>'
-        for cell, w in zip(cells, words, strict=True)
-    )
+    kinds = (_kind(cell) if w else "number" for cell, w in zip(cells, words, strict=True))
+    made = (f'<{tag} class="{kind}">{cell}</{tag}>' for cell, kind in zip(cells, kinds, strict=True))
     return f"<tr>{''.join(made)}</tr>"
+
+
+def _kind(cell: str) -> str:
+    """Classes of a cell with words: a sentence is not set one word below the other."""
+    return "words sentence" if len(cell) > _SENTENCE else "words"
 
 
 def csv_text(rows: Iterable[Sequence[object]], delimiter: str = ",") -> str:
