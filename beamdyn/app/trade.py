@@ -185,10 +185,10 @@ def headline(answer: Trade) -> Sequence[str]:
 
 
 def cheapest_in_all(answer: Trade) -> str:
-    """The cheapest model that keeps the digits with its physics, in words."""
+    """The cheapest model that keeps the digits with its physics, and its time, in words."""
     diagram = answer.of_physics if answer.of_physics.measurements else answer.numerical
     digit = answer.cheapest(diagram)
-    return "none measured" if digit is None else f"{_physics(digit.family)}, {digit.setting}"
+    return "none measured" if digit is None else _say(digit)
 
 
 def _physics(family: str) -> str:

@@ -21,6 +21,7 @@ ELSEWHERE |= {
     "Provenance",
     "Result",
     "Entry",
+    "EquivalentRange",
     "Diagram",
     "LinearSystem",
     "ModalSystem",
