@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -60,6 +61,7 @@ def large_deflection_change(
     except InvalidValue as refusal:
         reason = REFUSED.get(refusal.field, HINGED)
         return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), reason
+    _follow_branch(bent, speeds)
     each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
     reasons = dict.fromkeys(reason for _, reason in each if reason)
     return np.array([change for change, _ in each]), next(iter(reasons), "")
@@ -75,6 +77,15 @@ def comparable(scene: Scene) -> tuple[Scene, Scene]:
     kept = Physics(rotary_inertia=scene.physics.rotary_inertia)
     straight = replace(scene, physics=kept)
     return straight, replace(straight, physics=replace(kept, large_deflection=True))
+
+
+def _follow_branch(bent: Model, speeds: np.ndarray) -> None:
+    """Have the solver find the equilibria at all speeds along one branch; it keeps them.
+
+    Where the branch does not reach all speeds, none is kept, and each is sought by itself.
+    """
+    with suppress(ArithmeticError, np.linalg.LinAlgError):
+        bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
 
 
 def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, str]:

@@ -105,7 +105,8 @@ body {{ font-size: 15px; }}
   padding-left: 0.5rem; }}
 .mistake:empty {{ display: none; }}
 .warning {{ color: var(--careful); border-left: 4px solid #E69F00; padding-left: 0.5rem; }}
-.greyed {{ opacity: 0.45; filter: grayscale(1); }}
+/* After a while: an answer that comes soon is painted once. */
+.greyed {{ opacity: 0.45; filter: grayscale(1); transition: opacity 0s 0.3s, filter 0s 0.3s; }}
 .slider {{ padding: 0 4.5rem; }}
 .slider .q-slider__marker-labels {{ white-space: nowrap; }}
 .drawing-frame {{ overflow-x: auto; }}
@@ -125,7 +126,7 @@ _NARROW = """
   .nicegui-header .q-tabs { order: 9; width: 100%; }
   .screen { display: flex; flex-direction: column; gap: 0.75rem; }
   .right, .shown { display: contents; }
-  .shown.greyed > * { opacity: 0.45; filter: grayscale(1); }
+  .shown.greyed > * { opacity: 0.45; filter: grayscale(1); transition: opacity 0s 0.3s, filter 0s 0.3s; }
   .screen > *, .right > *, .shown > * { width: 100%; }
   .head { order: 1; }
   .pictures { order: 2; }
