@@ -240,7 +240,9 @@ def _check_point_springs(scene: Scene) -> None:
 
 # Damper at the tip --------------------------------------------------------------------------------
 
-_MOST_DAMPING = 1e6  # damper over sqrt(EI m / L^3): beyond, rounding hides how slowly the tip gives way
+_MOST_DAMPING = (
+    1e6  # damper over sqrt(EI m / L^3); with more, rounding errors exceed the decay rate of the tip
+)
 
 
 def _check_damper(scene: Scene) -> None:
@@ -249,8 +251,8 @@ def _check_damper(scene: Scene) -> None:
     mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
     mass += 0.0 if beam.tip is None else beam.tip.mass
     most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
-    bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) of the beam of mass m: the tip is still beyond"
-    refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "lessen it", limit=most)
+    bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) with mass m: with more the tip does not move"
+    refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
 
 # Properties that the physics needs ----------------------------------------------------------------

@@ -107,7 +107,7 @@ def _cells_that_differ(one: Table, other: Table) -> Iterator[Difference]:
         yield from (Difference(name + h, a, numbers[h]) for h, a in row.numbers.items() if a != numbers[h])
 
 
-class _Row(NamedTuple):
+class _TableRow(NamedTuple):
     """A row of a table: its number, words and unit, and its numbers by the heads of their columns."""
 
     number: int
@@ -127,7 +127,7 @@ class _Row(NamedTuple):
         return ", ".join(filter(None, (self.words, f"row {self.number}")))
 
 
-def _naming(here: Sequence[_Row], there: Sequence[_Row]) -> Callable[[_Row], str]:
+def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
     """What rows of two tables are known by: words of their own, else places that both have, else numbers."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
@@ -136,7 +136,7 @@ def _naming(here: Sequence[_Row], there: Sequence[_Row]) -> Callable[[_Row], str
     return (lambda row: row.place) if by_place else (lambda row: row.counted)
 
 
-def _rows(table: Table) -> Iterator[_Row]:
+def _rows(table: Table) -> Iterator[_TableRow]:
     """Rows of a table; the head is "" of a single column of numbers."""
     heads = [str(column.header) for column in table.columns]
     words = {head for head, column in zip(heads, table.columns, strict=True) if column.justify == "left"}
@@ -146,7 +146,7 @@ def _rows(table: Table) -> Iterator[_Row]:
         name = ", ".join(cells[head] for head in heads if head in words - {"unit"} and cells[head])
         unit = f" [{cells['unit']}]" if cells.get("unit") else ""
         numbers = {"" if single else f", {head}": cells[head] for head in heads if head not in words}
-        yield _Row(number, name, unit, numbers)
+        yield _TableRow(number, name, unit, numbers)
 
 
 def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
