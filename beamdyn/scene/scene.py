@@ -240,9 +240,8 @@ def _check_point_springs(scene: Scene) -> None:
 
 # Damper at the tip --------------------------------------------------------------------------------
 
-_MOST_DAMPING = (
-    1e6  # damper over sqrt(EI m / L^3); with more, rounding errors exceed the decay rate of the tip
-)
+# Damper over sqrt(EI m / L^3): with more, rounding errors exceed the decay rate of the tip.
+_MOST_DAMPING = 1e6
 
 
 def _check_damper(scene: Scene) -> None:
