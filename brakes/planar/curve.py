@@ -26,7 +26,8 @@ class Node(NamedTuple):
 
     y, tangent : (3 n,), coordinates and unit tangent.
     value, rate : (loads,), coordinates of the loads, and their derivatives along the curve.
-    regularity : determinant of constraints and tangent, 0 where motions branch (1 if they are not square).
+    regularity : smallest singular value of constraints and tangent over the largest, with the sign of their
+        determinant: 0 where motions branch (1 if they are not square).
     """
 
     y: np.ndarray
@@ -46,9 +47,16 @@ def node_at(system: System, y: np.ndarray, before: np.ndarray) -> Node:
     joints, loads = rows.gradient[0, : system.constraints], list(system.loads.values())
     tangent = np.linalg.svd(joints)[2][-1]
     tangent = tangent if tangent @ before > 0 else -tangent
-    square = len(joints) + 1 == len(y)
-    regularity = float(np.linalg.det(np.vstack((joints, tangent)))) if square else 1.0
+    regularity = _regularity(np.vstack((joints, tangent)))
     return Node(y, tangent, rows.value[0, loads], rows.gradient[0, loads] @ tangent, regularity)
+
+
+def _regularity(matrix: np.ndarray) -> float:
+    """Smallest singular value over the largest, with the sign of the determinant (1 if not square)."""
+    if matrix.shape[0] != matrix.shape[1]:
+        return 1.0
+    size = np.linalg.svd(matrix, compute_uv=False)
+    return float(np.linalg.slogdet(matrix).sign * size[-1] / size[0])
 
 
 def follow(system: System, node: Node) -> Iterator[Node]:

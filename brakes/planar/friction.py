@@ -25,6 +25,8 @@ from brakes.planar.system import System
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
 _SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as jammed
 _TINY = np.finfo(float).tiny
+_UNPRESSED = 1e-7  # force, over the largest, up to which a joint counts as pressing with none
+_DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length
 
 
 @dataclass(frozen=True)
@@ -131,19 +133,62 @@ def _branch(
     """Equilibrium with friction that opposes sliding of the given signs."""
     system = mechanism.system
     start = np.atleast_2d(without.multiplier / system.unit)
-    multiplier, jammed = _newton(system, balance, start, sliding)
     load = int(balance.unknown[-1])  # mobility 1 and a determined equilibrium leave one unknown load
+    law = -sliding * system.coefficient
+    unpressed, jams = _jams_when_disturbed(system, balance, start, law)
+    multiplier, jammed = _newton(system, balance, start, np.where(jams[:, None] & unpressed, 0.0, law))
     reversed_ = _reversed(system, load, start, multiplier) & ~jammed
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
     result = collect_result(position, balance, forces, multiplier, jammed)
     name = mechanism.loads[load - system.constraints].name
+    jams &= ~jammed
+    if jams.any():
+        result = replace(result, warnings=(*result.warnings, _warn_of_jamming(mechanism, unpressed[jams], jams)))
     words = _explain(name, list(mechanism.friction), jammed, reversed_)
     if not words:
         return result
     if set(result.open_or_slack) - {name}:  # a cable that would have to push back is what locks
         return replace(result, message=f"{result.message}; {words}")
     return replace(result, status="self-locking", message=words)
+
+
+def _jams_when_disturbed(
+    system: System, balance: Balance, start: np.ndarray, law: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frictions (S, F) whose joints press with no force, and where (S,) the least disturbance would jam them.
+
+    Where loads act exactly in line, a joint presses with no force, whose direction is rounding.  Then two
+    equilibria are there: without pressure, and jammed.  The latter needs a disturbance, however small, such as
+    an offset of a load: a couple on a body, tried on each body in either sense.
+    """
+    multiplier, jammed = _newton(system, balance, start, np.where(_unpressed(system, start), 0.0, law))
+    unpressed = _unpressed(system, start) & _unpressed(system, multiplier) & (law != 0) & ~jammed[:, None]
+    jams = np.zeros(len(start), bool)
+    if not unpressed.any():
+        return unpressed, jams
+    size = _DISTURBANCE * np.abs(start).max(axis=1, keepdims=True)
+    for coordinate in range(2, system.size, 3):
+        for sense in (-1.0, 1.0):
+            offset = np.zeros((len(start), system.size))
+            offset[:, [coordinate]] = sense * size
+            jams |= _newton(system, balance, multiplier, law, offset)[1]
+    return unpressed, jams & unpressed.any(axis=1)
+
+
+def _unpressed(system: System, multiplier: np.ndarray) -> np.ndarray:
+    """Which frictions (S, F) have a joint that presses with no force, but for rounding."""
+    size = np.array([np.linalg.norm(multiplier[:, rows], axis=1) for rows in system.pressing]).T
+    return size.reshape(len(multiplier), -1) <= _UNPRESSED * np.abs(multiplier).max(axis=1, keepdims=True)
+
+
+def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> str:
+    names = [name for name, zero in zip(mechanism.friction, unpressed.any(axis=0), strict=True) if zero]
+    return (
+        f"{join_names(map(repr, names))} {'press' if len(names) > 1 else 'presses'} with no force{tell_where(jams)} "
+        "because the loads act exactly in line; any offset of a load, however small, jams the mechanism: "
+        "reduce friction, or guide it over a greater length"
+    )
 
 
 def _reversed(system: System, load: int, start: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
@@ -170,10 +215,13 @@ def _explain(load: str, rubbing: list[str], jammed: np.ndarray, reversed_: np.nd
 
 
 def _newton(
-    system: System, balance: Balance, start: np.ndarray, sliding: np.ndarray
+    system: System, balance: Balance, start: np.ndarray, full: np.ndarray, offset: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Multipliers (S, R) with friction, and where the mechanism jams, so that there are none (S,)."""
-    multiplier, full = start.copy(), -sliding * system.coefficient
+    """Multipliers (S, R) with friction, and where the mechanism jams, so that there are none (S,).
+
+    The friction is `full` (S, F) times the force that presses; `offset` (S, 3 n) are further forces on bodies.
+    """
+    multiplier = start.copy()
     sign = np.linalg.slogdet(balance.matrix).sign
     jammed = np.zeros(len(start), bool)
     for part in _RISE:
@@ -182,7 +230,7 @@ def _newton(
             residual, slope = _friction(system, balance, multiplier, part * full)
             jammed |= np.linalg.slogdet(slope).sign != sign  # past a singular matrix: another branch
             slope[jammed] = np.eye(slope.shape[1])
-            step = np.linalg.solve(slope, residual[..., None])[..., 0]
+            step = np.linalg.solve(slope, (residual + offset)[..., None])[..., 0]
             step[jammed] = 0.0
             multiplier[:, balance.unknown] -= step
             size = np.abs(step).max(axis=1) / np.maximum(np.abs(multiplier).max(axis=1), _TINY)

@@ -25,7 +25,7 @@ from brakes.planar.diagnosis import (
     join_names,
     moving_bodies,
 )
-from brakes.planar.linear import decompose, times
+from brakes.planar.linear import decompose, rank_tolerance, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.system import System
 
@@ -343,7 +343,7 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
     if free.shape[1] != 1:
         raise ValueError(explain_mobility(system, y, free))
     node = node_at(system, y[0], free[:, 0])
-    if abs(node.rate[k]) < 1e-9:
+    if abs(node.rate[k]) < rank_tolerance(system.rounding):
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
     return system, node if node.rate[k] > 0 else node.reversed(), k
 
@@ -380,7 +380,8 @@ def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y
     names, k = list(system.loads), list(system.loads).index(driver)
     index = list(system.loads.values())
     rate = times(rows.gradient[:, index], tangent)
-    single = (constraints.rank == system.size - 1)[:, None] & (rate[:, [k]] != 0)
+    moves = np.abs(rate[:, [k]]) > rank_tolerance(system.rounding)
+    single = (constraints.rank == system.size - 1)[:, None] & moves
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
     unit = _units(system)
     known = [load.has_coordinate for load in mechanism.loads]
@@ -400,20 +401,27 @@ def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y
 def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tuple[Toggle, ...]:
     """Positions between the nodes at which a load's coordinate reverses, or motions branch."""
     system, toggles = mechanism.system, []
+    still = rank_tolerance(system.rounding)  # of rates per unit of motion, and of singular values
     for j, load in enumerate(system.loads):
-        for node in _zeros(system, nodes, lambda n, j=j: n.rate[j]):
+        for node in _zeros(system, nodes, lambda n, j=j: n.rate[j], still):
             toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, load))
-    for node in _zeros(system, nodes, lambda n: n.regularity):
+    for node in _zeros(system, nodes, lambda n: n.regularity, still):
         toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, None))
     return tuple(toggles)
 
 
-def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float]) -> list[Node]:
-    """Roots of a function of the nodes, one for each change of its sign."""
+def _zeros(
+    system: System, nodes: list[Node], function: Callable[[Node], float], still: float
+) -> list[Node]:
+    """Roots of a function of the nodes, one for each change of its sign.
+
+    Values up to `still` count as zero: a node there has no sign, and no root is passed before the first or
+    after the last node that has one.
+    """
     f = np.array([function(node) for node in nodes])
-    noise = 1e-9 * np.abs(f).max()
-    crossed = np.flatnonzero((f[:-1] * f[1:] < 0) & (np.abs(np.diff(f)) > noise))
-    return [find_zero(system, nodes[i], nodes[i + 1], function) for i in crossed]
+    signed = np.flatnonzero(np.abs(f) > still)
+    changes = np.flatnonzero(f[signed[:-1]] * f[signed[1:]] < 0)
+    return [find_zero(system, nodes[signed[i]], nodes[signed[i + 1]], function) for i in changes]
 
 
 def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | None) -> Toggle:

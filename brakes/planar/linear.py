@@ -50,12 +50,17 @@ def times(a: np.ndarray, x: np.ndarray) -> np.ndarray:
     return (a @ x[..., None])[..., 0]
 
 
+def rank_tolerance(rounding: float) -> float:
+    """Size, relative to the largest, up to which singular values and motions count as zero."""
+    return max(RANK_TOLERANCE, 100 * rounding)
+
+
 def decompose(a: np.ndarray, rounding: float) -> Decomposition:
     """Singular values, vectors and rank of matrices (S, m, n) whose entries have a relative rounding."""
     u, s, vt = np.linalg.svd(a)
     padded = np.concatenate((s, np.zeros((len(s), 1))), axis=1)
     largest = np.maximum(padded[:, :1], np.finfo(float).tiny)
     relative = padded / largest
-    rank = (relative > max(RANK_TOLERANCE, 100 * rounding)).sum(axis=1)
+    rank = (relative > rank_tolerance(rounding)).sum(axis=1)
     each = np.arange(len(s))
     return Decomposition(u, s, vt, rank, relative[each, np.maximum(rank - 1, 0)], relative[each, rank])

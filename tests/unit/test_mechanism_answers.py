@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import cmath
 import csv
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -361,13 +363,34 @@ def test_what_a_caliper_does_not_reach_is_said_as_its_file_and_form_have_it(tabl
     assert str(refused.value) == said
 
 
-def test_places_and_toggles_are_said_in_the_units_of_the_drawing():
+def test_places_are_said_in_the_units_of_the_drawing():
     tables = tomllib.loads(CLAMP)
     tables["points"]["B"] = ["20 mm", "20 mm"]
     answer = MECHANISM.answer(tables, "test")
     assert "handle turns about (20, 20) mm" in answer.refusals[0]
     assert "turns about (20, 20) mm" in str(answer.tables()[-1])
-    assert answer.warnings[0].startswith("toggle position of 'work' at driver value 2.80925 mm: ")
+    assert not answer.warnings  # the work stands still all the time: no toggle position
+
+
+def hand_where_the_arm_stands_still() -> float:
+    """Travel of the hand [mm] at which B, C and D are in line, so that the handle turns about B."""
+    a, d, arm, handle, bar = -40j, 40 + 54.64101615137754j, 40.0, abs(20 + 20j), 40.0
+    base = abs(d - a)
+    lean = math.acos((arm**2 + base**2 - (handle + bar) ** 2) / (2 * arm * base))
+    b = a + arm * cmath.exp(1j * (cmath.phase(d - a) + lean))
+    turn = (d - b) / abs(d - b) / cmath.exp(0.25j * math.pi)
+    return 12.0 - (b + (80 + 12j) * turn).imag
+
+
+@pytest.mark.parametrize("moved", [0.0, 1e-12, 1e-9, 1e-6])
+def test_toggles_are_said_in_the_units_of_the_drawing_wherever_rounding_puts_its_points(moved: float):
+    """Once, for the work, which turns back; within half of the last digit that is printed."""
+    tables = tomllib.loads(CLAMP)
+    tables["points"]["C"] = [f"{20 + moved!r} mm", f"{20 - moved!r} mm"]
+    tables["run"] |= {"travel": "-20 mm"}
+    (warning,) = MECHANISM.answer(tables, "test").warnings
+    found = re.match(r"toggle position of 'work' at driver value (\S+) mm: ", warning)
+    assert found and float(found[1]) == pytest.approx(hand_where_the_arm_stands_still(), abs=6e-5)
 
 
 def test_a_driver_that_turns_is_said_in_degrees():
