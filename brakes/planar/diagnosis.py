@@ -86,6 +86,15 @@ def describe_loose(system: System, y: np.ndarray, motions: np.ndarray) -> str:
     return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
 
 
+def describe_near_toggle(system: System, y: np.ndarray, motions: np.ndarray) -> str:
+    """Say that rounding decides what holds a mechanism, and the remedy."""
+    return (
+        "too near a toggle position to decide whether the loads are in balance: "
+        f"{describe(system, y, motions)} there, which only forces beyond all bounds could stop; "
+        "draw it further from that position, or give a load that moves it an unknown amplitude"
+    )
+
+
 def describe_self_stress(names: tuple[str, ...]) -> str:
     """Say what equilibrium does not determine, and the remedy."""
     return (

@@ -8,7 +8,7 @@ import numpy as np
 
 from brakes.planar.diagnosis import join_names
 from brakes.planar.kinematics import assemble
-from brakes.planar.linear import decompose, times
+from brakes.planar.linear import decompose, rank_tolerance, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import (
     Balance,
@@ -18,7 +18,6 @@ from brakes.planar.statics import (
     forces_on_bodies,
     solve,
     tell_where,
-    tolerance,
 )
 from brakes.planar.system import System
 
@@ -26,6 +25,7 @@ _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
 _SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as jammed
 _TINY = np.finfo(float).tiny
 _UNPRESSED = 1e-7  # force, over the largest, up to which a joint counts as pressing with none
+_NOTHING = 1e-12  # force, over the largest, whose direction is rounding
 _DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length
 
 
@@ -121,7 +121,7 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     rate = times(gradient, motion)
     driven = rate[:, [system.loads[driver]]]
     slip = rate[:, list(system.friction.values())]
-    still = tolerance(system)  # velocities are those per unit motion
+    still = rank_tolerance(system.rounding)  # velocities are those per unit motion
     if (np.abs(driven) < still).any():
         raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
     return np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
@@ -136,7 +136,7 @@ def _branch(
     load = int(balance.unknown[-1])  # mobility 1 and a determined equilibrium leave one unknown load
     law = -sliding * system.coefficient
     unpressed, jams = _jams_when_disturbed(system, balance, start, law)
-    multiplier, jammed = _newton(system, balance, start, np.where(jams[:, None] & unpressed, 0.0, law))
+    multiplier, jammed = _newton(system, balance, start, np.where(unpressed, 0.0, law))
     reversed_ = _reversed(system, load, start, multiplier) & ~jammed
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
@@ -144,7 +144,9 @@ def _branch(
     name = mechanism.loads[load - system.constraints].name
     jams &= ~jammed
     if jams.any():
-        result = replace(result, warnings=(*result.warnings, _warn_of_jamming(mechanism, unpressed[jams], jams)))
+        result = replace(
+            result, warnings=(*result.warnings, _warn_of_jamming(mechanism, unpressed[jams], jams))
+        )
     words = _explain(name, list(mechanism.friction), jammed, reversed_)
     if not words:
         return result
@@ -156,14 +158,16 @@ def _branch(
 def _jams_when_disturbed(
     system: System, balance: Balance, start: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frictions (S, F) whose joints press with no force, and where (S,) the least disturbance would jam them.
+    """Frictions (S, F) of joints that press with no force, and where (S,) the least disturbance jams them.
 
-    Where loads act exactly in line, a joint presses with no force, whose direction is rounding.  Then two
-    equilibria are there: without pressure, and jammed.  The latter needs a disturbance, however small, such as
+    Where loads act exactly in line, a joint presses with no force, whose direction is rounding.  There may be
+    two equilibria then: without pressure, and jammed.  The latter needs a disturbance, however small, such as
     an offset of a load: a couple on a body, tried on each body in either sense.
     """
-    multiplier, jammed = _newton(system, balance, start, np.where(_unpressed(system, start), 0.0, law))
-    unpressed = _unpressed(system, start) & _unpressed(system, multiplier) & (law != 0) & ~jammed[:, None]
+    small = _pressing(system, start) <= _UNPRESSED
+    multiplier, jammed = _newton(system, balance, start, np.where(small, 0.0, law))
+    force = _pressing(system, multiplier)
+    unpressed = small & (force <= _UNPRESSED) & (law != 0) & ~jammed[:, None]
     jams = np.zeros(len(start), bool)
     if not unpressed.any():
         return unpressed, jams
@@ -173,20 +177,29 @@ def _jams_when_disturbed(
             offset = np.zeros((len(start), system.size))
             offset[:, [coordinate]] = sense * size
             jams |= _newton(system, balance, multiplier, law, offset)[1]
-    return unpressed, jams & unpressed.any(axis=1)
+    jams &= unpressed.any(axis=1)
+    return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
 
 
-def _unpressed(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Which frictions (S, F) have a joint that presses with no force, but for rounding."""
-    size = np.array([np.linalg.norm(multiplier[:, rows], axis=1) for rows in system.pressing]).T
-    return size.reshape(len(multiplier), -1) <= _UNPRESSED * np.abs(multiplier).max(axis=1, keepdims=True)
+def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
+    """Force that presses where there is friction, over the largest force of all, shape (S, F)."""
+    force = np.zeros((len(multiplier), len(system.pressing)))
+    for k, rows in enumerate(system.pressing):
+        force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)
+    return force / np.maximum(np.abs(multiplier).max(axis=1, keepdims=True), _TINY)
+
+
+def _rounding(system: System) -> float:
+    """Force, over the largest, that is nothing but rounding."""
+    return max(_NOTHING, 100 * system.rounding)
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> str:
     names = [name for name, zero in zip(mechanism.friction, unpressed.any(axis=0), strict=True) if zero]
+    press = "press" if len(names) > 1 else "presses"
     return (
-        f"{join_names(map(repr, names))} {'press' if len(names) > 1 else 'presses'} with no force{tell_where(jams)} "
-        "because the loads act exactly in line; any offset of a load, however small, jams the mechanism: "
+        f"{join_names(map(repr, names))} {press} with no force{tell_where(jams)} because "
+        "the loads act exactly in line; any offset of a load, however small, jams the mechanism: "
         "reduce friction, or guide it over a greater length"
     )
 
@@ -194,7 +207,7 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
 def _reversed(system: System, load: int, start: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
     """Where a load that is not zero without friction acts the other way with it, shape (S,)."""
     largest = np.maximum(np.abs(start).max(axis=1), np.abs(multiplier).max(axis=1))
-    zero = tolerance(system) * largest
+    zero = rank_tolerance(system.rounding) * largest
     return (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
 
 
@@ -219,7 +232,7 @@ def _newton(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Multipliers (S, R) with friction, and where the mechanism jams, so that there are none (S,).
 
-    The friction is `full` (S, F) times the force that presses; `offset` (S, 3 n) are further forces on bodies.
+    Friction is `full` (S, F) times the force that presses; `offset` (S, 3 n) are further forces on bodies.
     """
     multiplier = start.copy()
     sign = np.linalg.slogdet(balance.matrix).sign
@@ -247,9 +260,11 @@ def _friction(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
     slope = balance.matrix.copy()
+    largest = np.abs(multiplier).max(axis=1, keepdims=True)
     for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
         size = np.linalg.norm(multiplier[:, normal], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
-        direction = law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY)
+        pressed = size > _rounding(system) * largest  # below, the direction is rounding
+        direction = np.where(pressed, law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY), 0.0)
         slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
     return forces_on_bodies(balance, multiplier), slope

@@ -410,9 +410,7 @@ def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tu
     return tuple(toggles)
 
 
-def _zeros(
-    system: System, nodes: list[Node], function: Callable[[Node], float], still: float
-) -> list[Node]:
+def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float], still: float) -> list[Node]:
     """Roots of a function of the nodes, one for each change of its sign.
 
     Values up to `still` count as zero: a node there has no sign, and no root is passed before the first or

@@ -9,7 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from brakes.planar.diagnosis import describe_loose, describe_self_stress, names_of_moving
+from brakes.planar.curve import close_joints
+from brakes.planar.diagnosis import (
+    describe_loose,
+    describe_near_toggle,
+    describe_self_stress,
+    names_of_moving,
+)
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import Decomposition, decompose, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
@@ -18,6 +24,7 @@ from brakes.planar.system import Rows, System
 
 _BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
 _UNDETERMINED = 1e-7  # component in a self-stress from which a reaction counts as undetermined
+_BESIDE = 1e-2  # part of its length by which a mechanism moves away from a toggle position
 _WEAK = 1e-5  # singular value below which the result is ill-conditioned in the coordinates
 
 
@@ -32,9 +39,10 @@ class Equilibrium:
     position : Position
         The position or positions.
     status : str
-        The worst of the positions: "no equilibrium"; "undetermined"; "loose", in balance, but nothing holds
-        it there; "contact opens" or "cable slackens", if one would have to act the other way, so that the
-        forces are not those of the mechanism; "self-locking" (see `solve_with_friction`); "determined".
+        The worst of the positions: "no equilibrium"; "near a toggle", where rounding of the drawing decides
+        whether there is one; "undetermined"; "loose", in balance, but nothing holds it there; "contact opens"
+        or "cable slackens", if one would have to act the other way, so that the forces are not those of the
+        mechanism; "self-locking" (see `solve_with_friction`); "determined".
     message : str
         The status as a sentence, with the names of bodies and joints.
     reactions : dict of ndarray
@@ -221,7 +229,7 @@ def collect_result(
         virtual_work=_shaped(position, virtual_work),
         residual=_shaped(position, residual),
         multiplier=_shaped(position, shown * system.unit),
-        **_verdict(position, forces, unbalanced, undetermined, wrong_way),
+        **_verdict(position, constraints, forces, unbalanced, undetermined, wrong_way),
         **_ranks(position, constraints, forces),
     )
 
@@ -316,6 +324,7 @@ def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
 
 def _verdict(
     position: Position,
+    constraints: Decomposition,
     forces: Decomposition,
     unbalanced: np.ndarray,
     undetermined: tuple[str, ...],
@@ -328,7 +337,11 @@ def _verdict(
     how = describe_loose(system, position.batch[worst], loose) if unbalanced.any() or loose.shape[1] else ""
     found: list[tuple[str, str]] = []
     if unbalanced.any():
-        found.append(("no equilibrium", f"the loads are not in balance: {how}"))
+        free = constraints.null(worst)
+        if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
+            found.append(("near a toggle", describe_near_toggle(system, position.batch[worst], loose)))
+        else:
+            found.append(("no equilibrium", f"the loads are not in balance: {how}"))
     else:
         if undetermined:
             found.append(("undetermined", describe_self_stress(undetermined)))
@@ -337,6 +350,18 @@ def _verdict(
         found += wrong_way.values()
     status, message = combine(found)
     return {"status": status, "message": message, "loose": names_of_moving(system, loose)}
+
+
+def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: int) -> bool:
+    """Whether a little further along its free motion (3 n,) the mechanism is held in more ways than here."""
+    system, y = position.mechanism.system, position.batch[[index]]
+    try:
+        beside = close_joints(system, y + _BESIDE * motion, motion[None])
+    except np.linalg.LinAlgError:  # motions branch here
+        return True
+    there = Position(position.mechanism, beside[0])
+    matrix = balance_at(position.mechanism, there).matrix
+    return int(decompose(matrix, system.rounding).rank[0]) > rank
 
 
 def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:

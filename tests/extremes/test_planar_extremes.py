@@ -10,20 +10,22 @@ import pytest
 from brakes.planar import GROUND, Bar, Force, Mechanism, Moment, Pin, RotationLock, Slot, solve
 
 
-def test_a_toggle_met_exactly_is_not_in_equilibrium_or_indeterminate_but_never_a_number():
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-8])
+def test_a_toggle_met_exactly_or_nearly_is_undecided_but_never_a_number(angle: float):
     """Crank and rod in line, the slider pushed: the crank's moment cannot be 0 / 0, the slider is held."""
     mechanism = Mechanism(
         ("crank", "slider"),
         (
             Pin("A", "crank", GROUND, (0, 0)),
-            Bar("rod", "crank", "slider", (0.1, 0), (0.4, 0)),
+            Bar("rod", "crank", "slider", (0.1, 0.1 * angle), (0.4, 0)),
             Slot("guide", "slider", GROUND, (0.4, 0), along=(1, 0)),
             RotationLock("upright", "slider", GROUND),
         ),
         (Moment("turn", "crank", 1.0), Force("push", "slider", (0.4, 0), (1, 0))),
     )
     answer = solve(mechanism)
-    assert answer.status == "no equilibrium"  # no push on the slider holds a moment on the crank
+    assert answer.status == "near a toggle"  # at it, no push on the slider holds a moment on the crank
+    assert "too near a toggle position to decide" in answer.message and "crank turns" in answer.message
     assert answer.loose == ("crank",)
     assert np.isnan(answer.amplitudes["push"])
     held = Mechanism(
@@ -33,7 +35,8 @@ def test_a_toggle_met_exactly_is_not_in_equilibrium_or_indeterminate_but_never_a
     )
     answer = solve(held)
     assert answer.status == "determined"
-    assert answer.amplitudes["turn"] == pytest.approx(0.0, abs=1e-15)
+    moment = 5.0 * 0.1 * (1 + 0.1 / 0.3) * angle  # of the push on the crank, to first order in the angle
+    assert answer.amplitudes["turn"] == pytest.approx(moment, rel=1e-6, abs=1e-15)
     assert answer.magnitudes["rod"] == pytest.approx(5.0, rel=1e-14)
 
 
