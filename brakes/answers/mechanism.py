@@ -160,9 +160,16 @@ class MechanismAnswer(PlanarAnswer):
     @property
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
-        toggles = [toggle.message for toggle in self.motion.toggles] if self.motion else []
+        moved = self._warnings_of_stroke(self.motion) if self.motion else ()
         held = self.friction.warnings if self.friction else ()
-        return tuple(map(in_small_units, (*self.last.warnings, *toggles, *held)))
+        return tuple(map(in_small_units, (*self.last.warnings, *moved, *held)))
+
+    def _warnings_of_stroke(self, motion: Stroke) -> Iterator[str]:
+        """Toggle positions, and joints that the motion shows to be doubtful."""
+        yield from (toggle.message for toggle in motion.toggles)
+        angles = {body: motion.position.angle(body) for body in self._mechanism.bodies}
+        for joint in self._mechanism.joints:
+            yield from joint.doubts(angles)
 
     @property
     def error(self) -> float:

@@ -76,8 +76,11 @@ class MechanismFriction(Result):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Sentences on directions in which it locks itself, so that the load has to be reversed."""
-        return [sentence for way, sentence in self._locking() if way.has_answer]
+        """Sentences on directions in which it locks itself, and on what jams at the least offset."""
+        found = self.last.squeeze, self.last.release
+        said = self.last.without.warnings
+        jams = dict.fromkeys(warning for way in found for warning in way.warnings if warning not in said)
+        return [*(sentence for way, sentence in self._locking() if way.has_answer), *jams]
 
     def _locking(self) -> list[tuple[Equilibrium, str]]:
         ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}

@@ -118,13 +118,25 @@ def _pin(at: np.ndarray, grounded: bool) -> list[DrawnShape]:
 
 
 def _faces(position: Position) -> Iterator[np.ndarray]:
-    """Short lines (2, 2) along slots and contact faces."""
+    """Short lines (k, 2) along slots and contact faces."""
     half = 0.06 * _size(position) * _MM
     for _, shape, points in parts.shapes(position, "face"):
+        if len(points) > 1:
+            yield _arc(points[0] * _MM, points[1] * _MM, half)
+            continue
         x, y = shape.along
         angle = float(position.angle(shape.frame)) + np.arctan2(y, x)
         along, at = half * np.array((np.cos(angle), np.sin(angle))), points[0] * _MM
         yield np.stack((at - along, at + along))
+
+
+def _arc(middle: np.ndarray, centre: np.ndarray, half: float) -> np.ndarray:
+    """Points (k, 2) of an arc about a centre, from `half` its length before the middle to as much behind."""
+    x, y = middle - centre
+    turn = np.linspace(-1.0, 1.0, 9) * half / np.hypot(x, y)
+    return centre + np.stack(
+        (x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)), axis=1
+    )
 
 
 def _size(position: Position) -> float:

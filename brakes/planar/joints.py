@@ -7,15 +7,20 @@ cable in tension and a contact that pushes are positive.  `Joint` tells how to w
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated
+
+import numpy as np
 
 from beamdyn.common.described import Described
 from brakes.planar.inputs import Body, Coefficient, DescribedPoint, Direction, DrawnPoint, Length, Other
 from brakes.planar.part import Joint, OneWay, Shape
 from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import FrictionLaw, Line, Path, Row, Turn
+from brakes.planar.rows import FrictionLaw, Line, Path, Round, Row, Turn
 
+_NORMAL = 0.99  # least cosine of the angle between the normal of a round face and the line to its centre
+_TURNS = 0.1  # turn of a straight face over a stroke that is worth a warning [deg]
 SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
@@ -183,7 +188,7 @@ class Slot(Joint):
 
 @dataclass(frozen=True)
 class Contact(Joint):
-    """A point of a body pushes on a straight face of another.
+    """A point of a body pushes on a straight or round face of another.
 
     Parameters
     ----------
@@ -191,10 +196,16 @@ class Contact(Joint):
         Its name; the body that has the point, and the one that has the face.
     at : tuple of 2 floats
         The point [m].
-    normal : tuple of 2 floats
-        Normal of the face, from the other body towards the body.
+    normal : tuple of 2 floats, optional
+        Normal of the face, from the other body towards the body; of a round face away from its centre if not
+        given.
     on : tuple of 2 floats, optional
-        A point of the face [m], if it does not pass through `at` in the drawing.
+        A point of the straight face [m], if it does not pass through `at` in the drawing.
+    centre : tuple of 2 floats, optional
+        Centre of a round face, such as a drum's [m]; the face is straight if not given, and its normal turns
+        with the other body.
+    radius : float, optional
+        Radius of the round face [m], if not the drawing's.
     friction : float
         Coefficient of friction.
 
@@ -204,7 +215,7 @@ class Contact(Joint):
 
     Examples
     --------
-    >>> block = planar.Contact("block", "lever", "drum", at=(0.25, -0.05), normal=(0, 1), friction=0.4)
+    >>> block = planar.Contact("block", "lever", "drum", at=(0.25, -0.05), centre=(0.25, -0.2), friction=0.4)
     >>> block.friction
     0.4
     """
@@ -217,25 +228,77 @@ class Contact(Joint):
     body: Body
     other: Other
     at: DrawnPoint
-    normal: Direction
+    normal: Direction | None = None
     on: DrawnPoint | None = None
     friction: Coefficient = 0.0
+    centre: (
+        Annotated[Point, DescribedPoint("m", meaning="centre of a round face; straight if not given")] | None
+    ) = None
+    radius: (
+        Annotated[float, Described("m", "R", "radius of a round face, if not the drawing's", above=0)] | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.centre is None:
+            if self.normal is None:
+                raise ValueError(f"{self.title} has no normal: give it, or the centre of a round face")
+            if self.radius is not None:
+                raise ValueError(
+                    f"{self.title} has a radius but no centre: give the centre of its round face"
+                )
+            return
+        check_distinct(self.title, (self.at, self.centre), "move the point or the centre of the face")
+        if self.on is not None:
+            raise ValueError(
+                f"{self.title} has a round face: give no `on`, which is a point of a straight one"
+            )
+        if abs(self._cosine) < _NORMAL:
+            raise ValueError(
+                f"{self.title}: its normal must point from the centre of the round face or towards it; "
+                "leave it out, or turn it"
+            )
+
+    @property
+    def _cosine(self) -> float:
+        """Cosine of the angle between the normal and the line from the centre of the round face."""
+        if self.normal is None or self.centre is None:
+            return 1.0
+        out = complex(*self.at) - complex(*self.centre)
+        return (out / abs(out) * complex(*unit_vector("normal", self.normal)).conjugate()).real
+
+    def _row(self, direction: complex) -> Row:
+        """The row along the normal, turned anticlockwise by a direction."""
+        if self.centre is None:
+            normal = direction * complex(*unit_vector("normal", self.normal or (0.0, 1.0)))
+            return _line(self, (normal.real, normal.imag))
+        radius = math.dist(self.at, self.centre) if self.radius is None else self.radius
+        outward = math.copysign(1.0, self._cosine)
+        return Round(self.body, self.at, self.other, self.centre, radius, outward * direction)
 
     def rows(self) -> tuple[Row, ...]:
         """One row, positive when it pushes."""
-        return (_line(self, unit_vector("normal", self.normal)),)
-
-    def _along(self) -> Point:
-        x, y = unit_vector("normal", self.normal)
-        return -y, x
+        return (self._row(1.0 + 0.0j),)
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
         """A force against the sliding."""
-        return (FrictionLaw(_line(self, self._along()), self.friction),)
+        return (FrictionLaw(self._row(1j), self.friction),)
+
+    def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
+        """A straight face that turns is a flat one, or the tangent of a round one at one position alone."""
+        turned = np.degrees(np.ptp(angles.get(self.other, 0.0)))
+        if self.centre is None and turned > _TURNS:
+            yield (
+                f"{self.title} has a straight face, which turns with {self.other!r} by {turned:.3g} deg: "
+                "right for a flat face; if it is round, such as a drum's, give its centre in place of the normal"
+            )
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A short line along the face."""
-        return (Shape("face", ((self.body, self.at),), self.other, self._along()),)
+        """A short line along a straight face, an arc of a round one."""
+        if self.centre is not None:
+            return (Shape("face", ((self.body, self.at), (self.other, self.centre))),)
+        x, y = unit_vector("normal", self.normal or (0.0, 1.0))
+        return (Shape("face", ((self.body, self.at),), self.other, (-y, x)),)
 
 
 @dataclass(frozen=True)

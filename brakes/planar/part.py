@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, NamedTuple, Self
 
@@ -21,7 +22,7 @@ class Shape(NamedTuple):
     ----------
     style : {"bar", "cable", "spring", "pin", "face", "force"}
         A bar or cable through `ends`, a spring between them, a pin or a face at the first of them; a force is
-        drawn as an arrow where it is known.
+        drawn as an arrow where it is known.  The second end of a round face is its centre.
     ends : tuple of End
         Points of bodies; each body's outline goes around those of all its joints and loads.
     frame : str
@@ -133,9 +134,9 @@ class Joint(Part):
     1. Derive a frozen dataclass from `Joint`, in a module of its own.  Its fields are its inputs; annotate
        each by a type of `inputs` or by ``Annotated[type, Described(...)]``.  Checks, TOML tables and forms
        follow from that; the table's name is the class name in snake case.
-    2. `rows` returns what the joint forbids: each `Line`, `Path` or `Turn` has the value 0 as long as the
-       joint holds, and is an unknown reaction.  The force of the joint is the one on the first body of the
-       first row.  The constructor must refuse what makes a row meaningless (points that coincide); extend
+    2. `rows` returns what the joint forbids: each `Line`, `Path`, `Turn` or `Round` has the value 0 as long
+       as the joint holds, and is an unknown reaction.  The force of the joint is the one on the first body of
+       the first row.  The constructor must refuse what makes a row meaningless (points that coincide); extend
        `__post_init__`, and call that of the base class first.
     3. With one row, its multiplier is the size of the joint, with a sign; with several it is the length of
        the vector of multipliers.  Override `size` if that is not a force, or not the one of interest.
@@ -144,6 +145,7 @@ class Joint(Part):
     5. `shapes` returns how it is drawn, by the styles of `Shape`.
     6. `label` is its name in the plural, for forms.  Set `one_way` if only a positive size makes sense,
        `signs` if the signs of the size have names, and `is_hinge` if it holds a point and nothing else.
+       `doubts` warns of inputs that a stroke shows to be doubtful.
     7. Add the class to `JOINTS` and to `__all__` in `brakes/planar/__init__.py`, and write a test of it
        against a closed form.  Files, forms, statics, strokes, friction and drawings take it from there.
 
@@ -164,6 +166,10 @@ class Joint(Part):
         """Size (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
         single = multiplier.shape[1] == 1
         return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
+
+    def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
+        """Sentences on what may not be meant, by the angles (S,) of the bodies over a stroke [rad]."""
+        return iter(())
 
     def with_pivot(self, radius: float, friction: float) -> Joint:
         """The joint with a radius [m] and friction of its pivot where it has none of its own.

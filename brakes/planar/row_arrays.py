@@ -104,4 +104,29 @@ class Turns(NamedTuple):
         couple[row, -1] += ratio - 1.0
 
 
-Arrays = Lines | Segments | Turns
+class Rounds(NamedTuple):
+    """Arrays of `Round`: rows, bodies (indices), arms in the bodies, directions to the normal (complex)."""
+
+    row: np.ndarray
+    body: np.ndarray
+    other: np.ndarray
+    arm: np.ndarray
+    arm_other: np.ndarray
+    direction: np.ndarray
+
+    def add(self, pose: Pose, totals: Totals) -> None:
+        """|p - c| where the row is normal to the face, 0 where it is tangential; forces act at p on both."""
+        value, force, couple = totals
+        row, a, b, arm, arm_other, direction = self
+        arm = pose.spin[a] * arm[:, None]
+        span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * arm_other[:, None]
+        length = np.maximum(np.abs(span), _TINY)
+        push = direction[:, None] * span / length
+        value[row] += direction.real[:, None] * length
+        force[row, a] += push
+        force[row, b] -= push
+        couple[row, a] += np.imag(arm.conj() * push)
+        couple[row, b] -= np.imag((pose.centre[a] + arm - pose.centre[b]).conj() * push)
+
+
+Arrays = Lines | Segments | Turns | Rounds

@@ -1,4 +1,4 @@
-"""The rows of which every joint and every load is made: `Line`, `Path` and `Turn`.
+"""The rows of which every joint and every load is made: `Line`, `Path`, `Turn` and `Round`.
 
 A row is a scalar function of the position.  Its gradient is at the same time a set of forces on the bodies:
 those of a unit multiplier (a joint) or of a unit magnitude (a load).  Each kind of row has
@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from brakes.planar.points import GROUND, End, Point
-from brakes.planar.row_arrays import Lines, Segments, Turns
+from brakes.planar.row_arrays import Lines, Rounds, Segments, Turns
 
 Arm = Callable[[str, Point], complex]  # from the centre of a body to a point of it, over L
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
@@ -151,7 +151,55 @@ class Turn(NamedTuple):
             yield np.full(2, np.nan), np.zeros(2), size * share[body]
 
 
-Row = Line | Path | Turn
+class Round(NamedTuple):
+    """Distance of a point p of a body from a circle about a point c of another, or the sliding along it.
+
+    A unit row pushes the body along n = (p - c)/|p - c|, turned by `direction`, and the other body back, both
+    at p.  Along the circle its gradient is the velocity of p over the surface; its value is 0 there.
+
+    direction : complex
+        1: away from the centre; -1: towards it; 1j: along the circle, anticlockwise.
+    """
+
+    body: str
+    at: Point
+    other: str
+    centre: Point
+    radius: float
+    direction: complex
+
+    arrays = Rounds
+    is_couple = False
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The body of the point and that of the circle."""
+        return self.body, self.other
+
+    @property
+    def ends(self) -> tuple[End, ...]:
+        """The point and the centre."""
+        return (self.body, self.at), (self.other, self.centre)
+
+    def constant(self, length: float) -> float:
+        """Minus the radius, where the row is normal to the circle."""
+        return -self.direction.real * self.radius / length
+
+    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
+        """One tuple."""
+        ends = arm(self.body, self.at), arm(self.other, self.centre)
+        return [(index[self.body], index[self.other], *ends, self.direction)]
+
+    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
+        """A force at the point, and its opposite on the other body."""
+        if body in self.bodies:
+            at = place.point(self.body, self.at)
+            push = self.direction * complex(*(at - place.point(self.other, self.centre)))
+            force = (size if body == self.body else -size) * push / abs(push)
+            yield at, np.array((force.real, force.imag)), 0.0
+
+
+Row = Line | Path | Turn | Round
 
 
 class FrictionLaw(NamedTuple):
