@@ -58,7 +58,7 @@ def transform(
             value = getattr(part, name)
             if value is not None and name in _POINTS:
                 changes[name] = placed(value)
-            elif name == "points":
+            elif name == "points" and value is not None:
                 changes[name] = tuple(map(placed, value))
             elif name in _DIRECTIONS:
                 changes[name] = turned(value)

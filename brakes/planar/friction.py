@@ -195,7 +195,7 @@ def _rounding(system: System) -> float:
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> str:
-    names = [name for name, zero in zip(mechanism.friction, unpressed.any(axis=0), strict=True) if zero]
+    names = [name for k, name in enumerate(mechanism.friction) if unpressed[:, k].any()]
     press = "press" if len(names) > 1 else "presses"
     return (
         f"{join_names(map(repr, names))} {press} with no force{tell_where(jams)} because "

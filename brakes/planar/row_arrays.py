@@ -122,7 +122,7 @@ class Rounds(NamedTuple):
         span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * arm_other[:, None]
         length = np.maximum(np.abs(span), _TINY)
         push = direction[:, None] * span / length
-        value[row] += direction.real[:, None] * length
+        value[row] += np.real(direction)[:, None] * length
         force[row, a] += push
         force[row, b] -= push
         couple[row, a] += np.imag(arm.conj() * push)
