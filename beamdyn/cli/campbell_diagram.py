@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -77,7 +78,7 @@ def campbell(
         Operating range, over which margins are stated and in which crossings are marked: lowest:highest with
         a unit, e.g. "6.9:12.1 rpm".
     per_rev
-        Per-rev lines: "6" for 1P to 6P, or a list of orders, e.g. "3, 6, 9".
+        Per-rev lines: "6" for 1P to 6P, one order, e.g. "2P", or a list, e.g. "3, 6, 9".
     modes
         Number of modes, from the lowest.
     labels
@@ -225,13 +226,15 @@ def _parse_range(text: str, top_text: str, top: float) -> tuple[float, float]:
 
 
 def _parse_orders(text: str) -> Sequence[int]:
-    """Orders of the per-rev lines: 1 to a number, or those of a list."""
+    """Orders of the per-rev lines: 1 to a number, that of "2P", or those of a list."""
+    if alone := re.fullmatch(r"\s*([1-9]\d*)\s*P\s*", text, re.IGNORECASE):
+        return [int(alone[1])]
     parts = [part.strip() for part in text.split(",")]
     orders = [int(part) for part in parts if part.isdecimal() and int(part) > 0]
     if len(orders) < len(parts):
         raise ValueError(
-            f'--per-rev = "{text}": give the highest order, e.g. "6" for 1P to 6P, or a list of orders from '
-            'one on, e.g. "3, 6, 9"'
+            f'--per-rev = "{text}": give the highest order, e.g. "6" for 1P to 6P, one order, e.g. "2P", or '
+            'a list of orders from one on, e.g. "3, 6, 9"'
         )
     return orders if len(parts) > 1 else range(1, orders[0] + 1)
 

@@ -139,7 +139,8 @@ def locus(
     from beamdyn.tables.rows import locus_csv
 
     outputs.check(scene)
-    given = parse_speeds(speeds)
+    loaded = load_with(scene, physics, speeds)
+    given = parse_speeds(speeds, loaded)
     question = Question.on_file(
         "beamdyn locus",
         scene,
@@ -149,7 +150,7 @@ def locus(
         tolerance=tolerance,
         physics=physics,
     )
-    result = frequency_locus(load_with(scene, physics, speeds), given, modes, discretization, tolerance)
+    result = frequency_locus(loaded, given, modes, discretization, tolerance)
     tables, rows, draw = [locus_table(result)], locus_csv(result), on_axes(partial(_draw_locus, result))
     deliver(result, outputs, question, tables, rows, draw, warnings_of(result, tolerance), _never(result))
 

@@ -255,7 +255,7 @@ def _in_steady_response(
     from beamdyn import steady_loads, steady_response
     from beamdyn.tables.loads import steady_loads_table
 
-    result = steady_loads(steady_response(scene, parse_speeds(speeds), **basis), **where)
+    result = steady_loads(steady_response(scene, parse_speeds(speeds, scene), **basis), **where)
     return result, [steady_loads_table(result)]
 
 

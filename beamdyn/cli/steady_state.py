@@ -113,10 +113,11 @@ def steady(
     from beamdyn.tables.rows import steady_csv
 
     outputs.check(scene)
-    given = parse_speeds(speeds)
+    loaded = load_with(scene, physics, speeds)
+    given = parse_speeds(speeds, loaded)
     options: dict[str, Any] = {"modes": modes, "tolerance": tolerance, "discretization": discretization}
     question = Question.on_file("beamdyn steady", scene, speeds=speeds, **options, physics=physics)
-    result = steady_response(load_with(scene, physics, speeds), given, **options)
+    result = steady_response(loaded, given, **options)
     none = f"at none of {len(given)} speeds is there a steady response: {result.status[0]}"
     refusal = "" if result.stable.any() else none
     tables, rows, draw = [steady_table(result)], steady_csv(result), on_axes(result.plot)

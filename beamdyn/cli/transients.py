@@ -157,7 +157,8 @@ def sweep(
     from beamdyn.transient.sweep import sweep
 
     outputs.check(scene, store)
-    given, span, loaded = parse_speeds(speeds), parse_window(window), load_moving(scene, physics, speeds)
+    span, loaded = parse_window(window), load_moving(scene, physics, speeds)
+    given = parse_speeds(speeds, loaded)
     question = Question.on_file(
         "beamdyn sweep",
         scene,

@@ -88,8 +88,18 @@ def naming_option(field: str, option: str, text: str) -> Iterator[None]:
         raise InvalidInput(option, text, error.bound, error.remedy, error.unit, error.limit) from None
 
 
-def parse_speed(option: str, text: str) -> float:
-    """A speed with its unit [rad/s], or a ValueError that names the option."""
+def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
+    """A speed with its unit [rad/s], or a ValueError that names the option.
+
+    If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
+    """
+    from beamdyn.config.rolling_speeds import as_velocity
+    from beamdyn.scene.motion import RollingWheel
+
+    if scene is not None and isinstance(scene.motion, RollingWheel):
+        velocity = as_velocity(text)
+        if velocity is not None:
+            return velocity / scene.motion.rolling_radius
     return parse_quantity(option, text, "rad/s")
 
 
@@ -107,13 +117,15 @@ def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
     return start, end
 
 
-def parse_speeds(text: str) -> np.ndarray:
+def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
     """Speeds [rad/s] of ``--speeds``: start:stop:count or a list, with a unit at the end.
 
     Parameters
     ----------
     text : str
         E.g. "0:150:301 rad/s" or "0, 50, 100 rad/s".
+    scene : Scene, optional
+        The scene, whose wheel may roll: see `parse_speed`.
 
     Returns
     -------
@@ -132,16 +144,16 @@ def parse_speeds(text: str) -> np.ndarray:
     if match is None:
         raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
     unit, numbers = match.group(), text.strip()[: match.start()]
-    return _range(text, numbers, unit) if ":" in numbers else _list(text, numbers, unit)
+    return (_range if ":" in numbers else _list)(text, numbers, unit, scene)
 
 
-def _range(text: str, numbers: str, unit: str) -> np.ndarray:
+def _range(text: str, numbers: str, unit: str, scene: Scene | None) -> np.ndarray:
     import numpy as np
 
     parts = [part.strip() for part in numbers.split(":")]
     if len(parts) != 3:
         raise ValueError(f'--speeds = "{text}": give start:stop:count, e.g. "0:150:301 rad/s"')
-    start, stop = (_member(text, part, unit) for part in parts[:2])
+    start, stop = (_member(text, part, unit, scene) for part in parts[:2])
     if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= _MOST_SPEEDS:
         raise ValueError(
             f'--speeds = "{text}": the count {parts[2]!r} must be a whole number from 1 to {_MOST_SPEEDS}'
@@ -151,10 +163,10 @@ def _range(text: str, numbers: str, unit: str) -> np.ndarray:
     return np.linspace(start, stop, int(parts[2]))
 
 
-def _list(text: str, numbers: str, unit: str) -> np.ndarray:
+def _list(text: str, numbers: str, unit: str, scene: Scene | None) -> np.ndarray:
     import numpy as np
 
-    values = [_member(text, part.strip(), unit) for part in numbers.split(",")]
+    values = [_member(text, part.strip(), unit, scene) for part in numbers.split(",")]
     for low, high in pairwise(values):
         if high <= low:
             raise ValueError(_not_ascending(text, numbers, unit))
@@ -168,14 +180,14 @@ def _not_ascending(text: str, numbers: str, unit: str) -> str:
     return f'--speeds = "{text}": the speeds must ascend without repeats; give "{ordered} {unit}"'
 
 
-def _member(text: str, number: str, unit: str) -> float:
+def _member(text: str, number: str, unit: str, scene: Scene | None) -> float:
     """One of several speeds [rad/s]."""
     if not _NUMBER.fullmatch(number):
         raise ValueError(
             f"--speeds = \"{text}\": '{number}' is not a number; give numbers and one unit at their end, "
             'e.g. "0, 50, 100 rad/s"'
         )
-    return parse_speed("--speeds", f"{number} {unit}")
+    return parse_speed("--speeds", f"{number} {unit}", scene)
 
 
 def parse_positions(text: str) -> list[float]:
@@ -233,6 +245,6 @@ def load_moving(path: Path, physics: PhysicsOption = None, *speeds: str | None) 
 def speed_or_final(scene: Scene, speed: str | None) -> float:
     """The speed of the option [rad/s]; without it the final speed of the scene's motion, or 0."""
     if speed is not None:
-        return parse_speed("--speed", speed)
+        return parse_speed("--speed", speed, scene)
     final = 0.0 if scene.motion is None else scene.motion.final_speed
     return final if isfinite(final) else 0.0

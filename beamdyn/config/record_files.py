@@ -13,7 +13,7 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.described import described_hints, description, kinds_of
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.csv_columns import CsvTable, read_csv
-from beamdyn.common.edge.data_text import plain_name, read_data
+from beamdyn.common.edge.data_text import named_file, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity, SiNumber
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.scene.motion import KINDS
@@ -56,18 +56,18 @@ def with_record_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[st
         At the first mistake of a file, with the line and what was expected; or if a motion that has no lists
         names a file, or has a list beside it.
     """
-    motion, folder = data.get("motion"), Path(path).parent
+    motion = data.get("motion")
     if not isinstance(motion, dict):
         return data
     try:
         if isinstance(motion.get("rotation"), dict):
-            motion = motion | {"rotation": _with_columns(motion["rotation"], "motion.rotation", folder)}
-        return data | {"motion": _with_columns(motion, "motion", folder)}
+            motion = motion | {"rotation": _with_columns(motion["rotation"], "motion.rotation", path)}
+        return data | {"motion": _with_columns(motion, "motion", path)}
     except InvalidInput as error:
         raise ConfigError(str(path), [str(error)], [error.field]) from None
 
 
-def _with_columns(motion: dict[str, Any], place: str, folder: Path) -> dict[str, Any]:
+def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str]) -> dict[str, Any]:
     """A table of a motion with its lists from the file that it names."""
     if not isinstance(motion.get(FILE), str):
         return motion
@@ -77,7 +77,7 @@ def _with_columns(motion: dict[str, Any], place: str, folder: Path) -> dict[str,
         raise InvalidInput(f"{place}.{FILE}", name, f"this kind of motion has no record; give kind = {kinds}")
     if given := [key for key in known if key in motion]:
         raise InvalidInput(f"{place}.{given[0]}", "", f"the file {name} has it, too; give it once")
-    columns = read_record(folder / name, known)
+    columns = read_record(named_file(path, f"{place}.{FILE}", name), known)
     rest = {key: value for key, value in motion.items() if key != FILE}
     return rest | {key: [SiNumber(value) for value in values] for key, values in columns.items()}
 

@@ -12,6 +12,7 @@ from beamdyn.common.display_units import DisplayUnits, known_unit
 from beamdyn.common.edge.config import ConfigError, parse, read, validated
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.config.record_files import with_record_file
+from beamdyn.config.rolling_speeds import with_rolling_speeds
 from beamdyn.config.scene_inputs import SceneInput
 from beamdyn.config.station_files import with_station_file
 from beamdyn.scene.scene import Scene
@@ -48,7 +49,7 @@ def load_scene(path: str | PathLike[str]) -> Scene:
             raise
         hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
         raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
-    return scene_from_dict(with_record_file(with_station_file(data, Path(path).parent), path), str(path))
+    return scene_from_dict(with_record_file(with_station_file(data, path), path), str(path))
 
 
 def parse_scene(text: str, source: str = "scene") -> Scene:
@@ -85,7 +86,7 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     ConfigError
         If it does not describe a scene; the message lists all mistakes.
     """
-    return replace(validated(SceneInput, data, source).core, units=_units_of(data))
+    return replace(validated(SceneInput, with_rolling_speeds(data), source).core, units=_units_of(data))
 
 
 def _units_of(data: Mapping[str, Any]) -> DisplayUnits:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
-from beamdyn.common.edge.data_text import DataText, plain_name, read_data
+from beamdyn.common.edge.data_text import DataText, named_file, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.config.scene_inputs import PLACES, VARYING
 
@@ -51,12 +51,12 @@ def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None
     return table
 
 
-def with_station_file(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a file with the rows of the CSV file that `beam.stations` names, if it names one."""
+def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[str, Any]:
+    """The tables of a scene with the rows of the CSV file that `beam.stations` names, if it names one."""
     beam = data.get("beam")
     if not isinstance(beam, dict) or not isinstance(beam.get("stations"), str):
         return data
-    table = read_station_file(read_data(folder / beam["stations"]))
+    table = read_station_file(read_data(named_file(path, "beam.stations", beam["stations"])))
     if unknown := next((column.head for column in table.columns if not column.name), ""):
         known = ", ".join([*PLACES, *VARYING])
         raise table.text.refusal(table.head_line, f"unknown column '{unknown}'; known are {known}")

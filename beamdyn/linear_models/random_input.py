@@ -44,7 +44,7 @@ def _of_road(
     wheel = scene.motion
     if not isinstance(wheel, RollingWheel):
         bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
-        raise InvalidValue("scene.motion", wheel, bound, remedy)
+        raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
     refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
     return road.acceleration(wheel.rolling_radius * speed)
 

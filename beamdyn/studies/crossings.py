@@ -104,7 +104,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
     if not found:
         bound = "nothing varies in time at steady speed in any design, so that none resonates"
         remedy = "a RollingWheel with a road, or gravity, excites the beam"
-        raise InvalidValue("scene.motion", scene.motion, bound, remedy)
+        raise InvalidValue("scene.motion", scene.motion and type(scene.motion).__name__, bound, remedy)
     each = (found[key] for key in sorted(found))
     return tuple(PossibleCrossing(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
 

@@ -78,7 +78,8 @@ def study_csv(result: Study) -> Iterator[Sequence[object]]:
 
 
 def _plain_name(label: str) -> str:
-    """A label as a part of a head: a mode by its number."""
+    """A label as a part of a head: a mode by its number, signs of combination frequencies in words."""
+    label = label.replace("+", " plus ").replace("-", " minus ")
     return re.sub(r"[^0-9A-Za-z.]+", "_", label.removeprefix("mode ")).strip("_")
 
 

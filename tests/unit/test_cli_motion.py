@@ -160,10 +160,14 @@ def test_sweep_is_stored_and_resumed(run, tmp_path):
     assert p.read_bytes().startswith(b"\x89PNG")
 
 
-def test_interrupted_sweep_says_how_to_go_on(tmp_path):
+@pytest.mark.parametrize(
+    ("ending", "workers"), [(signal.SIGINT, 1), (signal.SIGTERM, 1), (signal.SIGTERM, 2)]
+)
+def test_interrupted_sweep_says_how_to_go_on(tmp_path, ending, workers):
     store = tmp_path / "store"
     speeds = ("--speeds", "0:150:1501 rad/s", "--window", "0.1:0.3 s", "--modes", "2")  # many short chunks
     command = [sys.executable, "-m", "beamdyn", "sweep", SCENE, *speeds, "--store", str(store)]
+    command += ["--workers", str(workers)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # in the background, too
     with subprocess.Popen(
@@ -172,7 +176,7 @@ def test_interrupted_sweep_says_how_to_go_on(tmp_path):
         deadline = time.monotonic() + 60
         while len(list(store.glob("*.json"))) < 2 and time.monotonic() < deadline:
             time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(ending)
         err = process.communicate(timeout=60)[1]
     assert process.returncode == INTERRUPTED
     assert "of 1501 speeds are stored in" in err and "the same command goes on" in err

@@ -129,6 +129,19 @@ def test_a_directory_with_other_content_is_refused(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
 
 
+@pytest.mark.parametrize("marker", [None, "", "{", '{"kind": null', "7"])
+def test_a_damaged_or_missing_marker_is_written_again(tmp_path, marker):
+    key = fingerprint("a request")
+    Store(tmp_path, "test").write(key, {"value": 1.0})
+    if marker is None:
+        (tmp_path / "store.json").unlink()
+    else:
+        (tmp_path / "store.json").write_text(marker)
+    assert Store(tmp_path, "test").read(key) == {"value": 1.0}
+    with pytest.raises(ValueError, match="something else than a sweep"):
+        Store(tmp_path, "sweep")
+
+
 def test_a_store_of_another_kind_is_refused(tmp_path):
     Store(tmp_path, "brakes")
     with pytest.raises(ValueError, match="something else than a test"):

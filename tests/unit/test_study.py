@@ -12,6 +12,7 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.studies.inputs import NAMES, scene_of
+from beamdyn.tables.studies import study_csv
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))
@@ -404,3 +405,12 @@ def test_plots_of_one_input_and_of_more():
     ).plot()
     assert len(three.get_lines()) == 2 * 3  # speeds and modes
     assert "beam.width = 0.01 m" in three.get_title()
+
+
+def test_each_crossing_of_a_rolling_beam_has_a_head_of_its_own():
+    """Of the sum and of the difference of the road's frequency and the rotation's, forced and parametric."""
+    rolling = bd.load_scene("examples/rolling_harvester.toml")
+    found = bd.study(rolling, {"beam.length": [0.05, 0.051]}, "crossings", speed=150.0, modes=2)
+    heads = next(iter(study_csv(found)))
+    assert len(set(heads)) == len(heads) == 1 + 3 * len(found.labels)
+    assert "resonance_speed_rad_per_s_1_road_plus_forced" in heads

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from beamdyn.common.checks import MOST
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.units import show
 from beamdyn.common.files import as_path
 
 # 1.0D+03 and 1.0+03 are 1.0e+03 to FORTRAN.
@@ -79,6 +80,21 @@ def read_data(path: str | PathLike[str]) -> DataText:
     if not text.strip():
         raise ConfigError(str(file), ["the file is empty; give a deck or a table"])
     return DataText(file, tuple(text.splitlines()))
+
+
+def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
+    """The file that a key of another file names, beside it.
+
+    Raises
+    ------
+    ConfigError
+        If it is not there: names the key, the file and the folder.
+    """
+    folder = Path(path).parent
+    if not (folder / name).exists():
+        said = f"{key} = {show(name)}: there is no such file in the folder {folder.resolve()}"
+        raise ConfigError(str(path), [f"{said}; check the name, which is relative to this file"], [key])
+    return folder / name
 
 
 def _bytes_of(file: Path) -> bytes:

@@ -5,15 +5,21 @@ from __future__ import annotations
 import re
 
 _COMMANDS = {"equilibrium_branches": "beamdyn branches", "frequency_locus": "beamdyn locus"}
+_BEAM = {
+    "Beam.from_stiffness": "mass_per_length and bending_stiffness in [beam]",
+    "Beam.rectangular": "width and thickness in [beam]",
+    "give fractions x/L": "give fractions x/L, or lengths with their unit",
+}
 _PHYSICS = re.compile(r"Physics\((.*?)\)")
 
 
 def as_in_files(sentence: str) -> str:
     """A sentence of the core, written in Python's terms, in the terms of files and commands.
 
-    "Physics(shear=True)" becomes "[physics] shear = true", and a function the command that does the same.
+    "Physics(shear=True)" becomes "[physics] shear = true", a function the command that does the same, and
+    what makes a beam the keys that do.
     """
-    for function, command in _COMMANDS.items():
+    for function, command in (_COMMANDS | _BEAM).items():
         sentence = sentence.replace(function, command)
     return _PHYSICS.sub(lambda call: f"[physics] {_as_keys(call[1])}", sentence)
 

@@ -19,6 +19,7 @@ _PHRASES = {
     r"^combine = 'zip'": "--together",
     r"^psd\.(\w+) = ": r"--psd, \1 = ",
     r"^scene\.motion = None": "[motion]: missing",
+    r"^scene\.motion = '\w+'": "[motion]",
     r"^damping_ratio = ": "[model] damping_ratio = ",
     r"^road\.lowest = ": "lowest spatial frequency of a road = ",
     r"\broad\.highest = ": "--highest = ",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import sys
+import threading
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -38,7 +40,7 @@ class NoAnswer(Exception):
 
 
 class Interrupted(Exception):
-    """Ctrl-C; the message says what is done and how to go on."""
+    """Ctrl-C or SIGTERM; the message says what is done and how to go on."""
 
 
 def run(app: App, arguments: Sequence[str] | None = None) -> int:
@@ -62,7 +64,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     if sys.stdout is None:
         return _complain(name, "the standard output is closed; direct it to a file or a device", BAD_INPUT)
     try:
-        with _as_sentences(name), at_work(" ".join([name, *given[:1]])):
+        with _terminated_as_interrupted(), _as_sentences(name), at_work(" ".join([name, *given[:1]])):
             _call(app, given)
     except (NoAnswer, ArithmeticError) as error:
         return _no_answer(name, error)
@@ -88,6 +90,23 @@ def _call(app: App, arguments: Sequence[str]) -> None:
     if isinstance(sys.stdout, TextIOWrapper):
         spell_output(sys.stdout)
     app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
+
+
+@contextmanager
+def _terminated_as_interrupted() -> Iterator[None]:
+    """Within it, a request to terminate (SIGTERM), as of a scheduler, ends the command as Ctrl-C does."""
+    if threading.current_thread() is not threading.main_thread():  # where no handler can be set
+        yield
+        return
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    usual = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, usual)
 
 
 @contextmanager

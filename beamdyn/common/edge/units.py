@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import unicodedata
 from collections.abc import Callable
 from datetime import date, time
 from decimal import Decimal
@@ -24,7 +25,14 @@ _UNITS = rf"(?<=\s)1/{_FACTOR}|{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNITS})?)\s*", re.ASCII)
 _NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
-_PLAIN = str.maketrans({"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*"})
+_MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"  # as copied from printed pages
+_PLAIN = str.maketrans(
+    {"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*", "\uff0e": "."}
+    | dict.fromkeys(_MINUS_SIGNS, "-")
+    | dict.fromkeys(_SPACES, " ")
+    | {0xFF10 + digit: str(digit) for digit in range(10)}  # of full width
+)
+_KNOWN_SIGNS = "°µμΩ"  # of units
 
 _KINDS = {
     "m": "length",
@@ -215,9 +223,18 @@ def _no_quantity(given: object, unit: str) -> tuple[str, str]:
             return "a table where one quantity is wanted", f"give e.g. {_example(unit)}"
         case float() | str() if _NO_NUMBER.match(str(given)):
             return "not a finite number", f"give e.g. {_example(unit)}"
+        case str() if odd := _odd_character(given):
+            return f"not a number with a unit: it has the character {odd}", f"give e.g. {_example(unit)}"
         case str() if _TEXT.fullmatch(point := given.translate(_PLAIN).replace(",", ".", 1)):
             return "a decimal comma", f"give a point, {show(point)}"
     return "not a number with a unit", f"give e.g. {_example(unit)}"
+
+
+def _odd_character(text: str) -> str:
+    """The name of the first character that no number or unit has, and that may look like one that does."""
+    plain = text.translate(_PLAIN)
+    odd = next((c for c in plain if not (c.isascii() or c in _KNOWN_SIGNS)), "")
+    return f"{unicodedata.name(odd, 'without a name')} (U+{ord(odd):04X})" if odd else ""
 
 
 def _example(unit: str, number: str = "1") -> str:

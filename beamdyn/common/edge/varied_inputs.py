@@ -15,6 +15,7 @@ from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.units import InvalidInput
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(?::?\s*(log)\b)?\s*([^:]*?)\s*")
 _LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(.*?)\s*")
 MOST_AT_ONCE = 100_000  # designs that are answered together, by arrays
@@ -110,6 +111,8 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
         return _range(entry, match, words, most)
     if match := _LIST.fullmatch(rest):
         return _list(entry, match[1].split(","), match[2], words)
+    if odd := _NO_NUMBER.search(rest):
+        raise ValueError(f"{words}: {odd[0]} is not a finite number; give numbers")
     unit = f" {entry.quantity.unit}".rstrip()
     form = f'"{entry.path}=1:2:11{unit}", at equal ratios "1:2:11:log{unit}", or a list, "1,1.5,2{unit}"'
     raise ValueError(f"{words}: give KEY=start:stop:count unit, e.g. {form}")

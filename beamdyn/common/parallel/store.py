@@ -6,7 +6,8 @@ import dataclasses
 import hashlib
 import json
 import pickle
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
@@ -18,6 +19,7 @@ from beamdyn.common.records import DamagedRecord, seal, unseal
 
 _PACKAGES = ("beamdyn", "brakes")  # in whose classes fields that equality leaves out change no result
 _MARKER = "store.json"  # tells a store from a folder with other content
+_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # the file of a record: see `fingerprint`
 _REMEDY = "name a folder that does not exist yet, or an earlier store"
 
 
@@ -52,18 +54,20 @@ class Store:
             raise ValueError(f"store = {str(self.path)!r} is a file; {_REMEDY}")
         self.path.mkdir(exist_ok=True)
         content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
-        if content and self._marked() != self.kind:
+        if content and self._marked(content) != self.kind:
             raise ValueError(
                 f"store = {str(self.path)!r} holds something else than a {self.kind} "
                 f"({min(content)!r}, for instance); {_REMEDY}"
             )
         write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))  # also shows that it can be written
 
-    def _marked(self) -> object:
+    def _marked(self, content: Sequence[str]) -> object:
+        """The kind by the marker; by the names of the records, where the marker is damaged or missing."""
         try:
             return json.loads((self.path / _MARKER).read_bytes())["kind"]
         except (OSError, ValueError, LookupError, TypeError):
-            return None
+            records = [name for name in content if name != _MARKER]
+            return self.kind if records and all(map(_RECORD.fullmatch, records)) else None
 
     def file(self, key: str) -> Path:
         """The file of the record of a key."""

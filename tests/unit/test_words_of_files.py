@@ -1,0 +1,96 @@
+"""What files and commands accept as people write it, and what they say of what they refuse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import main
+from beamdyn.common.edge.units import InvalidInput, quantity
+
+ROLLING = "examples/rolling_harvester.toml"
+STRIP = Path("examples/tyre_harvester.toml").read_text()
+
+
+def refusal(capsys, tmp_path: Path, scene: str, *arguments: str) -> str:
+    """What a command says of a scene that it refuses."""
+    path = tmp_path / "scene.toml"
+    path.write_text(scene)
+    assert main([arguments[0], str(path), *arguments[1:]]) == 2
+    return " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize(
+    "text", ["\u221250 mm", "-50\u00a0mm", "-50\u202fmm", "\uff0d\uff15\uff10 mm", "\u201350 mm"]
+)
+def test_minus_signs_spaces_and_digits_of_printed_pages_are_read(text: str):
+    assert quantity(text, "m") == -0.05
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [("5\u041e mm", "CYRILLIC CAPITAL LETTER O (U+041E)"), ("50\u200bmm", "ZERO WIDTH SPACE (U+200B)")],
+)
+def test_a_character_that_looks_like_another_is_named(text: str, name: str):
+    with pytest.raises(InvalidInput, match="it has the character") as refused:
+        quantity(text, "m")
+    assert name in str(refused.value)
+
+
+def test_a_missing_file_of_stations_or_records_is_named_with_its_key_and_folder(capsys, tmp_path):
+    said = refusal(capsys, tmp_path, STRIP.replace("[beam]", '[beam]\nstations = "nope.csv"'), "modes")
+    assert f'beam.stations = "nope.csv": there is no such file in the folder {tmp_path}' in said
+    motion = '\n[motion]\nkind = "recorded_rotation"\nfile = "nope.csv"\n'
+    if "[motion]" not in STRIP:
+        said = refusal(capsys, tmp_path, STRIP + motion, "modes")
+        assert 'motion.file = "nope.csv"' in said
+
+
+def test_a_thick_section_is_sent_to_keys_of_the_file(capsys, tmp_path):
+    said = refusal(capsys, tmp_path, STRIP.replace('"0.2 mm"', '"20 mm"'), "modes")
+    assert "Beam." not in said and "mass_per_length and bending_stiffness in [beam]" in said
+
+
+def test_stations_in_lengths_are_offered_where_fractions_are_wanted(capsys, tmp_path):
+    table = '{ stations = ["0 mm", "40 mm"], values = ["0.2 mm", "0.1 mm"] }'
+    said = refusal(capsys, tmp_path, STRIP.replace('"0.2 mm"', table), "modes")
+    assert "give fractions x/L, or lengths with their unit" in said
+
+
+@pytest.mark.parametrize("values", ["nan:0.05:3 m", "0.05,nan m", "0.05:inf:3 m"])
+def test_numbers_that_are_not_finite_are_named_in_studies(capsys, tmp_path, values: str):
+    said = refusal(capsys, tmp_path, STRIP, "study", "--vary", f"beam.length={values}")
+    assert f"{'inf' if 'inf' in values else 'nan'} is not a finite number" in said
+
+
+def test_a_motion_that_excites_nothing_is_refused_in_words(capsys, tmp_path):
+    steady = '\n[motion]\nkind = "steady"\nspeed = "50 rad/s"\n'
+    said = refusal(capsys, tmp_path, STRIP + steady, "random", "--road", "C", "--speed", "10 rad/s")
+    assert (
+        "[motion]: a road needs the rolling radius of a wheel" in said
+        and "(" not in said.split("[motion]")[1]
+    )
+
+
+def test_the_speed_of_a_wheel_may_be_that_of_the_vehicle(capsys, tmp_path):
+    """59.4 km/h is 55 rad/s on a radius of 300 mm."""
+    text = Path(ROLLING).read_text()
+    assert text.count('"55 rad/s"') == 1
+    path = tmp_path / "rolling.toml"
+    path.write_text(text.replace('"55 rad/s"', '"59.4 km/h"'))
+    assert bd.load_scene(path).motion.final_speed == pytest.approx(55.0, rel=1e-15)
+    assert main(["modes", ROLLING, "--speed", "59.4 km/h"]) == 0
+    assert "at 55 rad/s" in capsys.readouterr().out
+    csv = tmp_path / "locus.csv"
+    assert main(["locus", ROLLING, "--speeds", "0:59.4:2 km/h", "--csv", str(csv)]) == 0
+    assert np.loadtxt(csv, delimiter=",", skiprows=1, usecols=0) == pytest.approx([0.0, 55.0], rel=1e-15)
+    assert main(["modes", "examples/tyre_harvester.toml", "--speed", "60 km/h"]) == 2
+
+
+def test_one_per_rev_line_can_be_asked_for(capsys):
+    assert main(["campbell", "examples/blade.toml", "--top-speed", "100 rad/s", "--per-rev", "2P"]) == 0
+    said = capsys.readouterr().out
+    assert " 2P " in said and " 1P " not in said
