@@ -10,7 +10,7 @@ from beamdyn.common.announced import OUTSIDE
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.modal.model import Model
 from beamdyn.scene.mount import exact_cos_sin
-from beamdyn.scene.validity import list_range, warn_of_static_deflection, warn_of_strain
+from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -64,7 +64,7 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         yield (
-            f"at {list_range(speeds[lost])} the straight beam is unstable; the rotation bends it before: "
+            f"at {list_speeds(speeds, lost)} the straight beam is unstable; the rotation bends it before: "
             f"the answer is {OUTSIDE}"
         )
 

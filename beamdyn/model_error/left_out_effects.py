@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.common.digits import percent
 from beamdyn.common.results import plain
 from beamdyn.scene.physics_choice import OfChosenPhysics
-from beamdyn.scene.validity import list_range
+from beamdyn.scene.validity import list_speeds
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
 _NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
@@ -105,7 +105,7 @@ class LeftOutEffects:
         if speeds is None or change is None or not len(speeds):
             return ""
         unknown = np.isnan(change).reshape(len(change), -1).any(axis=1)
-        return f"at {list_range(speeds[unknown])}" if unknown.any() else ""
+        return f"at {list_speeds(speeds, unknown)}" if unknown.any() else ""
 
     def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:
         change = self.changes[name]
@@ -257,6 +257,6 @@ def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
     """Where a model error over speeds (k,) is largest, "at 100 rad/s"; at which where it is not known."""
     total = effects.total
     if not np.isfinite(total).any():
-        return f"at {list_range(speeds)}" if len(speeds) else ""
+        return f"at {list_speeds(speeds, np.ones(len(speeds), bool))}" if len(speeds) else ""
     worst = np.nanargmax(total) // (total.size // len(total))
     return f"at {speeds[worst]:.6g} rad/s"

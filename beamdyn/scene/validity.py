@@ -14,6 +14,7 @@ from beamdyn.scene.scene import Scene
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
+_MOST_RANGES = 4  # of speeds in a sentence
 FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
 
@@ -98,10 +99,23 @@ def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> 
 
 def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
     """The words " at ..." for the selected speeds; empty if there are no speeds."""
-    return "" if speeds is None else f" at {list_range(speeds[selected])}"
+    return "" if speeds is None else f" at {list_speeds(speeds, selected)}"
 
 
-def list_range(speeds: np.ndarray) -> str:
-    """Text of the range of some speeds [rad/s], such as "20 to 35 rad/s"."""
-    ends = [f"{speed:.6g}" for speed in (speeds.min(), speeds.max())]
-    return " to ".join(dict.fromkeys(ends)) + " rad/s"
+def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> str:
+    """Text of the selected speeds [rad/s], of which there is one: "20 to 35 rad/s and 50 rad/s".
+
+    Neighbours make a range; of many ranges the first are named, and how many follow up to which speed.
+    """
+    changes = np.flatnonzero(np.diff(np.concatenate(([False], selected, [False])).astype(int)))
+    ranges = [_spell_range(speeds[first], speeds[after - 1]) for first, after in changes.reshape(-1, 2)]
+    if len(ranges) > _MOST_RANGES:
+        last = f"{speeds[selected][-1]:.6g} rad/s"
+        ranges[_MOST_RANGES - 1 :] = [f"{len(ranges) - _MOST_RANGES + 1} more ranges up to {last}"]
+    *most, end = ranges
+    return f"{', '.join(most)} and {end}" if most else end
+
+
+def _spell_range(first: float, last: float) -> str:
+    """Two speeds [rad/s] in words, or one: "20 to 35 rad/s"."""
+    return " to ".join(dict.fromkeys((f"{first:.6g}", f"{last:.6g}"))) + " rad/s"

@@ -29,7 +29,7 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,
     check_speeds,
-    list_range,
+    list_speeds,
     warn_of_deflection,
     warn_of_left_out,
     warn_of_road,
@@ -414,20 +414,21 @@ def _warnings(
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
     for name in (UNSTABLE, *WITHOUT_STABLE_MEAN):
-        if (at := speeds[status == name]).size:
-            yield f"{name} at {len(at)} speed(s), {list_range(at)}: no steady response"
-    if (at := speeds[vibration == 0]).size:
+        if (at := status == name).any():
+            yield f"{name} at {at.sum()} speed(s), {list_speeds(speeds, at)}: no steady response"
+    if (at := vibration == 0).any():
         yield (
-            f"nothing excites the beam at {list_range(at)}, so that it does not move: "
+            f"nothing excites the beam at {list_speeds(speeds, at)}, so that it does not move: "
             "that takes gravity, or a wavy road and a speed other than 0"
         )
     yield from warn_of_vibration(vibration, scene, speeds)
     motion = check_steady_state(scene.motion)
     yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
-    if (at := speeds[error > tolerance]).size:
-        yield f"the harmonics are not resolved to {tolerance:g} at {list_range(at)}; see error"
-    if (at := speeds[undecided]).size:
-        yield f"stability is not decided at {list_range(at)}: growth_rate is within growth_rate_error"
+    if (at := error > tolerance).any():
+        yield f"the harmonics are not resolved to {tolerance:g} at {list_speeds(speeds, at)}; see error"
+    if undecided.any():
+        where = list_speeds(speeds, undecided)
+        yield f"stability is not decided at {where}: growth_rate is within growth_rate_error"
 
 
 def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
@@ -439,5 +440,5 @@ def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -
     if large.any():
         yield (
             f"the tip vibrates by {vibration[large].max() / scene.beam.length:.2g} of the length about the "
-            f"equilibrium at {list_range(speeds[large])}: past {LARGE_DEFLECTION:g} vibration is not linear"
+            f"equilibrium at {list_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} vibration is not linear"
         )

@@ -45,7 +45,7 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelErro
 from beamdyn.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import list_range, warn_of_deflection, warn_of_left_out, warn_of_road
+from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
@@ -359,9 +359,10 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
     if (fastest >= critical).any():
-        past = np.array(speeds)[fastest >= critical]
+        past = fastest >= critical
+        where = list_speeds(np.array(speeds), past)
         raise NoModelAnswer(
-            f"speeds: {len(past)} of {len(speeds)} ({list_range(past)}) pass the critical speed "
+            f"speeds: {past.sum()} of {len(speeds)} ({where}) pass the critical speed "
             f"{critical:.6g} rad/s, where the beam buckles and linear theory does not hold; leave them out"
         )
 
@@ -446,11 +447,12 @@ def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))
-    if (at := speeds[np.array([s != DONE for s in sweep.status])]).size:
-        yield f"{len(at)} of {len(speeds)} cases failed, at {list_range(at)}: see status"
+    if (failed := np.array([s != DONE for s in sweep.status])).any():
+        yield f"{failed.sum()} of {len(speeds)} cases failed, at {list_speeds(speeds, failed)}: see status"
     if not sweep.scene.physics.large_deflection:
         yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)
     if motion is not None:
         yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
-    if (at := speeds[sweep.time_error > tolerance * sweep.largest]).size:
-        yield (f"the time-integration error exceeds the tolerance {tolerance:g} at {list_range(at)}")
+    if (missed := sweep.time_error > tolerance * sweep.largest).any():
+        where = list_speeds(speeds, missed)
+        yield f"the time-integration error exceeds the tolerance {tolerance:g} at {where}"
