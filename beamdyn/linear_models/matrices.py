@@ -18,7 +18,8 @@ from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
-from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed, poles_of
+from beamdyn.linear_models.free_motion import free_motion
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
@@ -105,7 +106,7 @@ class Matrices(Result):
         -------
         ndarray of complex, shape (2 n,)
             Poles [1/s] in ascending order of their magnitude.  Those of coordinates without mass, as of shear
-            without rotary inertia, are not finite or only as large as rounding leaves them.
+            without rotary inertia, are infinite.
 
         Examples
         --------
@@ -114,8 +115,7 @@ class Matrices(Result):
         >>> (np.abs(found.poles[::2].imag) / (2 * np.pi)).round(2)  # Hz
         array([  61.96,  406.33, 1142.13])
         """
-        found = poles_of(self.mass, self.damping + self.gyroscopic, self.stiffness)
-        return found[np.argsort(np.abs(found))]
+        return free_motion(self.mass, self.damping + self.gyroscopic, self.stiffness).poles
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).

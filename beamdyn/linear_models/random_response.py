@@ -19,7 +19,7 @@ from beamdyn.linear_models.choice import check_linear, with_forces
 from beamdyn.linear_models.convergence import refine
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.frequency_grid import about_resonances, frequencies_of_response, one_of_each
-from beamdyn.linear_models.mean_square import FreeDecay, PartialFractions, partial_fractions
+from beamdyn.linear_models.mean_square import PartialFractions, damped_motion, partial_fractions
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, as_observation
 from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
@@ -237,7 +237,7 @@ def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Ex
 
     Those to white noise end at ten times the lowest resonance.
     """
-    poles = FreeDecay.of(model).poles
+    poles = damped_motion(model).poles
     if isinstance(spectrum, PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return frequencies_of_response(spectrum, poles, shifts)
