@@ -16,7 +16,7 @@ from beamdyn.common.checks import InvalidValue, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
-from beamdyn.linear_models.convergence import refine
+from beamdyn.linear_models.convergence import evaluate_also, refine
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.frequency_grid import about_resonances, frequencies_of_response, one_of_each
 from beamdyn.linear_models.mean_square import PartialFractions, damped_motion, partial_fractions
@@ -194,11 +194,9 @@ def random_response(
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
     f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
-    of_psd = refine(
-        loaded, speed, 0.0, model.modes, tolerance, model.discretization,
-        lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
-        _DIRECT,
-    )  # fmt: skip
+    of_psd = evaluate_also(
+        refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f)
+    )
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
