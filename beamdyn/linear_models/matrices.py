@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, real_array, refuse, several
-from beamdyn.common.one_line import counted, warned
+from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
@@ -20,6 +20,7 @@ from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forc
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
 from beamdyn.linear_models.free_motion import free_motion
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear_models.pole_errors import pole_errors
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
@@ -60,6 +61,9 @@ class Matrices(Result):
         The inputs u, with units.
     coordinates, rows : tuple of str
         What each coordinate q and each equation is, with units.
+    error : ndarray, shape (2 n,)
+        Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
+        discretization; nan of an infinite pole, inf where the coarser discretization resolves none.
     warnings : tuple of str
         What limits the validity of the matrices.
     provenance : Provenance
@@ -84,6 +88,7 @@ class Matrices(Result):
     inputs: tuple[str, ...]
     coordinates: tuple[str, ...]
     rows: tuple[str, ...]
+    error: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
     equations: Equations = field(repr=False)
@@ -93,6 +98,7 @@ class Matrices(Result):
         """What it says in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
+        yield f"lowest pole: {error_at_most(self.error[:1])}"
         yield warned(self.warnings)
 
     @property
@@ -201,6 +207,7 @@ def matrices(
         inputs=tuple(f"{each.label} [{each.unit}]" for each in given),
         coordinates=coordinates,
         rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
+        error=pole_errors(model),
         warnings=(*warn_of_model(model),),
         provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
         equations=equations,

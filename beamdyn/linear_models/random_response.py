@@ -194,9 +194,7 @@ def random_response(
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
     f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
-    of_psd = evaluate_also(
-        refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f)
-    )
+    of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
