@@ -63,7 +63,7 @@ class Matrices(Result):
         What each coordinate q and each equation is, with units.
     error : ndarray, shape (2 n,)
         Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
-        discretization; nan of an infinite pole, inf where the coarser discretization resolves none.
+        discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
     warnings : tuple of str
         What limits the validity of the matrices.
     provenance : Provenance

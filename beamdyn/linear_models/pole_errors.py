@@ -7,6 +7,9 @@ import numpy as np
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 
 _MARGIN = 2.0  # error over the distance from a coarser discretization
+_UNRESOLVED = (
+    0.01  # relative error beyond which the nearest pole of another model may be that of another mode
+)
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
 
 
@@ -15,7 +18,7 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
     What the modes left out change by damping and gyroscopic terms is the distance from the nearest pole of
     all functions; these are compared with those of a coarser discretization.  An infinite pole, of a
-    coordinate without mass, has no error: nan.
+    coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
     """
     kept, whole = model.free_motion, ModelAtSpeed(model.model, model.speed, None)
     coarse = ModelAtSpeed(model.model.coarser, model.speed, None)
@@ -28,7 +31,7 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
         error = (truncation + _MARGIN * discretized) / np.abs(poles)
     error += rounding + _ROUNDING + _MARGIN * model.discretization.rounding
     found = np.full(len(kept.poles), np.nan)
-    found[: len(poles)] = np.where(np.isfinite(error) & resolved, error, np.inf)
+    found[: len(poles)] = np.where((error < _UNRESOLVED) & resolved, error, np.inf)
     return found
 
 
