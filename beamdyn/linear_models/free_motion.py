@@ -22,6 +22,7 @@ from beamdyn.common.triangular import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
 _MASSLESS = 16 * _EPS  # r^2 over the largest, that is 0 within rounding
+_STILL = 1e-6  # pole over the shift, that is 0 within rounding: two that meet there are known to its root
 _INFINITE = 1e-12  # inverse pole over the largest, that is 0 within rounding
 _NEARLY_FREE = 1e-6  # squared frequency over that of an elastic mode, below which the stiffness is shifted
 _ELASTIC = 2  # modes that may be free of stiffness, a turn in each plane: the next one is elastic
@@ -60,8 +61,8 @@ class FreeMotion:
     Parameters
     ----------
     inverse_poles : ndarray of complex, shape (m,)
-        t_k = 1 / p_k [s], in descending order of magnitude, of a pair that of Im p > 0 first; 0 of what
-        has no mass.
+        t_k = 1 / p_k [s], in descending order of magnitude, of a pair that of Im p > 0 first; infinite of a
+        free turn, 0 of what has no mass.
     shapes : ndarray of complex, shape (n, m)
         Coordinates q of each free motion.
     states : ndarray of complex, shape (2 n, m)
@@ -81,18 +82,21 @@ class FreeMotion:
     @property
     def poles(self) -> np.ndarray:
         """The p_k [1/s] (m,), in ascending order of magnitude; infinite ones of what has no mass."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.inverse_poles == 0, np.inf, 1 / self.inverse_poles)
+        massless = np.full(np.count_nonzero(self.inverse_poles == 0), np.inf)
+        return np.concatenate([self.finite_poles, massless])
 
     @property
     def finite_poles(self) -> np.ndarray:
         """Those of what has mass."""
-        return 1 / self.inverse_poles[self.inverse_poles != 0]
+        inverse = self.inverse_poles[self.inverse_poles != 0]
+        free = np.isinf(inverse)
+        return np.where(free, 0.0, 1 / np.where(free, 1.0, inverse))
 
     @property
     def rounding(self) -> float:
         """Size of the rounding errors of the inverse poles [s]."""
-        return len(self.shapes) * _EPS * float(np.abs(self.inverse_poles).max())
+        size = np.abs(self.inverse_poles)
+        return len(self.shapes) * _EPS * float(size.max(where=np.isfinite(size), initial=0.0))
 
     def shares(self, loads: np.ndarray) -> np.ndarray:
         """Shares (m, k) of the free motions in the answers to loads (n, k)."""
@@ -115,8 +119,8 @@ def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
     v = -np.linalg.solve(eye + z * damping, np.hstack([damping + z * np.diag(r**2), np.diag(r)]))
     w = r[:, None] * (np.hstack([eye, np.zeros_like(eye)]) + z * v)
     shifted, states = scipy.linalg.eig(np.vstack([v, w]))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = shifted / (1 + z * shifted)
+    still = np.abs(1 + z * shifted) < _STILL
+    inverse = np.where(still, np.inf, shifted / np.where(still, 1, 1 + z * shifted))
     inverse = np.where(np.abs(shifted) > _INFINITE * np.abs(shifted).max(), inverse, 0.0)
     order = np.lexsort((np.imag(inverse), -np.abs(inverse)))
     inverse, states = inverse[order], states[:, order]

@@ -134,7 +134,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
         If a mode is not damped: its mean square is not finite.
     """
     inverse = model.free_motion.inverse_poles
-    if (inverse.real > -_UNDAMPED * np.abs(inverse)).any():
+    if (np.real(inverse) > -_UNDAMPED * np.abs(inverse)).any():
         bound = "a mode is not damped, and its mean square grows without limit"
         raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
     return model.free_motion
