@@ -31,6 +31,7 @@ from beamdyn.spectrum.split import Split
 from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, exact_critical_speed, relative_errors
 from benchmarks.cases.scenes import time_unit
+from benchmarks.cases.similar_beams import deviation
 from benchmarks.rows import Row, show
 
 _EPS = float(np.finfo(float).eps)
@@ -309,7 +310,13 @@ def measure_sample() -> Iterator[Row]:
     yield from summarize(draw_all(0, 1000, 2, SEED))
 
 
-PARTS = (measure_sample,)
+def measure_linear_models() -> Iterator[Row]:
+    """Linear models of steel beams of 1 um to 1 km that are nondimensionally one."""
+    apart = [deviation(10.0**power, planes) for power in range(-6, 4) for planes in (1, 2)]
+    yield "linear models of 1 um to 1 km, over those of 1 m", f"{max(apart):.0e}", "1e-9"
+
+
+PARTS = (measure_sample, measure_linear_models)
 
 
 def main() -> None:
@@ -320,7 +327,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=SEED)
     options = parser.parse_args()
     outcomes = draw_all(options.first, options.scenes, options.workers, options.seed)
-    show("the whole range of inputs", lambda: summarize(outcomes))
+    show("the whole range of inputs", lambda: summarize(outcomes), measure_linear_models)
 
 
 if __name__ == "__main__":

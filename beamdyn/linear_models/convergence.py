@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, count, within
-from beamdyn.linear_models.choice import model_at_speed
+from beamdyn.linear_models.choice import model_at_speed, model_of_few_modes
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
@@ -91,14 +91,20 @@ def refine(
     model = _resolving(scene, speed, top, discretization)
     if (whole := _all_of(model, most)) is not None:
         return _with_error(whole, evaluate(whole), None, evaluate)
-    return _add_modes(replace(model, modes=_FIRST), tolerance, discretization, evaluate)
+    few = replace(model, modes=min(_FIRST, model.modes or _FIRST))
+    return _add_modes(few, tolerance, discretization, evaluate)
+
+
+def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
+    """Another value by the models of one that is refined, with its error."""
+    return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
 
 
 def _resolving(scene: Scene, speed: float, top: float, discretization: DiscretizationChoice) -> ModelAtSpeed:
     """The model with functions for modes up to an angular frequency [rad/s], within limits."""
     modes = _ACCURATE
     while True:
-        model = model_at_speed(scene, speed, modes, discretization)
+        model = model_of_few_modes(scene, speed, modes, discretization)
         named = isinstance(discretization, str)
         if not named or modes >= _MOST or np.sqrt(np.abs(model.K).max()) > top:
             return model

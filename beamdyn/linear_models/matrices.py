@@ -12,13 +12,15 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, real_array, refuse, several
-from beamdyn.common.one_line import counted, warned
+from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
 from beamdyn.linear_models.excitations import BaseMotion, Excitation, PointForce, as_excitation
-from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed, poles_of
+from beamdyn.linear_models.free_motion import free_motion
+from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear_models.pole_errors import pole_errors
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
@@ -59,6 +61,9 @@ class Matrices(Result):
         The inputs u, with units.
     coordinates, rows : tuple of str
         What each coordinate q and each equation is, with units.
+    error : ndarray, shape (2 n,)
+        Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
+        discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
     warnings : tuple of str
         What limits the validity of the matrices.
     provenance : Provenance
@@ -83,6 +88,7 @@ class Matrices(Result):
     inputs: tuple[str, ...]
     coordinates: tuple[str, ...]
     rows: tuple[str, ...]
+    error: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
     equations: Equations = field(repr=False)
@@ -92,6 +98,7 @@ class Matrices(Result):
         """What it says in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
+        yield f"lowest pole: {error_at_most(self.error[:1])}"
         yield warned(self.warnings)
 
     @property
@@ -105,7 +112,7 @@ class Matrices(Result):
         -------
         ndarray of complex, shape (2 n,)
             Poles [1/s] in ascending order of their magnitude.  Those of coordinates without mass, as of shear
-            without rotary inertia, are not finite or only as large as rounding leaves them.
+            without rotary inertia, are infinite.
 
         Examples
         --------
@@ -114,8 +121,7 @@ class Matrices(Result):
         >>> (np.abs(found.poles[::2].imag) / (2 * np.pi)).round(2)  # Hz
         array([  61.96,  406.33, 1142.13])
         """
-        found = poles_of(self.mass, self.damping + self.gyroscopic, self.stiffness)
-        return found[np.argsort(np.abs(found))]
+        return free_motion(self.mass, self.damping + self.gyroscopic, self.stiffness).poles
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
@@ -201,6 +207,7 @@ def matrices(
         inputs=tuple(f"{each.label} [{each.unit}]" for each in given),
         coordinates=coordinates,
         rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
+        error=pole_errors(model),
         warnings=(*warn_of_model(model),),
         provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
         equations=equations,

@@ -18,9 +18,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.linear_models.free_motion import FreeMotion
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
 from beamdyn.linear_models.spectra import PowerSpectrum, SpectrumPiece
@@ -125,42 +125,24 @@ def pole_integrals(
     return PoleIntegrals(whole, by_pole)
 
 
-@dataclass(frozen=True)
-class FreeDecay:
-    """Free motion of a linear model, by its eigenvalues.
+def damped_motion(model: ModelAtSpeed) -> FreeMotion:
+    """Free motion of a model of which every mode decays.
 
-    Parameters
-    ----------
-    poles : ndarray of complex, shape (m,)
-        Eigenvalues [1/s], in the left half-plane.
-    vectors : ndarray of complex, shape (m, m)
-        Eigenvectors: coordinates, then velocities.
+    Raises
+    ------
+    InvalidValue
+        If a mode is not damped: its mean square is not finite.
     """
+    inverse = model.free_motion.inverse_poles
+    if (np.real(inverse) > -_UNDAMPED * np.abs(inverse)).any():
+        bound = "a mode is not damped, and its mean square grows without limit"
+        raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
+    return model.free_motion
 
-    poles: np.ndarray
-    vectors: np.ndarray
 
-    @classmethod
-    def of(cls, model: ModelAtSpeed) -> FreeDecay:
-        """That of a model.
-
-        Raises
-        ------
-        InvalidValue
-            If a mode is not damped: its mean square is not finite.
-        """
-        M, C, K, n = model.M, model.C, model.K, model.equations.size
-        A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
-        poles, vectors = scipy.linalg.eig(A)
-        if (poles.real > -_UNDAMPED * np.abs(poles)).any():
-            bound = "a mode is not damped, and its mean square grows without limit"
-            raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
-        return cls(poles, vectors)
-
-    def residues(self, pushed: np.ndarray) -> np.ndarray:
-        """Residues (n, m) of the coordinates, by the accelerations (n,) with which a unit input starts."""
-        n = len(pushed)
-        return self.vectors[:n] * np.linalg.solve(self.vectors, np.concatenate([np.zeros(n), pushed]))
+def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
+    """Residues (n, m) at the poles of the coordinates' answer to a load (n,)."""
+    return -free.poles * free.shapes * free.shares(load[:, None])[:, 0]
 
 
 def partial_fractions(
@@ -175,11 +157,11 @@ def partial_fractions(
     InvalidValue
         If a mode is not damped: its mean square is not finite.
     """
-    free, pushed = FreeDecay.of(model), np.linalg.solve(model.M, drive.load)
-    q, poles = free.residues(pushed), free.poles
+    free, pushed = damped_motion(model), np.linalg.solve(model.M, drive.load)
+    q, poles = residues(free, drive.load), free.poles
     row, extra = model.row(observation), model.residual(observation, drive)
-    residues = row.position @ q + poles * (row.velocity @ q) + poles**2 * (row.acceleration @ q)
-    fractions = PartialFractions(complex(row.acceleration @ pushed + extra[0]), residues, poles)
+    seen = row.position @ q + poles * (row.velocity @ q) + poles**2 * (row.acceleration @ q)
+    fractions = PartialFractions(complex(row.acceleration @ pushed + extra[0]), seen, poles)
     delay = model.scene.damping.stiffness_factor
     filtered = isinstance(observation, StrainAtRoot) and delay
     return fractions.through_filter(delay) if filtered else fractions

@@ -1,11 +1,7 @@
 """A transfer function as a sum over the free motions of a model, fast at many frequencies.
 
-Free motion M q'' + C q' + K q = 0 in the states y = (q, q') is T y' = y with the inverse of the state matrix,
-
-    T = [-K^-1 C, -K^-1 M; I, 0].
-
-A load gives y = (I - s T)^-1 (K^-1 load, 0), so that with the eigenvalues t_k = 1/p_k of T each free motion
-adds one term over 1 - s t_k.  The lowest poles p_k belong to the largest t_k, which are the accurate ones;
+Each free motion adds one term over 1 - s t_k, with its inverse pole t_k = 1/p_k: see
+`beamdyn.linear_models.free_motion`.  The lowest poles belong to the largest t_k, which are the accurate ones;
 coordinates without mass have t_k = 0.
 """
 
@@ -15,13 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
 
 _AT_ONCE = 1_000_000  # terms that are held at once
-_MASSLESS = 1e-12  # inverse pole over the largest, that is 0 within rounding
 
 
 @dataclass(frozen=True)
@@ -48,8 +42,7 @@ class ModalSum:
     @property
     def poles(self) -> np.ndarray:
         """The finite p_k [1/s]."""
-        size = np.abs(self.inverse_poles)
-        return 1 / self.inverse_poles[size > _MASSLESS * size.max()]
+        return 1 / self.inverse_poles[self.inverse_poles != 0]
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Value and derivative by s at complex frequencies s [1/s] (F,): each of shape (F,)."""
@@ -71,24 +64,12 @@ def modal_sums(
     model: ModelAtSpeed, drives: Mapping[int, HarmonicDrive], observation: Observation
 ) -> dict[int, ModalSum]:
     """Expand the transfer function of each drive, by harmonic of the rotation."""
-    n = model.equations.size
-    loads = np.column_stack([drive.load for drive in drives.values()])
-    solved = np.linalg.solve(model.K, np.hstack([-model.C, -model.M, loads]))
-    T = np.block([[np.real(solved[:, : 2 * n])], [np.eye(n), np.zeros((n, n))]])
-    inverse_poles, vectors = scipy.linalg.eig(T)
-    shares = _shares(vectors, np.vstack([solved[:, 2 * n :], np.zeros((n, len(drives)))]))
+    free = model.free_motion
+    shares = free.shares(np.column_stack([drive.load for drive in drives.values()]))
     row = model.row(observation)
-    seen = np.column_stack([r @ vectors[:n] for r in (row.position, row.velocity, row.acceleration)])
+    seen = np.column_stack([r @ free.shapes for r in (row.position, row.velocity, row.acceleration)])
     delay = model.scene.damping.stiffness_factor if isinstance(observation, StrainAtRoot) else 0.0
     return {
-        h: ModalSum(inverse_poles, seen * share[:, None], model.residual(observation, drive), delay)
+        h: ModalSum(free.inverse_poles, seen * share[:, None], model.residual(observation, drive), delay)
         for (h, drive), share in zip(drives.items(), shares.T, strict=True)
     }
-
-
-def _shares(vectors: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """States (m, k) by eigenvectors; the nearest ones where motions without mass leave these dependent."""
-    try:
-        return np.linalg.solve(vectors, states)
-    except np.linalg.LinAlgError:
-        return np.linalg.lstsq(vectors, states)[0]

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.pickling import FieldsOnly
@@ -23,6 +22,7 @@ from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.root_moment import RootMoment, StaticLoad, root_moment, static_moment
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.linear_models.excitations import Accelerations, Excitation
+from beamdyn.linear_models.free_motion import FreeMotion, free_motion
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, StrainAtRoot
 from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modal.model import Model
@@ -66,19 +66,6 @@ class Row:
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
-
-
-def poles_of(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Eigenvalues of M q'' + C q' + K q = 0 [1/s], shape (2 n,); those without mass are not finite."""
-    eye, zero = np.eye(len(M)), np.zeros_like(M)
-    A = np.block([[zero, eye], [-K, -C]])
-    E = np.block([[eye, zero], [zero, M]])
-    try:
-        return np.asarray(scipy.linalg.eigvals(A, E))
-    except np.linalg.LinAlgError:  # QZ, which allows for a singular E, need not converge
-        inverse = np.linalg.eigvals(np.linalg.solve(A, E))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return 1 / inverse
 
 
 @dataclass(frozen=True)
@@ -146,9 +133,9 @@ class ModelAtSpeed(FieldsOnly):
         return shapes
 
     @cached_property
-    def poles(self) -> np.ndarray:
-        """Eigenvalues of free motion [1/s]; those of coordinates without mass are not finite."""
-        return poles_of(self.M, self.C, self.K)
+    def free_motion(self) -> FreeMotion:
+        """Poles and shapes of free motion."""
+        return free_motion(self.M, self.C, self.K)
 
     # Inputs -----------------------------------------------------------------------------------------
 

@@ -59,7 +59,7 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
 
     An input that does not turn with the beam excites it at its own frequency plus and minus that of rotation.
     """
-    resonances = np.abs(np.imag(model.poles[np.isfinite(model.poles)])) / _TURN
+    resonances = np.abs(np.imag(model.free_motion.finite_poles)) / _TURN
     if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
         return
     first = resonances[resonances > 0].min()

@@ -16,10 +16,10 @@ from beamdyn.common.checks import InvalidValue, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
-from beamdyn.linear_models.convergence import refine
+from beamdyn.linear_models.convergence import evaluate_also, refine
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.frequency_grid import about_resonances, frequencies_of_response, one_of_each
-from beamdyn.linear_models.mean_square import FreeDecay, PartialFractions, partial_fractions
+from beamdyn.linear_models.mean_square import PartialFractions, damped_motion, partial_fractions
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, Observation, as_observation
 from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
@@ -194,11 +194,7 @@ def random_response(
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
     f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
-    of_psd = refine(
-        loaded, speed, 0.0, model.modes, tolerance, model.discretization,
-        lambda model: _density(_expand(model, drive, seen), spectrum, speed, f),
-        _DIRECT,
-    )  # fmt: skip
+    of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
@@ -237,7 +233,7 @@ def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Ex
 
     Those to white noise end at ten times the lowest resonance.
     """
-    poles = FreeDecay.of(model).poles
+    poles = damped_motion(model).poles
     if isinstance(spectrum, PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return frequencies_of_response(spectrum, poles, shifts)

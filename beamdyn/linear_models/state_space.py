@@ -14,6 +14,7 @@ from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.matrices import list_inputs, listed, steady_drive, warn_of_model
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot, as_observation
+from beamdyn.linear_models.pole_errors import pole_errors
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
@@ -57,6 +58,8 @@ def state_space(
     Returns
     -------
     scipy.signal.StateSpace
+        With one more attribute, `error`, shape (2 n,): the estimated relative error of each pole, in
+        ascending order of magnitude, as that of `matrices`.  A system that is made of it has none.
 
     Raises
     ------
@@ -93,7 +96,9 @@ def state_space(
     rows = [model.row(each) for each in observed]
     C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
     correction = [[_correction(model, each, drive) for drive in drives] for each in observed]
-    return StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+    system = StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+    vars(system)["error"] = pole_errors(model)
+    return system
 
 
 def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:

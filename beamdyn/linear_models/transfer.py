@@ -10,7 +10,8 @@ from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, StrainAtRoot
 
 _GROWING = 1e-6  # growth rate over the size of a pole, beyond rounding
-_STILL = 1e-7  # size of a pole over the median of all, that is 0 within rounding
+_STILL = 1e-6  # size of a pole over that of an elastic mode, that is 0: its square is so within rounding
+_PLANES = 2  # in each the beam may turn freely, with two poles at 0
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved at once
 
 
@@ -66,15 +67,17 @@ def check_stable(model: ModelAtSpeed) -> None:
     BeyondModel
         With the speed.
     """
-    poles = model.poles[np.isfinite(model.poles)]
-    speed = model.speed
-    if np.abs(poles).min() < _STILL * np.median(np.abs(poles)):
+    free, speed = model.free_motion, model.speed
+    inverse = free.inverse_poles
+    elastic = np.abs(inverse[min(2 * _PLANES, len(inverse) - 1)])
+    if elastic < _STILL * np.abs(inverse[0]):
         bound, remedy = (
             "the beam turns freely about its root, or is at its critical speed",
             "change the speed, or give root_stiffness",
         )
         raise BeyondModel("speed", speed, bound, remedy, "rad/s")
-    growth = np.real(poles)
-    if (growth > _GROWING * np.abs(poles)).any():
-        bound = f"free motion grows at {growth.max():.3g} 1/s: the speed is past the critical speed"
+    growing = np.real(inverse) > _GROWING * np.abs(inverse) + free.rounding
+    if growing.any():
+        growth = np.real(1 / inverse[growing]).max()
+        bound = f"free motion grows at {growth:.3g} 1/s: the speed is past the critical speed"
         raise BeyondModel("speed", speed, bound, "lower the speed", "rad/s")

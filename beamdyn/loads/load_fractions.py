@@ -22,7 +22,7 @@ import numpy as np
 
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.linear_models.excitations import BaseMotion, Excitation
-from beamdyn.linear_models.mean_square import FreeDecay, pole_integrals
+from beamdyn.linear_models.mean_square import damped_motion, pole_integrals, residues
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear_models.spectra import PowerSpectrum
 from beamdyn.loads.load_rows import LoadRows, span_rows
@@ -121,14 +121,14 @@ class LinearLoads:
             If the excitation does not load the beam, or a mode is not damped.
         """
         rows, inertia = self._rows
-        free = FreeDecay.of(self.model)
+        free = damped_motion(self.model)
         position, velocity = self._at_speed(rows)
         found = []
         for harmonic, drive in self.model.drives(excitation).items():
-            q = free.residues(np.linalg.solve(self.model.M, drive.load))
-            residues = position @ q + (velocity @ q) * free.poles
+            q = residues(free, drive.load)
+            seen = position @ q + (velocity @ q) * free.poles
             shift = harmonic * self.model.speed / _TURN
-            found.append(LoadFractions(shift, self._direct(rows, inertia, drive), residues, free.poles))
+            found.append(LoadFractions(shift, self._direct(rows, inertia, drive), seen, free.poles))
         return (*found,)
 
     def steady(self) -> tuple[np.ndarray, np.ndarray]:

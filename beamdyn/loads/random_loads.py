@@ -26,7 +26,7 @@ from beamdyn.common.checks import InvalidValue, ascending, positive, refuse, wit
 from beamdyn.common.digits import percent, supported
 from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance
-from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
+from beamdyn.linear_models.choice import check_linear, model_of_few_modes, with_forces
 from beamdyn.linear_models.convergence import Refined, refine
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.mean_square import partial_fractions
@@ -411,7 +411,7 @@ class _InputAndOutputs:
         discretization: DiscretizationChoice,
     ) -> Refined:
         """`statistics` and their errors, nan where there is none, with as many modes as they need."""
-        few = self.statistics(model_at_speed(loaded, speed, _FIRST_MODES, discretization))
+        few = self.statistics(model_of_few_modes(loaded, speed, _FIRST_MODES, discretization))
         size = _sizes(few)
 
         def relative(model: ModelAtSpeed) -> np.ndarray:

@@ -230,6 +230,22 @@ def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) 
     return discretization if fits else "ritz"
 
 
+def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -> int:
+    """A number of modes, or as many of them as the functions of a given discretization serve, at least 1."""
+    if isinstance(discretization, str):
+        return modes
+    check_discretization(discretization)
+    return max(1, _most_that_fit(discretization, modes, _count_segments(scene)))
+
+
+def _most_that_fit(discretization: Discretization, modes: int, segments: int) -> int:
+    """The most of some modes for which a discretization has functions enough."""
+    if _fits(discretization, modes, segments):
+        return modes
+    fewer = range(1, min(modes, _MANY))
+    return bisect_left(fewer, True, key=lambda n: not _fits(discretization, n, segments))
+
+
 def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
     """Whether a beam of some segments has functions enough."""
     on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
@@ -245,10 +261,9 @@ def _count_functions(discretization: Discretization, segments: int) -> int:
 
 def _check_size(discretization: Discretization, modes: int, segments: int) -> Discretization:
     """Raise a ValueError that names the most modes, if there are too few functions for those asked for."""
-    if _fits(discretization, modes, segments):
+    most = _most_that_fit(discretization, modes, segments)
+    if most == modes:
         return discretization
-    fewer = range(1, min(modes, _MANY))
-    most = bisect_left(fewer, True, key=lambda n: not _fits(discretization, n, segments))
     bound = f"{discretization} gives at most {most} modes with an estimate of their error"
     raise InvalidValue("modes", modes, bound, "ask for fewer")
 

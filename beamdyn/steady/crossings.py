@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+KINDS = ("forced", "parametric")
+
+
 @dataclass(frozen=True)
 class Crossing:
     """Speed at which a line of the excitation equals a natural frequency.
@@ -92,6 +95,9 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     unlisted : int
         Number of crossings of the next order, which are weaker and not listed; those of still higher
         order are not counted.
+    may_peak : int
+        Number of those that are forced: near each of them the steady response may have a peak.  Parametric
+        ones make no peak of their own: where damping is too weak, free motion grows there.
     warnings : tuple of str
         Limitations of the result, and why there is no crossing.
     provenance : Provenance
@@ -112,6 +118,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     frequency: np.ndarray
     order: int
     unlisted: int
+    may_peak: int
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
@@ -141,7 +148,11 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         if not self.unlisted:
             return f"{sought}; there are none of order {self.order + 1}."
         crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
-        return f"{sought}; {crossings}, and those of higher order, are weaker and left out."
+        weaker = f"{sought}; {crossings}, and those of higher order, are weaker and left out"
+        if not self.may_peak:
+            return f"{weaker}."
+        forced = "it is" if self.unlisted == 1 else f"{self.may_peak} of them are"
+        return f"{weaker}: {forced} forced, where the steady response may have a peak."
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""

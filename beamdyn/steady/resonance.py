@@ -25,7 +25,7 @@ from beamdyn.model_error.choice import choose_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
-from beamdyn.steady.crossings import Crossing, Crossings
+from beamdyn.steady.crossings import KINDS, Crossing, Crossings
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
 
 _HIGHEST_ORDER = 20  # highest order that may be asked for: it takes ten seconds
@@ -107,7 +107,8 @@ def resonance_speeds(
         speeds=parts[0].loci.speeds,
         frequency=_tracked(parts) / (2 * np.pi),
         order=order,
-        unlisted=sum(part.count_further(order) for part in parts),
+        unlisted=sum(part.count_further(order, kind) for part in parts for kind in KINDS),
+        may_peak=sum(part.count_further(order, "forced") for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
             *_warn_of_replacement(discretization, model),
@@ -175,10 +176,11 @@ class _Part:
         """Kinds, lines and indices of the modes of the resonances: a set that keeps their order."""
         return dict.fromkeys(_list_resonances(*self.lines, self.loci.modes, order))
 
-    def count_further(self, order: int) -> int:
-        """Count the crossings of the next order."""
+    def count_further(self, order: int, kind: str) -> int:
+        """Count the crossings of the next order, of one kind."""
         sought, more = self.resonances(order), _list_resonances(*self.more_lines, self.loci.modes, order + 1)
-        return sum(self.loci.count_crossings(*each[1:]) for each in more if each not in sought)
+        further = (each for each in more if each not in sought and each[0] == kind)
+        return sum(self.loci.count_crossings(*each[1:]) for each in further)
 
 
 def _find_parts(model: Model, top: float, modes: int, order: int) -> list[_Part]:

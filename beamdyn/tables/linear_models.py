@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from math import isfinite
 
 import numpy as np
 from rich.console import Group
@@ -11,6 +12,7 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
+from beamdyn.common.one_line import rounded_up
 from beamdyn.linear_models.frequency_response import FrequencyResponse
 from beamdyn.linear_models.matrices import Matrices
 from beamdyn.linear_models.random_response import RandomResponse
@@ -111,6 +113,8 @@ _MATRICES = (
     "input_matrix",
 )
 
+_PAIRS = 6  # of poles, whose errors the table has
+
 
 def matrices_table(result: Matrices) -> Group:
     """What each coordinate is, with the diagonals of mass and stiffness."""
@@ -122,7 +126,10 @@ def matrices_table(result: Matrices) -> Group:
         f"Equations at {result.display_units.speed_unit().say(result.speed)}, by {result.provenance.method}"
     )
     heads = "row", "coordinate", "mass, diagonal", "stiffness, diagonal"
-    inputs = f"Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
+    lowest = result.error[: 2 * _PAIRS : 2].tolist()
+    of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
+    errors = f"Relative errors of the lowest poles, pair by pair: {of_pairs}."
+    inputs = f"{errors} Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
     return Group(table(title, heads, rows, (1,)), Text(inputs))
 
 
@@ -132,5 +139,6 @@ def matrices_csv(result: Matrices) -> Iterator[Sequence[object]]:
     for name in _MATRICES:
         for (row, column), value in np.ndenumerate(getattr(result, name)):
             yield name, row + 1, column + 1, float(value)
-    for row, value in enumerate(result.static_load.tolist(), 1):
-        yield "static_load", row, 1, value
+    for name in ("static_load", "error"):
+        for row, value in enumerate(getattr(result, name).tolist(), 1):
+            yield name, row, 1, value

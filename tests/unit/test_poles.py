@@ -48,3 +48,14 @@ def test_a_beam_that_buckles_has_a_pole_to_the_right():
     critical = bd.critical_speed(PLAIN)
     below, above = (bd.matrices(PLAIN, share * critical, modes=2).poles for share in (0.99, 1.01))
     assert below.real.max() < 1e-6 * np.abs(below).max() and above.real.max() > 1.0
+
+
+@pytest.mark.parametrize("kept", [3, 6, None])
+@pytest.mark.parametrize("damper", [0.0, 0.02, 0.5])
+def test_errors_of_poles_cover_those_of_many_more_functions(kept, damper):
+    """The tip damper couples the kept modes to those left out."""
+    scene = bd.Scene(STRIP, bd.Mount(0.215), damping=bd.Damping(tip_damper=damper))
+    found, fine = bd.matrices(scene, 50.0, kept), bd.matrices(scene, 50.0, discretization=bd.Ritz(60)).poles
+    true = np.abs(found.poles[:, None] - fine).min(axis=1) / np.abs(found.poles)
+    assert (true <= found.error).all() and found.error[0] < (1e-9 if kept is None or not damper else 0.01)
+    np.testing.assert_array_equal(vars(bd.state_space(scene, 50.0, modes=kept))["error"], found.error)

@@ -214,6 +214,10 @@ def test_crossings_that_are_not_listed_are_counted(changes: dict, order: int) ->
     assert (found.order, found.unlisted) == (order, len(more) - len(found))
     assert f"{found.unlisted} crossings of order {order + 1}" in found.extent and not found.warnings
     assert {(c.kind, c.speed) for c in found} < {(c.kind, c.speed) for c in more}
+    assert found.may_peak == sum(
+        (c.kind == "forced") * s for s, each in ((1, more), (-1, found)) for c in each
+    )
+    assert f"{found.may_peak} of them are forced, where the steady response may have a peak" in found.extent
 
 
 def test_no_crossing_says_what_was_sought() -> None:

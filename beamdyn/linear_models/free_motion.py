@@ -1,0 +1,177 @@
+"""Free motion of linear equations, M q'' + C q' + K q = 0, alike in whatever units they are written.
+
+Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and
+w = r u'.  Then all that remains is times, and for the poles s the eigenvalues of T are 1 / (s - z), where
+
+    T (u, w) = (v, r (u + z v)),    v = -(I + z C)^-1 ((C + z r^2) u + r w).
+
+A stiffness that is positive definite needs no shift z: T = [-C, -r; r, 0] is skew without damping, and falls
+apart into blocks of two by modal damping, so that eigenvalues and vectors are as accurate as those of
+symmetric matrices.  The lowest poles belong to the largest eigenvalues, which keep all digits; coordinates
+without mass have r = 0, and infinite poles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+
+_EPS = float(np.finfo(float).eps)
+_MASSLESS = 16 * _EPS  # r^2 over the largest, that is 0 within rounding
+_STILL = 1e-6  # pole over the shift, that is 0 within rounding: two that meet there are known to its root
+_INFINITE = 1e-12  # inverse pole over the largest, that is 0 within rounding
+_NEARLY_FREE = 1e-6  # squared frequency over that of an elastic mode, below which the stiffness is shifted
+_ELASTIC = 2  # modes that may be free of stiffness, a turn in each plane: the next one is elastic
+
+
+@dataclass(frozen=True)
+class BalancedCoordinates:
+    """Coordinates u, q = basis u, in which K + shift^2 M is the unit matrix and M = diag(roots^2).
+
+    Parameters
+    ----------
+    basis : ndarray, shape (n, n)
+        Coordinates q per unit of each u.
+    roots : ndarray, shape (n,)
+        Roots of the mass [s], descending; 0 of what has no mass within rounding.
+    shift : float
+        Shift of the poles [1/s].
+    """
+
+    basis: np.ndarray
+    roots: np.ndarray
+    shift: float
+
+    @property
+    def squared(self) -> np.ndarray:
+        """Squared frequencies without damping [1/s2], of what has mass: those of least size first."""
+        with_mass = self.roots[self.roots > 0]
+        found = with_mass**-2.0 - self.shift**2
+        return found[np.argsort(np.abs(found))]
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """Free motions: a load f moves the coordinates by q(s) = sum_k shapes_k shares_k(f) / (1 - s t_k).
+
+    Parameters
+    ----------
+    inverse_poles : ndarray of complex, shape (m,)
+        t_k = 1 / p_k [s], in descending order of magnitude, of a pair that of Im p > 0 first; infinite of a
+        free turn, 0 of what has no mass.
+    shapes : ndarray of complex, shape (n, m)
+        Coordinates q of each free motion.
+    states : ndarray of complex, shape (2 n, m)
+        The same in balanced coordinates, u and then w.
+    coordinates : BalancedCoordinates
+        These.
+    damping : ndarray, shape (n, n)
+        C in these [s].
+    """
+
+    inverse_poles: np.ndarray
+    shapes: np.ndarray
+    states: np.ndarray
+    coordinates: BalancedCoordinates
+    damping: np.ndarray
+
+    @property
+    def poles(self) -> np.ndarray:
+        """The p_k [1/s] (m,), in ascending order of magnitude; infinite ones of what has no mass."""
+        massless = np.full(np.count_nonzero(self.inverse_poles == 0), np.inf)
+        return np.concatenate([self.finite_poles, massless])
+
+    @property
+    def finite_poles(self) -> np.ndarray:
+        """Those of what has mass."""
+        inverse = self.inverse_poles[self.inverse_poles != 0]
+        free = np.isinf(inverse)
+        return np.where(free, 0.0, 1 / np.where(free, 1.0, inverse))
+
+    @property
+    def rounding(self) -> float:
+        """Size of the rounding errors of the inverse poles [s]."""
+        size = np.abs(self.inverse_poles)
+        return len(self.shapes) * _EPS * float(size.max(where=np.isfinite(size), initial=0.0))
+
+    def shares(self, loads: np.ndarray) -> np.ndarray:
+        """Shares (m, k) of the free motions in the answers to loads (n, k)."""
+        z, r = self.coordinates.shift, self.coordinates.roots[:, None]
+        u = np.linalg.solve(np.eye(len(r)) + z * self.damping, self.coordinates.basis.T @ loads)
+        return _in_terms_of(self.states, np.vstack([u, z * r * u])) * (1 - z * self.inverse_poles)[:, None]
+
+
+def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
+    """Solve M q'' + C q' + K q = 0 for symmetric M, not negative, and symmetric K.
+
+    Parameters
+    ----------
+    M, C, K : ndarray, shape (n, n)
+        Mass, damping with gyroscopic terms, and stiffness.
+    """
+    chosen = balance(M, K)
+    z, r, damping = chosen.shift, chosen.roots, chosen.basis.T @ C @ chosen.basis
+    eye = np.eye(len(r))
+    v = -np.linalg.solve(eye + z * damping, np.hstack([damping + z * np.diag(r**2), np.diag(r)]))
+    w = r[:, None] * (np.hstack([eye, np.zeros_like(eye)]) + z * v)
+    shifted, states = scipy.linalg.eig(np.vstack([v, w]))
+    still = np.abs(1 + z * shifted) < _STILL
+    inverse = np.where(still, np.inf, shifted / np.where(still, 1, 1 + z * shifted))
+    inverse = np.where(np.abs(shifted) > _INFINITE * np.abs(shifted).max(), inverse, 0.0)
+    order = np.lexsort((np.imag(inverse), -np.abs(inverse)))
+    inverse, states = inverse[order], states[:, order]
+    return FreeMotion(inverse, chosen.basis @ states[: len(r)], states, chosen, damping)
+
+
+def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
+    """Choose coordinates for free motion; with a shift where the stiffness is not safely positive."""
+    try:
+        found = _diagonal(M, K, 0.0)
+    except np.linalg.LinAlgError:
+        found = _diagonal(M, K, _safe_shift(M, K))
+    squared = found.squared
+    elastic = abs(squared[min(_ELASTIC, len(squared) - 1)])
+    if not found.shift and squared[0] > _NEARLY_FREE * elastic:
+        return found
+    negative = max(0.0, -float(squared.min()))
+    return _diagonal(M, K, max(np.sqrt(elastic + 2 * negative), _EPS * _safe_shift(M, K)))
+
+
+def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates:
+    """Coordinates for one shift; a LinAlgError if the shifted stiffness is not positive definite."""
+    L = np.linalg.cholesky(K + shift**2 * M)
+    mass = solve_lower(L, solve_lower(L, M).T)
+    squared_roots, turned = np.linalg.eigh((mass + mass.T) / 2)
+    squared_roots, turned = squared_roots[::-1], turned[:, ::-1]
+    roots = np.sqrt(np.where(squared_roots > _MASSLESS * squared_roots[0], squared_roots, 0.0))
+    return BalancedCoordinates(solve_lower_transposed(L, turned), roots, shift)
+
+
+def _safe_shift(M: np.ndarray, K: np.ndarray) -> float:
+    """A shift that makes the stiffness safely positive definite, of the size of the highest frequencies."""
+    mass, stiffness = np.diag(M), np.abs(np.diag(K))
+    massive = mass > _MASSLESS * mass.max()
+    shift = np.sqrt(np.max(stiffness[massive] / mass[massive]) or 1.0)
+    while not _is_definite(K + shift**2 * M):
+        shift *= 2
+    return float(2 * shift)
+
+
+def _is_definite(A: np.ndarray) -> bool:
+    try:
+        np.linalg.cholesky(A)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _in_terms_of(vectors: np.ndarray, states: np.ndarray) -> np.ndarray:
+    """States (m, k) by eigenvectors; the nearest ones where motions without mass leave these dependent."""
+    try:
+        return np.linalg.solve(vectors, states)
+    except np.linalg.LinAlgError:
+        return np.linalg.lstsq(vectors, states)[0]

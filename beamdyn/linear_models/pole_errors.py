@@ -1,0 +1,42 @@
+"""Errors of the poles of a linear model: by the modes left out, and by the discretization."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.linear_models.model_at_speed import ModelAtSpeed
+
+_MARGIN = 2.0  # error over the distance from a coarser discretization
+_UNRESOLVED = (
+    0.01  # relative error beyond which the nearest pole of another model may be that of another mode
+)
+_ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
+
+
+def pole_errors(model: ModelAtSpeed) -> np.ndarray:
+    """Estimated relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
+
+    What the modes left out change by damping and gyroscopic terms is the distance from the nearest pole of
+    all functions; these are compared with those of a coarser discretization.  An infinite pole, of a
+    coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
+    """
+    kept, whole = model.free_motion, ModelAtSpeed(model.model, model.speed, None)
+    coarse = ModelAtSpeed(model.model.coarser, model.speed, None)
+    poles, of_all = kept.finite_poles, whole.free_motion.finite_poles
+    truncation, nearest = _distance(poles, of_all)
+    discretized, _ = _distance(nearest, coarse.free_motion.finite_poles)
+    resolved = model.model.exceeds_coarser
+    rounding = (kept.rounding + whole.free_motion.rounding) * np.abs(poles)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = (truncation + _MARGIN * discretized) / np.abs(poles)
+    error += rounding + _ROUNDING + _MARGIN * model.discretization.rounding
+    found = np.full(len(kept.poles), np.nan)
+    found[: len(poles)] = np.where((error < _UNRESOLVED) & resolved, error, np.inf)
+    return found
+
+
+def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance of each pole from the nearest of others, and that one."""
+    apart = np.abs(poles[:, None] - others)
+    nearest = apart.argmin(axis=1)
+    return apart.min(axis=1), others[nearest]
