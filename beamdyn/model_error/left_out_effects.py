@@ -104,7 +104,7 @@ class LeftOutEffects:
         change = self.changes.get(name)
         if speeds is None or change is None or not len(speeds):
             return ""
-        unknown = np.isnan(change).reshape(len(change), -1).any(axis=1)
+        unknown = np.asarray(np.isnan(change).reshape(len(change), -1).any(axis=1))
         return f"at {list_speeds(speeds, unknown)}" if unknown.any() else ""
 
     def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:

@@ -108,7 +108,7 @@ def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> str:
     Neighbours make a range; of many ranges the first are named, and how many follow up to which speed.
     """
     changes = np.flatnonzero(np.diff(np.concatenate(([False], selected, [False])).astype(int)))
-    ranges = [_spell_range(speeds[first], speeds[after - 1]) for first, after in changes.reshape(-1, 2)]
+    ranges = [_spell_range(*speeds[[first, after - 1]].tolist()) for first, after in changes.reshape(-1, 2)]
     if len(ranges) > _MOST_RANGES:
         last = f"{speeds[selected][-1]:.6g} rad/s"
         ranges[_MOST_RANGES - 1 :] = [f"{len(ranges) - _MOST_RANGES + 1} more ranges up to {last}"]

@@ -158,10 +158,8 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def error(self) -> float:
-        """Largest residual and virtual work, over the largest force."""
-        return max(
-            float(np.max(np.fmax(self.run.residual, self.run.virtual_work))), largest_error(self.equilibrium)
-        )
+        """Largest error of the forces, over the largest force."""
+        return float(np.fmax.reduce(self.run.error, initial=largest_error(self.equilibrium)))
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
@@ -282,7 +280,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     name = "mechanism"
     title = "Mechanism"
     method = "equilibrium of rigid bodies in a plane, solved by singular values; friction by Newton's method"
-    error_from = "largest residual on a body, and virtual work of all loads, over the largest force"
+    error_from = "rounding of the drawing and residual over the smallest singular value of the equations"
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])

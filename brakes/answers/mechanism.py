@@ -173,7 +173,7 @@ class MechanismAnswer(PlanarAnswer):
 
     @property
     def error(self) -> float:
-        """Largest residual and virtual work, over the largest force."""
+        """Largest error of the forces, over the largest force."""
         return max(largest_error(self.last), self.friction.error if self.friction else 0.0)
 
     @property

@@ -88,7 +88,7 @@ class MechanismFriction(Result):
 
     @property
     def error(self) -> float:
-        """Largest residual and virtual work, over the largest force, where there is equilibrium."""
+        """Largest error of the forces, over the largest force, where there is equilibrium."""
         return max(largest_error(way) for way in _ways(self.last))
 
     def table(self) -> RenderableType:

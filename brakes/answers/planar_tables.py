@@ -90,8 +90,8 @@ def format_size(value: Any, unit: str, digits: int = 5) -> str:
 
 
 def largest_error(equilibrium: Equilibrium) -> float:
-    """Largest residual and virtual work of an equilibrium's positions, over the largest force."""
-    return float(np.max(np.fmax(equilibrium.residual, equilibrium.virtual_work)))
+    """Largest error of an equilibrium's positions, over the largest force; nan where there are no forces."""
+    return float(np.fmax.reduce(equilibrium.error, axis=None))
 
 
 def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float) -> str:

@@ -53,6 +53,7 @@ class _Forces(NamedTuple):
     magnitudes: dict[str, np.ndarray]
     virtual_work: np.ndarray
     residual: np.ndarray
+    error: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -196,6 +197,7 @@ class Caliper:
             magnitudes=forces.magnitudes,
             virtual_work=forces.virtual_work,
             residual=forces.residual,
+            error=forces.error,
             motion=motion,
         )
 
@@ -330,6 +332,7 @@ def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: n
         magnitudes=sizes,
         virtual_work=np.maximum(a.virtual_work, b.virtual_work),
         residual=np.maximum(a.residual, b.residual),
+        error=np.maximum(a.error, b.error),
     )
 
 

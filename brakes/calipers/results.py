@@ -51,6 +51,8 @@ class CaliperStroke(Result):
         Largest work of the loads on a free motion over the largest force: 0 but for rounding.
     residual : ndarray, shape (S,)
         Largest force or moment left over on a body, over the largest force.
+    error : ndarray, shape (S,)
+        Error of the forces over the largest, as in `planar.Equilibrium`.
     motion : Stroke
         Positions of the bodies.
 
@@ -78,6 +80,7 @@ class CaliperStroke(Result):
     magnitudes: dict[str, np.ndarray]
     virtual_work: np.ndarray
     residual: np.ndarray
+    error: np.ndarray
     motion: Stroke = field(repr=False)
 
     def headline(self) -> Iterator[str]:
@@ -85,7 +88,7 @@ class CaliperStroke(Result):
         yield f"{self.caliper}, {counted(len(self.cable), 'position')}"
         yield f"cable to {number(1e3 * self.cable[-1], 'mm')}"
         yield f"advantage {number(self.total_advantage[-1])}"
-        yield error_at_most(np.fmax(self.virtual_work, self.residual))
+        yield error_at_most(self.error)
         yield from (self.status, warned(self.warnings))
 
     @property

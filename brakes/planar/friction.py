@@ -136,11 +136,14 @@ def _branch(
     load = int(balance.unknown[-1])  # mobility 1 and a determined equilibrium leave one unknown load
     law = -sliding * system.coefficient
     unpressed, jams = _jams_when_disturbed(system, balance, start, law)
-    multiplier, jammed = _newton(system, balance, start, np.where(unpressed, 0.0, law))
+    law = np.where(unpressed, 0.0, law)
+    multiplier, jammed = _newton(system, balance, start, law)
     reversed_ = _reversed(system, load, start, multiplier) & ~jammed
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
-    result = collect_result(position, balance, forces, multiplier, jammed)
+    regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
+    kept = regularity[:, -1] / regularity[:, 0]
+    result = collect_result(position, balance, forces, multiplier, jammed, kept)
     name = mechanism.loads[load - system.constraints].name
     jams &= ~jammed
     if jams.any():

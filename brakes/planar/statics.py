@@ -67,6 +67,10 @@ class Equilibrium:
         forces and moments on the whole.  It does not use the reactions.
     residual : ndarray
         Largest force or moment left over on a body, over the largest force.
+    error : ndarray
+        Error of the forces over the largest one (couples over the length of the mechanism): the rounding of
+        the coordinates and the residual, both over the smallest singular value of the equations with their
+        friction; nan where there are no forces.
     kept, dropped : ndarray
         Smallest singular value above the rank tolerance and largest below it, over the largest of all: the
         wider the gap, the surer the rank.
@@ -100,6 +104,7 @@ class Equilibrium:
     open_or_slack: tuple[str, ...]
     virtual_work: np.ndarray
     residual: np.ndarray
+    error: np.ndarray
     kept: np.ndarray = field(repr=False)
     dropped: np.ndarray = field(repr=False)
     warnings: tuple[str, ...]
@@ -204,8 +209,12 @@ def collect_result(
     forces: Decomposition,
     multiplier: np.ndarray,
     jammed: np.ndarray | bool = False,
+    regularity: np.ndarray | None = None,
 ) -> Equilibrium:
-    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `jammed` positions (S,)."""
+    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `jammed` positions (S,).
+
+    `regularity` (S,) is the smallest singular value of the equations with friction, over the largest.
+    """
     system = position.mechanism.system
     constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
@@ -218,6 +227,8 @@ def collect_result(
     ways = one_way_parts(position.mechanism.parts)
     wrong_way = find_wrong_way(ways, magnitudes | amplitudes, tolerance(system) * scale)
     virtual_work = _virtual_work(system, balance, constraints, multiplier) / scale
+    wrong = (system.rounding + residual) / (forces.kept if regularity is None else regularity)
+    error = np.where(unbalanced | jammed, np.nan, np.maximum(wrong, virtual_work))
     return Equilibrium(
         position=position,
         reactions=reactions,
@@ -228,6 +239,7 @@ def collect_result(
         open_or_slack=tuple(wrong_way),
         virtual_work=_shaped(position, virtual_work),
         residual=_shaped(position, residual),
+        error=_shaped(position, error),
         multiplier=_shaped(position, shown * system.unit),
         **_verdict(position, constraints, forces, unbalanced, undetermined, wrong_way),
         **_ranks(position, constraints, forces),

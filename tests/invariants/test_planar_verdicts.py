@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.invariant_verdicts import count_changes, transform
+from benchmarks.stated_mechanism_errors import measure
 from brakes.planar import (
     GROUND,
     Bar,
@@ -81,3 +82,10 @@ def test_a_drawer_pulled_along_its_line_moves_and_says_whether_an_offset_jams_it
 def test_a_drawer_pulled_beside_its_line_jams():
     """Toward the guides; away from them the pull grows: 100 N (1 + 2 mu e/(b - 2 mu h + 2 mu e))."""
     assert solve_with_friction(drawer(0.1, -1e-3), "pull").squeeze.status == "self-locking"
+
+
+def test_stated_errors_cover_those_against_forty_digits():
+    """Sixty of the thousand mechanisms of the benchmark, drawn far away and nearly jammed among them."""
+    found = measure(60)
+    assert len(found) > 80
+    assert all(each.true <= each.stated for each in found)

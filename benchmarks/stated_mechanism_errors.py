@@ -1,0 +1,134 @@
+"""Whether the stated errors of mechanisms cover the true ones.
+
+Run: python -m benchmarks.stated_mechanism_errors [--mechanisms N].  Random mechanisms, without friction and
+sliding in either direction, some of them drawn far away or with nearly the friction that jams them, against
+equilibrium to 40 digits.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import mpmath
+import numpy as np
+
+from benchmarks.cases import mechanisms
+from benchmarks.cases.mechanism_digits import exact_forces
+from benchmarks.invariant_verdicts import draw_mechanism, transform
+from benchmarks.rows import Row, show
+from brakes import planar
+
+SEED = 4
+_LEAST = 1e-17  # true error below which it counts as this much: a double holds no less
+_FAR = 1e4  # largest shift of a mechanism [m]
+
+
+class Errors(NamedTuple):
+    """Stated and true relative error of the forces of a mechanism."""
+
+    stated: float
+    true: float
+
+
+def draw(rng: np.random.Generator) -> tuple[planar.Mechanism, str | None]:
+    """A mechanism, and the load that drives it where it has friction; one in three is drawn far away."""
+    mechanism, driver = (
+        draw_mechanism(rng) if rng.random() < 0.5 else (mechanisms.random_mechanism(rng), None)
+    )
+    if driver is not None and rng.random() < 0.5:
+        mechanism = _near_jamming(mechanism, driver, 1 - 10 ** rng.uniform(-8, -1))
+    if rng.random() < 0.3:
+        away = 10 ** rng.uniform(0, np.log10(_FAR)) * np.exp(2j * np.pi * rng.random())
+        mechanism = transform(mechanism, shift=away, angle=rng.uniform(0, 6))
+    return mechanism, driver
+
+
+def _near_jamming(mechanism: planar.Mechanism, driver: str, part: float) -> planar.Mechanism:
+    """The mechanism with a part of the friction that jams it when squeezed, if 20 times its own does."""
+    low, high = 1.0, 20.0
+    if _jams(mechanism, driver) or not _jams(_with_friction(mechanism, high), driver):
+        return mechanism
+    while high - low > 1e-12 * low:
+        middle = (low + high) / 2
+        low, high = (low, middle) if _jams(_with_friction(mechanism, middle), driver) else (middle, high)
+    return _with_friction(mechanism, max(1.0, part * low))
+
+
+def _jams(mechanism: planar.Mechanism, driver: str) -> bool:
+    return bool(np.isnan(planar.solve_with_friction(mechanism, driver).squeeze.multiplier).any())
+
+
+def _with_friction(mechanism: planar.Mechanism, factor: float) -> planar.Mechanism:
+    """The mechanism with all coefficients of friction multiplied."""
+    joints = [
+        replace(joint, friction=factor * joint.friction) if getattr(joint, "friction", 0.0) else joint
+        for joint in mechanism.joints
+    ]
+    return planar.Mechanism(mechanism.bodies, tuple(joints), mechanism.loads)
+
+
+def errors_of(mechanism: planar.Mechanism, driver: str | None) -> Iterator[Errors]:
+    """Errors of the equilibria of a mechanism that have an answer."""
+    if driver is None:
+        yield from _compared(planar.solve(mechanism))
+        return
+    found = planar.solve_with_friction(mechanism, driver)
+    for way in (found.without, found.squeeze, found.release):
+        yield from _compared(way)
+
+
+def _compared(found: planar.Equilibrium) -> Iterator[Errors]:
+    mechanism = found.position.mechanism
+    if not found.is_determined or any("exactly in line" in warning for warning in found.warnings):
+        return
+    system = mechanism.system
+    parts = {name: found.multiplier[rows] for name, rows in system.joints.items()}
+    senses = {name: float(np.sign(size)) for name, size in found.friction.items() if size != 0}
+    exact = exact_forces(mechanism, senses, {name: parts[name].tolist() for name in senses})
+    if exact is None:
+        return
+    given = parts | {name: np.array([found.multiplier[row]]) for name, row in system.loads.items()}
+    unit = {name: system.unit[rows] for name, rows in (system.joints | system.loads).items()}
+    largest = float(np.abs(found.multiplier / system.unit).max())
+    with mpmath.workdps(40):
+        wrong = (
+            float(abs(exact_part - mpmath.mpf(float(part)))) / float(np.ravel(size)[0])
+            for name, expected in exact.items()
+            for exact_part, part, size in zip(
+                expected, given[name], np.broadcast_to(unit[name], len(expected)), strict=True
+            )
+        )
+        yield Errors(float(found.error), max(wrong) / largest)
+
+
+def measure(number: int, seed: int = SEED) -> list[Errors]:
+    """Errors of so many random mechanisms."""
+    rng = np.random.default_rng(seed)
+    return [errors for _ in range(number) for errors in errors_of(*draw(rng))]
+
+
+def rows(number: int) -> Iterator[Row]:
+    """How many stated errors cover the true ones, and by how much they are too large."""
+    stated, true = np.array(measure(number)).T
+    over = stated / np.maximum(true, _LEAST)
+    yield (
+        f"{number} mechanisms, {len(stated)} equilibria: stated errors that cover",
+        f"{(over >= 1).mean():.2%}",
+        "99.9 %",
+    )
+    yield "... true over stated: largest", f"{(1 / over).max():.2g}", ""
+    yield "... stated over true: median", f"{np.median(over):.3g}", "100"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--mechanisms", type=int, default=1000)
+    number = parser.parse_args().mechanisms
+    show("Stated errors of mechanisms against 40 digits", lambda: rows(number))
+
+
+if __name__ == "__main__":
+    main()
