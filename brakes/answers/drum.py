@@ -46,6 +46,7 @@ _SHOE = (
     take("effective_arm", "effective arm of the friction", "mm", _MM),
     take("locking_friction", "friction at self-locking"),
     take("closure", "residual moment / (P (a + c))"),
+    take("error", "bound of the relative error"),
 )
 
 
@@ -75,8 +76,8 @@ class DrumAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Largest residual moment of a shoe about the drum's centre; nan where the brake locks."""
-        return np.max(np.broadcast_arrays(*(shoe.closure for shoe in self.result.shoes)), axis=0)
+        """Bound of the relative error of torque, forces and C*; nan where the brake locks."""
+        return self.result.error
 
     @property
     def refusals(self) -> Sequence[str]:
@@ -161,7 +162,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
     title = "Drum brake"
     purpose = "A brake with shoes on fixed pins: torque, pressure, pin reactions, and when it locks itself."
     method = "pressure and friction of each shoe integrated in closed form"
-    error_from = "residual moment of a shoe about the drum's centre, over force times arm"
+    error_from = "rounding of inputs and sums, over the margin to self-locking"
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load")
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))

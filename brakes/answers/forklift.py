@@ -90,6 +90,7 @@ _FORCES = (
     Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
     Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
     take("residual", "residual of the equations, over T/r"),
+    take("error", "bound of the relative error"),
 )
 
 
@@ -157,10 +158,9 @@ class ForkliftAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Largest of the stages' residuals."""
+        """Sum of the stages' errors."""
         stages = (self.stop, self.motion, self.forces)
-        residuals = [stage.residual for stage in stages if stage is not None]
-        return np.fmax.reduce(np.broadcast_arrays(*residuals))
+        return sum(stage.error for stage in stages if stage is not None)
 
     def tables(self) -> list[RenderableType]:
         """Tables of vehicle, kinematics and forces, as far as these stages are shown."""
@@ -323,8 +323,8 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
     method = "closed forms of the stop and of the shoes' motion; forces by a root of one equation a shoe"
     error_from = (
-        "largest of: residual moment on the truck, distance of lining and piston from where they should end, "
-        "residual of the brake's equations; each relative"
+        "rounding of inputs and sums, over the margins to self-locking and to never stopping, and to the end "
+        "of the shoes' reach"
     )
     model = ForkliftInput
     sections = needs = ("truck", "stop", "brake", "levers", "forces")

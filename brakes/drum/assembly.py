@@ -131,8 +131,13 @@ class BrakeResult(SlidesOrLocks):
         """What it says in one line; see `Result.headline`."""
         yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
-        yield error_at_most([np.max(shoe.closure) for shoe in self.shoes])
+        yield error_at_most(self.error)
         yield "locked" if np.any(self.locked) else "slides"
+
+    @property
+    def error(self) -> Numbers:
+        """Bound of the relative error of torque, force, pressure and C*: the sum of those of the shoes."""
+        return sum(shoe.error for shoe in self.shoes)
 
 
 def brake_torque(
@@ -189,9 +194,8 @@ def brake_torque(
     at_unit_force = _solve_shoes(brake, mu, 1.0, reverse)
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-        limit = _least([shoe.locking_friction for shoe in at_unit_force])
         bound = "a shoe locks: no torque can be demanded of the brake"
-        refuse(mu >= limit, "friction", mu, "", bound, "give a force to see which one, or less friction")
+        refuse(_any_locked(at_unit_force), "friction", mu, "", bound, "give a force to see which one, or less friction")
         value = value / sum(shoe.torque for shoe in at_unit_force)
     elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
         value = value / _largest([shoe.peak_pressure for shoe in at_unit_force])
@@ -221,8 +225,12 @@ def _assemble_result(
         c_star_slope=sum(shoe.c_star_slope for shoe in shoes),
         locking_friction=limit,
         margin=1 - mu / limit,
-        locked=mu >= limit,
+        locked=_any_locked(shoes),
     )
+
+
+def _any_locked(shoes: tuple[ShoeResult, ...]) -> np.ndarray:
+    return np.logical_or.reduce(np.broadcast_arrays(*(shoe.locked for shoe in shoes)))[()]
 
 
 def _least(limits: list[Numbers]) -> Numbers:

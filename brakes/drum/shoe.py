@@ -30,6 +30,8 @@ _PRESSURE_ZERO = (
     "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
 )
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
+_EPS = 2 * np.finfo(float).eps  # rounding of an input and of what is computed from it
+_LEAST_MARGIN = 5e-13  # margin to self-locking that cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,8 @@ class _Integrals:
     """Integrals over the arc, in axes turned by delta.
 
     K, S, C are those of sin, sin^2, sin cos; n and d the arms [m] of the normal and, for friction 1,
-    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).
+    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).  `relative` bounds the rounding of
+    the integrals themselves, `n_error` and `d_error` [m] that of the arms.
     """
 
     K: Numbers
@@ -158,6 +161,9 @@ class _Integrals:
     n: Numbers
     d: Numbers
     peak: Numbers  # largest value of the sine
+    relative: Numbers
+    n_error: Numbers
+    d_error: Numbers
 
 
 def _integrals(shoe: Shoe) -> _Integrals:
@@ -169,7 +175,32 @@ def _integrals(shoe: Shoe) -> _Integrals:
     b, c = _turned(shoe)
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
     peak = np.where(inside, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
-    return _Integrals(K, S, C, c * S - b * C, shoe.drum_radius * K - b * S - c * C, peak)
+    K_error, S_error, C_error = _errors_of_integrals(shoe, a1, a2, h)
+    size, n_error = np.hypot(S, C), np.hypot(b, c) * (S_error + C_error)
+    return _Integrals(
+        K,
+        S,
+        C,
+        c * S - b * C,
+        shoe.drum_radius * K - b * S - c * C,
+        peak,
+        K_error / K + (S_error + C_error) / size,
+        n_error,
+        shoe.drum_radius * K_error + n_error,
+    )
+
+
+def _errors_of_integrals(
+    shoe: Shoe, a1: np.ndarray, a2: np.ndarray, h: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed."""
+    angle = _EPS * (np.maximum(*np.abs(shoe.lining)) + 2 * np.abs(shoe.phase))
+    sines, cosines = np.abs(np.sin((a1, a2))), np.abs(np.cos((a1, a2)))
+    return (
+        angle * sines.sum(axis=0) + _EPS * np.sin(h) * sines.max(axis=0),
+        angle * (sines**2).sum(axis=0) + 2 * _EPS * h,
+        angle * (sines * cosines).sum(axis=0) + _EPS * np.abs(np.sin(2 * h)),
+    )
 
 
 def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
@@ -238,6 +269,9 @@ class ShoeResult(SlidesOrLocks):
         Torque over the size of the friction's resultant, rho [m]; never less than the drum's radius.
     closure : ndarray
         Residual moment about the drum's centre, relative to P (a + c): rounding only.
+    error : ndarray
+        Bound of the relative error of torque, pressure, factors and the actuating force, and of the other
+        forces over the largest: rounding of inputs and of sums, which grows as 1 / margin.
     c_star, c_star_slope : ndarray
         Shoe factor C* = torque / (force radius), and its derivative with respect to the friction.
     locking_friction : ndarray
@@ -245,7 +279,7 @@ class ShoeResult(SlidesOrLocks):
     margin : ndarray
         1 - friction / locking_friction: 0 at locking, negative past it.
     locked : ndarray of bool
-        Whether the friction is at or past self-locking.
+        Whether the friction is past self-locking, or at it up to a margin of 5e-13 or rounding.
 
     Examples
     --------
@@ -267,6 +301,7 @@ class ShoeResult(SlidesOrLocks):
     pin_reaction: np.ndarray
     effective_arm: Numbers
     closure: Numbers
+    error: Numbers
     c_star: Numbers
     c_star_slope: Numbers
     locking_friction: Numbers
@@ -277,7 +312,7 @@ class ShoeResult(SlidesOrLocks):
         """What it says in one line; see `Result.headline`."""
         yield f"{'leading' if self.leading else 'trailing'}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
-        yield f"{error_at_most(self.closure)}"
+        yield error_at_most(self.error)
         yield "locked" if np.any(self.locked) else "slides"
 
     def pressure(self, alpha: Numbers) -> np.ndarray:
@@ -358,8 +393,9 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
     arm, area = shoe.moment_arm, shoe.face_width * np.asarray(r)
     mu, value, n, d = np.broadcast_arrays(mu, value, i.n, i.d)
     with np.errstate(divide="ignore"):
-        limit = np.where(s * d < 0, n / np.abs(d), np.inf)
-    locked = mu >= limit
+        limit = np.where(s * d < -i.d_error, n / np.abs(d), np.inf)
+    bracket_error = i.n_error + mu * i.d_error + _EPS * (n + mu * np.abs(d))
+    locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(_LEAST_MARGIN * n, bracket_error))
     if name == "torque":
         remedy = "give a force to see whether the shoe locks, or less friction"
         refuse(locked, "friction", mu, "", "the shoe locks: no torque can be demanded of it", remedy)
@@ -388,12 +424,19 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
         pin_reaction=pin,
         effective_arm=(r * i.K / np.hypot(i.S, i.C))[()],
         closure=_closure(shoe, force, s * torque, pin)[()],
+        error=(_error_of_arms(shoe, i) + 2 * bracket_error / bracket)[()],
         c_star=(mu * arm * i.K / bracket)[()],
         c_star_slope=(arm * i.K * n / bracket**2)[()],
         locking_friction=limit[()],
         margin=(1 - mu / limit)[()],
         locked=locked[()],
     )
+
+
+def _error_of_arms(shoe: Shoe, i: _Integrals) -> np.ndarray:
+    """Relative error of all that n + s mu d is divided by or multiplied with."""
+    arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
+    return i.relative + i.n_error / np.abs(i.n) + _EPS * (4 + arms)
 
 
 def _closure(shoe: Shoe, force: np.ndarray, moment: np.ndarray, pin: np.ndarray) -> np.ndarray:

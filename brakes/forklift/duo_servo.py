@@ -19,7 +19,7 @@ from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 from beamdyn.common.one_line import error_at_most, spanned, warned
 from beamdyn.common.results import Result
-from brakes.forklift.levers import Levers
+from brakes.forklift.levers import ROUNDING, Levers
 from brakes.forklift.vehicle import ACUTE
 
 
@@ -157,6 +157,11 @@ class DuoServo:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
         return self.move_shoes(clearance).levers
 
+    def lever_error(self, clearance: Numbers | None = None) -> Numbers:
+        """Bound of the error of the lever arms over their size, and of their angles [rad]."""
+        motion = self.move_shoes(0.0 if clearance is None else clearance)
+        return motion.error * self.drum_radius / np.minimum(motion.levers.a1, motion.levers.a2)
+
     def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
         """Position [m] of a piston whose face passes through a point of the right side."""
         return x - y * np.tan(self.face_tilt)
@@ -281,8 +286,28 @@ class ShoeMotion(Result):
         yield f"drum turns {spanned(np.degrees(self.drum_turn), 'deg')}"
         travels = (spanned(np.multiply(1e3, each), "mm") for each in (self.right_travel, self.left_travel))
         yield f"pistons travel {' and '.join(travels)}"
-        yield error_at_most(self.residual)
+        yield error_at_most(self.error)
         yield warned(self.interference)
+
+    @property
+    def error(self) -> Numbers:
+        """Bound of the error of turns [rad] and of positions over r, by the rounding of inputs and sums.
+
+        Each turn is an arc cosine, which rounding changes the more the nearer the shoe comes to the end of its
+        reach: contact point, pin and centre in line in stage 1; the tip's path along the face in stage 2.
+        """
+        brake, r = self.geometry, self.geometry.drum_radius
+        pin, tip = np.hypot(*brake.adjuster), np.hypot(self.right_tip[..., 0], self.right_tip[..., 1])
+        x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
+        far = np.hypot(x - brake.adjuster[0], y - brake.adjuster[1])
+        sides, scale = r**2 - pin**2 - far**2, 2 * pin * far
+        rounded = ROUNDING * ((r**2 + pin**2 + far**2) / scale + (r + pin) / far)
+        seating = _error_of_arccos(rounded, np.sqrt(np.clip(1 - (sides / scale) ** 2, 0, 1)))
+        arm = np.hypot(brake.tip[0] - brake.adjuster[0], brake.tip[1] - brake.adjuster[1])
+        moved = (ROUNDING * r + seating * arm) / tip
+        face = ROUNDING * (brake.tip[0] + brake.tip[1] + brake.piston_bottom) / tip
+        height = brake.face_tilt + np.arctan2(self.right_tip[..., 1], self.right_tip[..., 0])
+        return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
     @property
     def residual(self) -> Numbers:
@@ -328,6 +353,11 @@ BENDIX_12_5 = DuoServo(
 def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndarray]:
     c, s = np.cos(angle), np.sin(angle)
     return c * x - s * y, s * x + c * y
+
+
+def _error_of_arccos(error: np.ndarray, sine: np.ndarray) -> np.ndarray:
+    """Error of an arc cosine [rad] from that of the cosine, and the sine; the root of it in line."""
+    return error / np.sqrt(sine**2 + error)
 
 
 def _arccos(value: Numbers) -> np.ndarray:

@@ -29,7 +29,7 @@ from beamdyn.common.array_checks import Numbers, positive, together
 from beamdyn.common.checks import InvalidValue, refuse
 from beamdyn.common.one_line import error_at_most, spanned, warned
 from beamdyn.common.results import Result
-from brakes.forklift.levers import Levers
+from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 
 _STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
@@ -41,6 +41,10 @@ class Geometry(Protocol):
 
     def find_levers(self, clearance: Any = None) -> Levers:
         """Find arms and directions at the end of the shoes' motion."""
+        ...
+
+    def lever_error(self, clearance: Any = None) -> Numbers:
+        """Bound of the error of the arms over their size, and of the angles [rad]."""
         ...
 
 
@@ -73,6 +77,10 @@ class InternalForces(Result):
     residual : ndarray
         Largest of the `equilibrium_equations`, nondimensional: with the larger of T / r and P_T as the unit
         of force and r as that of length.
+    error : ndarray
+        Bound of the relative error of forces, torque, friction and factors (of vectors over their size): the
+        rounding of arms and sums, which grows as 1 / margin, and as the square of a large friction; nan where
+        there are no forces.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
@@ -108,13 +116,14 @@ class InternalForces(Result):
     leading_share: Numbers
     trailing_share: Numbers
     residual: Numbers
+    error: Numbers
     status: Any
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""
         yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
-        yield error_at_most(self.residual)
+        yield error_at_most(self.error)
         yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
         yield warned(self.warnings)
 
@@ -197,16 +206,35 @@ def internal_forces(
     mu = None if friction is None else positive("friction", friction)
     shapes = {"piston_force": P_T, "torque": T, "friction": mu, "levers": levers.phi1 * levers.a1 * levers.b2}
     together(**{name: value for name, value in shapes.items() if value is not None})
+    rounding = ROUNDING + geometry.lever_error(clearance)
     if T is None:
-        return _solve_from_friction(levers, P_T, mu)
+        return _solve_from_friction(levers, P_T, mu, rounding)
     if mu is not None:
-        bound = "the brake locks: no torque can be demanded of it"
-        past = mu >= np.asarray(levers.locking_friction)
+        bound, past = "the brake locks: no torque can be demanded of it", _locks(levers, mu, rounding)
         refuse(past, "friction", mu, "", bound, "leave out the torque to see that it locks")
-    return _solve_from_torque(levers, P_T, T, mu)
+    return _solve_from_torque(levers, P_T, T, mu, rounding)
 
 
-def _solve_from_torque(levers: Levers, P_T: Numbers, T: Numbers, mu: Numbers | None) -> InternalForces:
+def _locks(levers: Levers, mu: Numbers, rounding: Numbers) -> np.ndarray:
+    """Whether friction is at self-locking, as far as rounding tells, or past it."""
+    return _least_margin(levers, mu) <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), 4 * rounding)
+
+
+def _least_margin(levers: Levers, mu: Numbers) -> np.ndarray:
+    """Smaller margin of the two shoes to self-locking, 1 - s / a1 or 1 - s / b2."""
+    return 1 - levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu) / np.minimum(levers.a1, levers.b2)
+
+
+def _error(levers: Levers, mu: np.ndarray, rounding: Numbers, mu_error: Numbers) -> np.ndarray:
+    """Relative error of what follows from a friction with a relative error: for the slope, twice each shoe's."""
+    s = levers.drum_radius * mu / np.hypot(1.0, mu)
+    shoes = levers.b2 / (levers.b2 - s) + levers.a1 / (levers.a1 - s)
+    return (4 * rounding + mu_error) * (1 + 2 * shoes)
+
+
+def _solve_from_torque(
+    levers: Levers, P_T: Numbers, T: Numbers, mu: Numbers | None, rounding: Numbers
+) -> InternalForces:
     shape = np.broadcast_shapes(*(np.shape(x) for x in (P_T, T, *vars(levers).values())))
     u = _solve_trailing_share(levers, np.broadcast_to(P_T, shape), np.broadcast_to(T, shape))
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
@@ -216,7 +244,10 @@ def _solve_from_torque(levers: Levers, P_T: Numbers, T: Numbers, mu: Numbers | N
     status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):
         A, C = np.sqrt((R_L - B) * (R_L + B)), np.sqrt((R_T - D) * (R_T + D))
-    return _assemble_result(levers, P_T, np.broadcast_to(T, shape), (A, B, C, D, Q, P_L), status, mu)
+        slope = _share_equation(levers, P_T, T, u)[1]
+        shares = 4 * rounding * (1 + 2 * R_L / ((1 - u) * slope))
+        error = _error(levers, B / A, rounding, shares * (3 + 2 * (B / A) ** 2))
+    return _assemble_result(levers, P_T, np.broadcast_to(T, shape), (A, B, C, D, Q, P_L), status, mu, error)
 
 
 def _forces_at_share(levers: Levers, P_T: Numbers, T: Numbers, u: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -259,10 +290,10 @@ def _share_equation(
     return u * R_L - (1 - u) * R_T, R_L + u * dR_L + R_T - (1 - u) * dR_T
 
 
-def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers) -> InternalForces:
+def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Numbers) -> InternalForces:
     r, mu = levers.drum_radius, np.asarray(mu)
     sigma = mu / np.hypot(1.0, mu)
-    locked = mu >= levers.locking_friction
+    locked = _locks(levers, mu, rounding)
     s = np.where(locked, np.nan, r * sigma)
     Q = _force_across_shoe(P_T, levers.a2, levers.b2, levers.phi2, s)
     P_L = _force_across_shoe(Q, levers.b1, levers.a1, levers.phi1, s)
@@ -270,7 +301,8 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers) -> InternalF
     cosine = 1 / np.hypot(1.0, mu)
     forces = (cosine * R_L, sigma * R_L, cosine * R_T, sigma * R_T, Q, P_L)
     status = np.broadcast_to(np.where(locked, "locked", "equilibrium"), np.shape(R_L))
-    return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None)
+    error = _error(levers, mu, rounding, 0.0)
+    return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None, error)
 
 
 def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
@@ -281,7 +313,13 @@ def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numb
 
 
 def _assemble_result(
-    levers: Levers, P_T: Numbers, T: np.ndarray, forces: tuple, status: np.ndarray, mu: Numbers | None
+    levers: Levers,
+    P_T: Numbers,
+    T: np.ndarray,
+    forces: tuple,
+    status: np.ndarray,
+    mu: Numbers | None,
+    error: np.ndarray,
 ) -> InternalForces:
     valid = status == "equilibrium"
     A, B, C, D, Q, P_L = (np.where(valid, force, np.nan) for force in forces)
@@ -318,6 +356,7 @@ def _assemble_result(
         leading_share=(B / (B + D))[()],
         trailing_share=(D / (B + D))[()],
         residual=residual[()],
+        error=np.where(valid, error, np.nan)[()],
         status=status[()],
         warnings=tuple(_warnings(levers, friction, mu)),
     )

@@ -11,6 +11,9 @@ from beamdyn.common.array_checks import Numbers, keep_checked, together
 from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 
+ROUNDING = 2 * np.finfo(float).eps  # of an input and of what is computed from it
+LEAST_MARGIN = 5e-13  # margin to self-locking, or to never stopping, that cannot be told from none
+
 
 @dataclass(frozen=True)
 class Levers:
@@ -87,6 +90,10 @@ class Levers:
         sigma = np.minimum(self.a1, self.b2) / self.drum_radius
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
+
+    def lever_error(self, clearance: None = None) -> float:
+        """Error of arms over their size, and of angles [rad]: none, as they are given."""
+        return 0.0
 
     def find_levers(self, clearance: None = None) -> Levers:
         """These levers: they belong to one position of the brake.

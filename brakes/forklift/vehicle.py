@@ -27,6 +27,7 @@ from beamdyn.common.checks import kind, refuse
 from beamdyn.common.described import Described
 from beamdyn.common.one_line import spanned
 from beamdyn.common.results import Result
+from brakes.forklift.levers import LEAST_MARGIN, ROUNDING
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
 ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
@@ -125,6 +126,13 @@ class Truck:
         m, ml = self.empty_mass, self.load_mass
         x, y = ((m * e + ml * w) / (m + ml) for e, w in zip(self.empty_cg, self.load_cg, strict=True))
         return x, y
+
+    @property
+    def sizes_of_coordinates(self) -> Numbers:
+        """Sum of the lengths [m] that make up the arms of weight and friction: the scale of their rounding."""
+        m, ml = self.empty_mass, self.load_mass
+        empty, load = (np.sum(np.abs(np.broadcast_arrays(*cg)), axis=0) for cg in (self.empty_cg, self.load_cg))
+        return (m * empty + ml * load) / (m + ml) + self.front_wheel_radius + self.wheelbase
 
     @property
     def overturning_slopes(self) -> tuple[Numbers, Numbers]:
@@ -261,6 +269,18 @@ class Stop(Result):
         return np.abs(moment) / ((self.front_load + self.rear_load) * truck.wheelbase)
 
     @property
+    def error(self) -> Numbers:
+        """Bound of the relative error of distance and time, and of the loads over the weight.
+
+        The rounding of inputs and sums, over the margin to never stopping.
+        """
+        truck, c = self.truck, self.conditions
+        size = truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
+        pull = c.gravity * np.abs(np.sin(c.slope))
+        slowing = np.where(self.stops, np.abs(self.acceleration), np.inf)
+        return (ROUNDING * (4 + size) * (3 + 2 * pull / slowing))[()]
+
+    @property
     def message(self) -> str:
         """What the status means, in one sentence; of many cases, how many do not stop."""
         if np.ndim(self.status):
@@ -324,7 +344,7 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*vars(conditions).values(), one_case)
     slide = _slide(truck, beta, mu, g)
     phases = _brake(V, slide.acceleration, t2)
-    stops = slide.acceleration < 0
+    stops = slide.acceleration < -LEAST_MARGIN * g * np.abs(np.sin(beta))
     braking = np.where(stops, phases.braking_distance, np.inf)
     status = np.select([~stops, phases.in_rise], ["never stops", "stops in the rise time"], default="stops")
     return Stop(

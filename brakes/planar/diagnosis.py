@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from brakes.planar.linear import rank_tolerance
 from brakes.planar.system import System
 
 _STILL = 1e-8  # relative motion that counts as rounding
@@ -86,13 +87,25 @@ def describe_loose(system: System, y: np.ndarray, motions: np.ndarray) -> str:
     return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
 
 
-def describe_near_toggle(system: System, y: np.ndarray, motions: np.ndarray) -> str:
-    """Say that rounding decides what holds a mechanism, and the remedy."""
+def describe_near_toggle(system: System, y: np.ndarray, motions: np.ndarray, margin: float) -> str:
+    """Say that rounding decides what holds a mechanism, by which margin, and the remedy."""
     return (
         "too near a toggle position to decide whether the loads are in balance: "
-        f"{describe(system, y, motions)} there, which only forces beyond all bounds could stop; "
+        f"{describe(system, y, motions)} there, which only forces beyond all bounds could stop "
+        f"(smallest singular value {margin:.1g}, at least {rank_tolerance(system.rounding):.1g} is needed); "
         "draw it further from that position, or give a load that moves it an unknown amplitude"
     )
+
+
+def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
+    """Refuse a driver whose velocity, per unit of the mechanism's motion, cannot be told from zero."""
+    margin, least = np.abs(rates).min(), rank_tolerance(system.rounding)
+    if margin < least:
+        raise ValueError(
+            f"driver {driver!r} stands still while the mechanism moves, or is too near a toggle position to "
+            f"decide (velocity {margin:.1g} of the mechanism's, at least {least:.1g} is needed): "
+            "choose another driver, or draw the mechanism further from that position"
+        )
 
 
 def describe_self_stress(names: tuple[str, ...]) -> str:

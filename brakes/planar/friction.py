@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brakes.planar.diagnosis import join_names
+from brakes.planar.diagnosis import check_moves, join_names
 from brakes.planar.kinematics import assemble
 from brakes.planar.linear import decompose, rank_tolerance, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
@@ -122,8 +122,7 @@ def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
     driven = rate[:, [system.loads[driver]]]
     slip = rate[:, list(system.friction.values())]
     still = rank_tolerance(system.rounding)  # velocities are those per unit motion
-    if (np.abs(driven) < still).any():
-        raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
+    check_moves(system, driver, driven)
     return np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
 
 

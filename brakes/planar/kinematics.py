@@ -21,6 +21,7 @@ from brakes.planar.diagnosis import (
     AssemblyError,
     OppositeTravelError,
     OutOfReachError,
+    check_moves,
     explain_mobility,
     join_names,
     moving_bodies,
@@ -343,8 +344,7 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
     if free.shape[1] != 1:
         raise ValueError(explain_mobility(system, y, free))
     node = node_at(system, y[0], free[:, 0])
-    if abs(node.rate[k]) < rank_tolerance(system.rounding):
-        raise ValueError(f"driver {driver!r} stands still while the mechanism moves: choose another driver")
+    check_moves(system, driver, node.rate[k])
     return system, node if node.rate[k] > 0 else node.reversed(), k
 
 

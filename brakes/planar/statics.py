@@ -351,7 +351,8 @@ def _verdict(
     if unbalanced.any():
         free = constraints.null(worst)
         if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
-            found.append(("near a toggle", describe_near_toggle(system, position.batch[worst], loose)))
+            margin = float(forces.dropped[worst])
+            found.append(("near a toggle", describe_near_toggle(system, position.batch[worst], loose, margin)))
         else:
             found.append(("no equilibrium", f"the loads are not in balance: {how}"))
     else:
