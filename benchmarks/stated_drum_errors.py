@@ -52,7 +52,7 @@ def draw_shoe(rng: np.random.Generator) -> drum.Shoe:
         r = 10 ** rng.uniform(-3, 1)
         start, end = np.sort(rng.uniform(-0.2, 3.2, 2))
         if rng.random() < 0.2:
-            end = start + 10 ** rng.uniform(-4, -1)
+            end = start + 10 ** rng.uniform(-2, -1)
         pivot = r * rng.uniform(-0.5, 0.9), -r * rng.uniform(0.05, 1.1)
         zero = "axis" if rng.random() < 0.3 else "pivot"
         try:
@@ -110,10 +110,12 @@ def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
     limit, piston = digits.locking_friction(exact), 10 ** rng.uniform(-3, 6)
     mu = float(limit * (1 - mpf(_margin(rng)))) if limit else 10 ** rng.uniform(-2, 2)
     found = forklift.internal_forces(geometry, piston_force=piston, friction=mu, clearance=clearance)
-    if rng.random() < 0.3:
-        torque = float(found.torque)
-        found = forklift.internal_forces(geometry, piston_force=piston, torque=torque, clearance=clearance)
-        mu = digits.friction_of_torque(exact, piston, torque, mu)
+    if rng.random() < 0.7:
+        slope = digits.slope_at_friction(exact, piston, mu)
+        return _compared(found, digits.forces_from_friction(exact, piston, mu) | slope)
+    torque = float(found.torque)
+    found = forklift.internal_forces(geometry, piston_force=piston, torque=torque, clearance=clearance)
+    mu = digits.friction_of_torque(exact, piston, torque, mu)
     return _compared(found, digits.forces_from_friction(exact, piston, mu))
 
 
@@ -152,9 +154,10 @@ def measure(kind: str, number: int, seed: int = SEED) -> list[Errors]:
 def rows(number: int) -> Iterator[Row]:
     """How many stated errors cover the true ones, and by how much they are too large."""
     for kind in KINDS:
-        stated, true = np.array(measure(kind, number)).T
+        stated, true = np.array([each for each in measure(kind, number) if not np.isnan(each.stated)]).T
         over = stated / true
-        yield f"{number} {kind}: stated errors that cover", f"{(over >= 1).mean():.2%}", "99.9 %"
+        yield f"{len(stated)} {kind}: stated errors that cover", f"{(over >= 1).mean():.2%}", "99.9 %"
+        yield "... refused, the margin being within its error", str(number - len(stated)), ""
         yield "... largest true error", f"{true.max():.2g}", ""
         yield "... true over stated: largest", f"{(1 / over).max():.2g}", ""
         yield "... stated over true: median", f"{np.median(over):.3g}", "100"

@@ -1,6 +1,6 @@
-"""Drum brakes with pivoted and with duo-servo shoes, and stops, to many digits, from their inputs as they are.
+"""Drum brakes with pivoted and with duo-servo shoes, and stops, to many digits.
 
-Shares nothing with the package but its classes of inputs.
+From their inputs as they are; shares nothing with the package but its classes of inputs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ DIGITS = 40
 
 
 def _arms(shoe: Shoe) -> tuple[mpf, mpf, mpf, mpf, mpf, mpf]:
-    """Integrals K, S, C, arms n and d about the pin [m] as in `shoe_torque`, and the pressure's zero [rad]."""
+    """Integrals K, S, C and arms n, d [m] as in `shoe_torque`, and where the pressure vanishes [rad]."""
     b, y = map(mpf, shoe.pivot)
     zero = mpmath.atan2(b, -y) if shoe.pressure_zero == "pivot" else mpf(0)
     a1, a2 = (mpf(end) - zero for end in shoe.lining)
@@ -59,10 +59,8 @@ def exact_levers(brake: DuoServo, clearance: float) -> dict[str, mpf]:
     pin, tip = (mpmath.mpc(*point) for point in (brake.adjuster, brake.tip))
     point = (r - mpf(clearance)) * mpmath.expj(mpf(brake.contact_angle))
     far, near = abs(point - pin), abs(pin)
-    opening = mpmath.acos((r**2 - near**2 - far**2) / (2 * near * far))  # turn of the point from the pin's line
+    opening = mpmath.acos((r**2 - near**2 - far**2) / (2 * near * far))  # from the pin's radius to the point
     seated = pin + (tip - pin) * mpmath.expj(mpmath.arg(pin) + opening - mpmath.arg(point - pin))
-    if abs(seated - pin) and mpmath.arg((point - pin) / pin) < 0:
-        seated = pin + (tip - pin) * mpmath.expj(mpmath.arg(pin) - opening - mpmath.arg(point - pin))
     bottom = (tip.real - tip.imag * mpmath.tan(tilt) - mpf(brake.piston_bottom)) * mpmath.cos(tilt)
     psi = mpmath.acos(bottom / abs(seated)) - tilt - mpmath.arg(seated)
     face = mpmath.expj(tilt)
@@ -109,6 +107,14 @@ def forces_from_friction(levers: dict[str, mpf], piston: float, friction: Any) -
         "leading_share": R_L / (R_L + R_T),
         "trailing_share": R_T / (R_L + R_T),
     }
+
+
+def slope_at_friction(levers: dict[str, mpf], piston: float, friction: float) -> dict[str, mpf]:
+    """Derivative of C* with respect to the friction, by central differences."""
+    step = locking_friction(levers)
+    step = (step - mpf(friction) if step else mpf(friction)) * mpf(10) ** -8
+    ends = (forces_from_friction(levers, piston, friction + sense * step)["c_star"] for sense in (1, -1))
+    return {"c_star_slope": (next(ends) - next(ends)) / (2 * step)}
 
 
 def _across(P: mpf, a: mpf, b: mpf, phi: mpf, s: mpf) -> mpf:

@@ -21,7 +21,7 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.edge.config import parse, read, validated
+from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
 from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, swept
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
@@ -289,8 +289,9 @@ class BrakeType(ABC, Generic[FileModel]):
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
         """Answer to the design of tables, with its provenance; raises what `read` and `solve` raise."""
-        start = perf_counter()
-        answer = self.solve(self.read(tables, source))
+        start, design = perf_counter(), self.read(tables, source)
+        with in_words_of_file(type(design), tables, source):
+            answer = self.solve(design)
         return replace(answer, provenance=self._provenance(start))
 
     def _provenance(self, start: float) -> Provenance:
@@ -419,7 +420,8 @@ class ArrayBrakeType(BrakeType[FileModel]):
                 bad = error.by_case()
                 if error.cases is None or error.cases.bad.shape != rows.shape:
                     raise  # it is not about some of the designs
-                refused.update((int(rows[i]), str(each)) for i, each in bad.items())
+                key = path_of(error, [entry.path for entry in describe(type(design))]) or error.field
+                refused.update((int(rows[i]), said_of(each, key, None)) for i, each in bad.items())
                 rows = rows[~error.cases.bad]
         return None, rows, refused
 

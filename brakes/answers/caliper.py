@@ -145,7 +145,13 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on forces that statics does not determine, contacts that open, and friction that jams."""
+        """Sentences on forces that statics does not determine, contacts that open, friction, and grip."""
+        slips = self.stop and self.stop.status != "stops" and f"the vehicle {self.stop.message}"
+        return (*self._unsolved, *([slips] if slips else []))
+
+    @property
+    def _unsolved(self) -> Sequence[str]:
+        """Why the forces of the pads are not known."""
         stuck = self.friction and not self.friction.has_answer and in_small_units(self.friction.message)
         return (*super().refusals, *([stuck] if stuck else []))
 
@@ -154,17 +160,19 @@ class CaliperAnswer(PlanarAnswer):
         """Warnings of the stroke, and a sentence if friction holds the brake."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
-        return tuple(map(in_small_units, (*self.run.warnings, *held)))
+        unchecked = self.stop.unchecked if self.stop and self.stop.status == "stops" else ()
+        return tuple(map(in_small_units, (*self.run.warnings, *held, *unchecked)))
 
     @property
     def error(self) -> float:
         """Largest error of the forces, over the largest force."""
-        return float(np.fmax.reduce(self.run.error, initial=largest_error(self.equilibrium)))
+        rubbing = np.nan if self.friction is None else self.friction.error
+        return float(np.fmax.reduce((*self.run.error, largest_error(self.equilibrium), rubbing)))
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
         """The stop, if the file has one: with the mean force of the pads at the end of the stroke."""
-        if self.design.stop is None or self.refusals:
+        if self.design.stop is None or self._unsolved:
             return None
         return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))
 

@@ -298,11 +298,11 @@ def _stop(design: ForkliftInput) -> Stop:
 
 
 def _forces(design: ForkliftInput, motion: ShoeMotion | None, torque: Numbers | None) -> InternalForces:
-    levers = motion.levers if motion is not None else design.levers and design.levers.core
-    assert design.forces is not None and levers is not None
+    geometry = motion if motion is not None else design.levers and design.levers.core
+    assert design.forces is not None and geometry is not None
     with of_file({"friction": "lining_friction"}):
         return internal_forces(
-            levers,
+            geometry,
             piston_force=design.forces.piston_force,
             torque=torque,
             friction=design.forces.lining_friction,

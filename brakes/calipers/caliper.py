@@ -268,6 +268,7 @@ class Caliper:
             releasing_tension=release,
             squeeze=0.0 if np.isnan(squeeze) else tension / squeeze,
             release=0.0 if np.isnan(release) else max(release / tension, 0.0),
+            error=float(np.fmax.reduce((*band.squeeze.error, *band.release.error))),
             status=status,
             message=message,
         )

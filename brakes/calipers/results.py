@@ -139,6 +139,8 @@ class PivotFriction(Result):
         Efficiency while it is squeezed: tension without friction over that with it, for the same pad forces.
     release : float
         While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
+    error : float
+        Error of the forces with friction over the largest, as in `planar.Equilibrium`; nan where it jams.
     status, message : str
         "determined"; "self-locking", "contact opens" or "cable slackens", and in which direction.
 
@@ -156,6 +158,7 @@ class PivotFriction(Result):
     releasing_tension: float
     squeeze: float
     release: float
+    error: float
     status: str
     message: str
 

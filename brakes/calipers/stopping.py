@@ -15,6 +15,7 @@ from brakes.calipers.stance import GRAVITY, Stance
 
 _RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
+_MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,9 @@ class StoppingDistance(Result):
         Force on each pad at the lower of the two limits [N], which is not exceeded; inf if there is none.
     limited_by : {"brake", "grip", "pitching over"}
         What limits the deceleration.
-    status : {"stops", "does not stop"}
-        Whether it stops.
+    status : {"stops", "beyond grip", "does not stop"}
+        Whether it stops; beyond grip if that of the tyre is not given, and the deceleration passes the 1 g
+        that a tyre holds at most: the distance is then that of a tyre that held.
     message : str
         The status as a sentence, with what limits the stop and which limits were not given.
 
@@ -63,6 +65,11 @@ class StoppingDistance(Result):
         yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
         yield f"limited by {self.limited_by}"
         yield self.status
+
+    @property
+    def unchecked(self) -> tuple[str, ...]:
+        """Limits that are not checked, with what to give: a sentence each."""
+        return tuple(_unchecked(self.grip_limit, self.pitch_limit))
 
 
 def stop(
@@ -132,11 +139,13 @@ def stop(
     grip, pitch = stance.grip_limit(lift, inertia / mass), stance.pitch_limit(lift)
     most = float(np.fmin(grip, pitch)) * inertia / factor
     most = math.inf if math.isnan(most) else most
-    distance, capped = _distance(energy, factor, pad_force, most)
-    limited_by = "brake" if not capped else "grip" if grip < pitch else "pitching over"
+    distance, peak = _distance(energy, factor, pad_force, most)
+    limited_by = "brake" if peak <= most else "grip" if grip < pitch else "pitching over"
     stops = distance < math.inf
     deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
-    words = f"stops in {distance:.6g} m" if stops else "does not stop: the pads do not press long enough"
+    held = factor * min(peak, most) / inertia / GRAVITY if math.isnan(grip) else 0.0
+    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP else "beyond grip"
+    words = _WORDS[status].format(distance=distance, held=held)
     return StoppingDistance(
         distance,
         energy,
@@ -145,9 +154,17 @@ def stop(
         pitch,
         most,
         limited_by,
-        "stops" if stops else "does not stop",
+        status,
         "; ".join((words, *_explain(stance, limited_by, grip, pitch, most))),
     )
+
+
+_WORDS = {
+    "stops": "stops in {distance:.6g} m",
+    "beyond grip": "would stop in {distance:.6g} m only on a tyre that holds {held:.3g} g, where none holds "
+    "more than about 1 g on a dry road: it slips, or the vehicle pitches over, before",
+    "does not stop": "does not stop: the pads do not press long enough",
+}
 
 
 def _explain(stance: Stance, limited_by: str, grip: float, pitch: float, most: float) -> Iterator[str]:
@@ -157,6 +174,11 @@ def _explain(stance: Stance, limited_by: str, grip: float, pitch: float, most: f
         yield f"limited by grip: the {stance.braked_wheel} tyre slips at {limit}"
     elif limited_by == "pitching over":
         yield f"limited by pitching over: the rear wheel lifts at {limit}"
+    yield from _unchecked(grip, pitch)
+
+
+def _unchecked(grip: float, pitch: float) -> Iterator[str]:
+    """Which limits [m/s2] are not known, and what to give."""
     if math.isnan(grip):
         yield "grip is not checked: give tyre_friction, wheelbase, cg_height and cg_behind_front"
     if math.isnan(pitch):
@@ -165,16 +187,16 @@ def _explain(stance: Stance, limited_by: str, grip: float, pitch: float, most: f
 
 def _distance(
     energy: float, factor: float, pad_force: float | Callable[[float], float], most: float
-) -> tuple[float, bool]:
-    """Stopping distance [m], and whether the greatest useful force is reached."""
+) -> tuple[float, float]:
+    """Stopping distance [m], and the greatest force of a pad that is asked for [N]."""
     if not callable(pad_force):
         force = not_negative("pad_force", pad_force, "N")
-        return (energy / (factor * min(force, most)) if force else math.inf), force > most
+        return (energy / (factor * min(force, most)) if force else math.inf), force
     if not energy:
-        return 0.0, False
+        return 0.0, 0.0
     given = pad_force
     path = _integrated(energy, factor, lambda s: min(float(given(s)), most))
-    return float(path[-1]), any(given(s) > most for s in path if s < math.inf)
+    return float(path[-1]), max(float(given(s)) for s in path if s < math.inf)
 
 
 def check_wheels(inertia: float, tyre_radius: float | None, rim_radius: float | None) -> None:

@@ -194,8 +194,8 @@ def brake_torque(
     at_unit_force = _solve_shoes(brake, mu, 1.0, reverse)
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-        bound = "a shoe locks: no torque can be demanded of the brake"
-        refuse(_any_locked(at_unit_force), "friction", mu, "", bound, "give a force to see which one, or less friction")
+        bound, locked = "a shoe locks: no torque can be demanded of the brake", _any_locked(at_unit_force)
+        refuse(locked, "friction", mu, "", bound, "give a force to see which one, or less friction")
         value = value / sum(shoe.torque for shoe in at_unit_force)
     elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
         value = value / _largest([shoe.peak_pressure for shoe in at_unit_force])

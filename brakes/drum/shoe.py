@@ -30,7 +30,7 @@ _PRESSURE_ZERO = (
     "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
 )
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
-_EPS = 2 * np.finfo(float).eps  # rounding of an input and of what is computed from it
+_EPS = np.finfo(float).eps
 _LEAST_MARGIN = 5e-13  # margin to self-locking that cannot be told from none
 
 
@@ -151,8 +151,8 @@ class _Integrals:
     """Integrals over the arc, in axes turned by delta.
 
     K, S, C are those of sin, sin^2, sin cos; n and d the arms [m] of the normal and, for friction 1,
-    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).  `relative` bounds the rounding of
-    the integrals themselves, `n_error` and `d_error` [m] that of the arms.
+    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).  Rounding of K, and of S and C over
+    both, is bounded by `K_error` and `SC_error`, that of the arms by `n_error` and `d_error` [m].
     """
 
     K: Numbers
@@ -161,7 +161,8 @@ class _Integrals:
     n: Numbers
     d: Numbers
     peak: Numbers  # largest value of the sine
-    relative: Numbers
+    K_error: Numbers
+    SC_error: Numbers
     n_error: Numbers
     d_error: Numbers
 
@@ -176,7 +177,6 @@ def _integrals(shoe: Shoe) -> _Integrals:
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
     peak = np.where(inside, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
     K_error, S_error, C_error = _errors_of_integrals(shoe, a1, a2, h)
-    size, n_error = np.hypot(S, C), np.hypot(b, c) * (S_error + C_error)
     return _Integrals(
         K,
         S,
@@ -184,9 +184,10 @@ def _integrals(shoe: Shoe) -> _Integrals:
         c * S - b * C,
         shoe.drum_radius * K - b * S - c * C,
         peak,
-        K_error / K + (S_error + C_error) / size,
-        n_error,
-        shoe.drum_radius * K_error + n_error,
+        K_error / K,
+        (S_error + C_error) / np.hypot(S, C),
+        c * S_error + np.abs(b) * C_error,
+        shoe.drum_radius * K_error + np.abs(b) * S_error + c * C_error,
     )
 
 
@@ -194,8 +195,9 @@ def _errors_of_integrals(
     shoe: Shoe, a1: np.ndarray, a2: np.ndarray, h: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed."""
-    angle = _EPS * (np.maximum(*np.abs(shoe.lining)) + 2 * np.abs(shoe.phase))
-    sines, cosines = np.abs(np.sin((a1, a2))), np.abs(np.cos((a1, a2)))
+    ends = np.stack(np.broadcast_arrays(a1, a2))
+    angle = _EPS * (np.abs(ends + shoe.phase).max(axis=0) + np.abs(shoe.phase))
+    sines, cosines = np.abs(np.sin(ends)), np.abs(np.cos(ends))
     return (
         angle * sines.sum(axis=0) + _EPS * np.sin(h) * sines.max(axis=0),
         angle * (sines**2).sum(axis=0) + 2 * _EPS * h,
@@ -205,8 +207,8 @@ def _errors_of_integrals(
 
 def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
     """The pin's b and c [m] in axes turned by delta."""
-    far, angle = np.hypot(*shoe.pivot), shoe.pin_angle - shoe.phase
-    return far * np.sin(angle), far * np.cos(angle)
+    (b, y), far = shoe.pivot, np.hypot(*shoe.pivot)
+    return (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))
 
 
 class SlidesOrLocks(Result):
@@ -424,7 +426,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
         pin_reaction=pin,
         effective_arm=(r * i.K / np.hypot(i.S, i.C))[()],
         closure=_closure(shoe, force, s * torque, pin)[()],
-        error=(_error_of_arms(shoe, i) + 2 * bracket_error / bracket)[()],
+        error=_error(shoe, i, bracket_error / bracket)[()],
         c_star=(mu * arm * i.K / bracket)[()],
         c_star_slope=(arm * i.K * n / bracket**2)[()],
         locking_friction=limit[()],
@@ -433,10 +435,11 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
     )
 
 
-def _error_of_arms(shoe: Shoe, i: _Integrals) -> np.ndarray:
-    """Relative error of all that n + s mu d is divided by or multiplied with."""
+def _error(shoe: Shoe, i: _Integrals, bracket_error: np.ndarray) -> np.ndarray:
+    """Largest relative error, from that of n + s mu d: of dC*/dmu, or of vectors."""
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
-    return i.relative + i.n_error / np.abs(i.n) + _EPS * (4 + arms)
+    slope = i.K_error + i.n_error / np.abs(i.n) + bracket_error
+    return _EPS * (4 + arms) + bracket_error + np.maximum(slope, i.SC_error)
 
 
 def _closure(shoe: Shoe, force: np.ndarray, moment: np.ndarray, pin: np.ndarray) -> np.ndarray:

@@ -159,8 +159,7 @@ class DuoServo:
 
     def lever_error(self, clearance: Numbers | None = None) -> Numbers:
         """Bound of the error of the lever arms over their size, and of their angles [rad]."""
-        motion = self.move_shoes(0.0 if clearance is None else clearance)
-        return motion.error * self.drum_radius / np.minimum(motion.levers.a1, motion.levers.a2)
+        return self.move_shoes(np.nan if clearance is None else clearance).lever_error()
 
     def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
         """Position [m] of a piston whose face passes through a point of the right side."""
@@ -293,7 +292,7 @@ class ShoeMotion(Result):
     def error(self) -> Numbers:
         """Bound of the error of turns [rad] and of positions over r, by the rounding of inputs and sums.
 
-        Each turn is an arc cosine, which rounding changes the more the nearer the shoe comes to the end of its
+        Each turn is an arc cosine, which rounding changes the more the nearer the shoe is to the end of its
         reach: contact point, pin and centre in line in stage 1; the tip's path along the face in stage 2.
         """
         brake, r = self.geometry, self.geometry.drum_radius
@@ -308,6 +307,14 @@ class ShoeMotion(Result):
         face = ROUNDING * (brake.tip[0] + brake.tip[1] + brake.piston_bottom) / tip
         height = brake.face_tilt + np.arctan2(self.right_tip[..., 1], self.right_tip[..., 0])
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
+
+    def lever_error(self, clearance: None = None) -> Numbers:
+        """Bound of the error of the lever arms over their size, and of their angles [rad]."""
+        return self.error * self.geometry.drum_radius / np.minimum(self.levers.a1, self.levers.a2)
+
+    def find_levers(self, clearance: None = None) -> Levers:
+        """The lever arms at the end, for `internal_forces`: they belong to one clearance."""
+        return self.levers
 
     @property
     def residual(self) -> Numbers:

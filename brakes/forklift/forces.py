@@ -37,7 +37,7 @@ _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction tha
 
 
 class Geometry(Protocol):
-    """A brake with lever arms at a clearance: a `DuoServo`, or `Levers`, which take no clearance."""
+    """A brake with lever arms at a clearance: a `DuoServo`; `ShoeMotion` and `Levers` take no clearance."""
 
     def find_levers(self, clearance: Any = None) -> Levers:
         """Find arms and directions at the end of the shoes' motion."""
@@ -79,8 +79,8 @@ class InternalForces(Result):
         of force and r as that of length.
     error : ndarray
         Bound of the relative error of forces, torque, friction and factors (of vectors over their size): the
-        rounding of arms and sums, which grows as 1 / margin, and as the square of a large friction; nan where
-        there are no forces.
+        rounding of arms and sums.  Given the friction it grows as 1 / margin; given the torque, as the square
+        of a large friction, and `c_star_slope` is left out; nan where there are no forces.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
@@ -162,7 +162,7 @@ def internal_forces(
 
     Parameters
     ----------
-    geometry : DuoServo or Levers
+    geometry : DuoServo, ShoeMotion or Levers
         The brake; a `DuoServo` needs the clearance.
     piston_force : float or ndarray
         P_T [N].
@@ -206,7 +206,7 @@ def internal_forces(
     mu = None if friction is None else positive("friction", friction)
     shapes = {"piston_force": P_T, "torque": T, "friction": mu, "levers": levers.phi1 * levers.a1 * levers.b2}
     together(**{name: value for name, value in shapes.items() if value is not None})
-    rounding = ROUNDING + geometry.lever_error(clearance)
+    rounding = 4 * ROUNDING + geometry.lever_error(clearance)
     if T is None:
         return _solve_from_friction(levers, P_T, mu, rounding)
     if mu is not None:
@@ -217,7 +217,7 @@ def internal_forces(
 
 def _locks(levers: Levers, mu: Numbers, rounding: Numbers) -> np.ndarray:
     """Whether friction is at self-locking, as far as rounding tells, or past it."""
-    return _least_margin(levers, mu) <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), 4 * rounding)
+    return _least_margin(levers, mu) <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), rounding)
 
 
 def _least_margin(levers: Levers, mu: Numbers) -> np.ndarray:
@@ -225,11 +225,11 @@ def _least_margin(levers: Levers, mu: Numbers) -> np.ndarray:
     return 1 - levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu) / np.minimum(levers.a1, levers.b2)
 
 
-def _error(levers: Levers, mu: np.ndarray, rounding: Numbers, mu_error: Numbers) -> np.ndarray:
-    """Relative error of what follows from a friction with a relative error: for the slope, twice each shoe's."""
+def _error_from_friction(levers: Levers, mu: np.ndarray, rounding: Numbers) -> np.ndarray:
+    """Relative error of what follows from a friction: of dC*/dmu, twice that of the shoes' forces."""
     s = levers.drum_radius * mu / np.hypot(1.0, mu)
     shoes = levers.b2 / (levers.b2 - s) + levers.a1 / (levers.a1 - s)
-    return (4 * rounding + mu_error) * (1 + 2 * shoes)
+    return rounding * (1 + 2 * shoes)
 
 
 def _solve_from_torque(
@@ -245,8 +245,8 @@ def _solve_from_torque(
     with np.errstate(invalid="ignore"):
         A, C = np.sqrt((R_L - B) * (R_L + B)), np.sqrt((R_T - D) * (R_T + D))
         slope = _share_equation(levers, P_T, T, u)[1]
-        shares = 4 * rounding * (1 + 2 * R_L / ((1 - u) * slope))
-        error = _error(levers, B / A, rounding, shares * (3 + 2 * (B / A) ** 2))
+        shares = rounding * (1 + 2 * R_L / ((1 - u) * slope))
+        error = shares * (3 + 2 * (B / A) ** 2)
     return _assemble_result(levers, P_T, np.broadcast_to(T, shape), (A, B, C, D, Q, P_L), status, mu, error)
 
 
@@ -301,7 +301,7 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Nu
     cosine = 1 / np.hypot(1.0, mu)
     forces = (cosine * R_L, sigma * R_L, cosine * R_T, sigma * R_T, Q, P_L)
     status = np.broadcast_to(np.where(locked, "locked", "equilibrium"), np.shape(R_L))
-    error = _error(levers, mu, rounding, 0.0)
+    error = _error_from_friction(levers, np.where(locked, np.nan, mu), rounding)
     return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None, error)
 
 

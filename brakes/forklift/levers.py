@@ -11,7 +11,7 @@ from beamdyn.common.array_checks import Numbers, keep_checked, together
 from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 
-ROUNDING = 2 * np.finfo(float).eps  # of an input and of what is computed from it
+ROUNDING = np.finfo(float).eps
 LEAST_MARGIN = 5e-13  # margin to self-locking, or to never stopping, that cannot be told from none
 
 

@@ -129,9 +129,9 @@ class Truck:
 
     @property
     def sizes_of_coordinates(self) -> Numbers:
-        """Sum of the lengths [m] that make up the arms of weight and friction: the scale of their rounding."""
+        """Sum of the lengths that make up the arms of weight and friction; it scales their rounding [m]."""
         m, ml = self.empty_mass, self.load_mass
-        empty, load = (np.sum(np.abs(np.broadcast_arrays(*cg)), axis=0) for cg in (self.empty_cg, self.load_cg))
+        empty, load = (np.abs(x) + np.abs(y) for x, y in (self.empty_cg, self.load_cg))
         return (m * empty + ml * load) / (m + ml) + self.front_wheel_radius + self.wheelbase
 
     @property

@@ -201,13 +201,13 @@ class Contact(Joint):
         given.
     on : tuple of 2 floats, optional
         A point of the straight face [m], if it does not pass through `at` in the drawing.
+    friction : float
+        Coefficient of friction.
     centre : tuple of 2 floats, optional
         Centre of a round face, such as a drum's [m]; the face is straight if not given, and its normal turns
         with the other body.
     radius : float, optional
         Radius of the round face [m], if not the drawing's.
-    friction : float
-        Coefficient of friction.
 
     References
     ----------

@@ -227,8 +227,10 @@ def collect_result(
     ways = one_way_parts(position.mechanism.parts)
     wrong_way = find_wrong_way(ways, magnitudes | amplitudes, tolerance(system) * scale)
     virtual_work = _virtual_work(system, balance, constraints, multiplier) / scale
-    wrong = (system.rounding + residual) / (forces.kept if regularity is None else regularity)
-    error = np.where(unbalanced | jammed, np.nan, np.maximum(wrong, virtual_work))
+    kept = forces.kept if regularity is None else regularity
+    missing = unbalanced | jammed | (kept == 0)  # no forces, or none that are unknown
+    wrong = (system.rounding + residual) / np.where(missing, np.nan, kept)
+    error = np.maximum(wrong, virtual_work)
     return Equilibrium(
         position=position,
         reactions=reactions,
@@ -351,8 +353,8 @@ def _verdict(
     if unbalanced.any():
         free = constraints.null(worst)
         if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
-            margin = float(forces.dropped[worst])
-            found.append(("near a toggle", describe_near_toggle(system, position.batch[worst], loose, margin)))
+            there, margin = position.batch[worst], float(forces.dropped[worst])
+            found.append(("near a toggle", describe_near_toggle(system, there, loose, margin)))
         else:
             found.append(("no equilibrium", f"the loads are not in balance: {how}"))
     else:

@@ -145,8 +145,17 @@ def test_a_file_gives_the_limits(capsys, tmp_path) -> None:
     assert code == 0 and "limited by pitching over: the rear wheel lifts at 0.556 g" in text
     code, text = answer(capsys, tmp_path, STOP + lengths + 'tyre_friction = 0.8\nbraked_wheel = "rear"\n')
     assert code == 0 and "limited by grip: the rear tyre slips" in text
+    code, text = answer(capsys, tmp_path, STOP.replace("150 N", "60 N"))
+    assert code == 0 and "warning: grip is not checked" in text and "pitching over is not checked" in text
+
+
+def test_a_stop_beyond_the_grip_of_any_tyre_is_no_answer(capsys, tmp_path) -> None:
+    """1464.9 N on each pad at 0.4 slow 80 kg by 2 mu F / M = 1.494 g."""
     code, text = answer(capsys, tmp_path, STOP)
-    assert code == 0 and "grip is not checked" in text and "pitching over is not checked" in text
+    assert code == 1 and "only on a tyre that holds 1.49 g" in text and "give tyre_friction" in text
+    assert stop(pad_force=80 * G / 0.8 * 0.999, **RIDER).status == "stops"
+    assert stop(pad_force=80 * G / 0.8 * 1.001, **RIDER).status == "beyond grip"
+    assert stop(pad_force=lambda s: 1200 * s + 1, **RIDER).status == "beyond grip"
 
 
 @pytest.mark.parametrize(

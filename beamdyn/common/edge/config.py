@@ -7,6 +7,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -217,10 +218,27 @@ def _found(given: Any, place: str) -> Any:
     return given
 
 
+@contextmanager
+def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: str) -> Iterator[None]:
+    """Within it, a refusal by the core of a value that a file gives names its key, and the value as written.
+
+    Raises
+    ------
+    ConfigError
+        In place of an `InvalidValue` about one of the inputs of a model; others are raised as they are.
+    """
+    try:
+        yield
+    except InvalidValue as error:
+        if not (key := path_of(error, [entry.path for entry in describe(model)])):
+            raise
+        raise ConfigError(source, [said_of(error, key, _found(tables, key))], [key]) from None
+
+
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
     """What a refusal by the core says of what is given at a place of a file, as that has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
-    said: dict[str, Any] = vars(refusal) | {"field": place}
+    said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return str(_as_written(kind(**said), given))
 
 

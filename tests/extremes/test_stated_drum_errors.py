@@ -1,0 +1,51 @@
+"""Stated errors of drum brakes near self-locking, and of stops near never stopping, against 40 digits."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.stated_drum_errors import KINDS, measure
+from brakes import drum, forklift
+from brakes.cli import main
+
+SHOE = drum.Shoe(0.138, 0.05, tuple(np.radians((30.0, 110.0))), (0.02, -0.11), 0.115)
+LEVERS = forklift.Levers(0.15875, 0.1236, 0.0788, 0.12211, 0.12211, 0.344, 0.344, 0.1)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_stated_errors_cover_those_against_forty_digits(kind: str):
+    """A hundred of the thousand of the benchmark, down to margins of 1e-12."""
+    found = measure(kind, 100)
+    assert max(each.true for each in found) > 1e-6
+    assert all(each.true <= each.stated for each in found)
+    assert np.median([each.stated / each.true for each in found]) < 100
+
+
+@pytest.mark.parametrize("change", [-1e-13, 0.0, 1e-13])
+def test_a_change_in_the_thirteenth_digit_does_not_unlock_a_brake(change: float):
+    """At a margin of 0 only rounding would say whether it slides; at 1e-12 there is an answer."""
+    limit = drum.shoe_torque(SHOE, friction=0.3, force=1.0).locking_friction
+    assert drum.shoe_torque(SHOE, friction=limit * (1 + change), force=1.0).status == "locked"
+    sliding = drum.shoe_torque(SHOE, friction=limit * (1 - 1e-12 + change), force=1.0)
+    assert sliding.status == "slides" and sliding.error > 1e-5
+    limit = LEVERS.locking_friction
+    at, beside = (
+        forklift.internal_forces(LEVERS, piston_force=1.0, friction=limit * (1 + change - margin))
+        for margin in (0.0, 2e-12)
+    )
+    assert at.status == "locked" and np.isnan(at.error)
+    assert beside.status == "equilibrium" and beside.error > 1e-5
+
+
+def test_commands_state_the_error_near_self_locking(capsys, tmp_path):
+    limit = drum.brake_torque(drum.simplex(SHOE), friction=0.3, force=1.0).locking_friction
+    text = Path("examples/drum.toml").read_text().split("[second_shoe]")[0] + '[load]\nforce = "1000 N"\n'
+    file, saved = tmp_path / "drum.toml", tmp_path / "found.json"
+    file.write_text(text.replace("friction = 0.35", f"friction = {float(limit) * (1 - 1e-9)!r}"))
+    assert main(["drum", str(file), "--json", str(saved)]) == 0
+    assert "bound of the relative error" in capsys.readouterr().out
+    assert 1e-7 < json.loads(saved.read_text())["error"] < 1e-4
