@@ -181,8 +181,8 @@ class Beam(FieldsOnly, OneLine):
         length = size("length", length, "m")
         e = size("youngs_modulus", youngs_modulus, "Pa")
         rho = size("density", density, "kg/m3")
-        b = as_profile("width", width, breakpoints)
-        h = as_profile("thickness", thickness, breakpoints)
+        b = as_profile("width", width, breakpoints, power=3)  # as in the stiffness of bending
+        h = as_profile("thickness", thickness, breakpoints, power=3)
         _check_section(length, b, h)
         warn_of_material(e, rho)
         turned = None if twist is None else to_profile("twist", twist, breakpoints)

@@ -29,6 +29,7 @@ from beamdyn.common.pickling import FieldsOnly
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
+_ZERO = 5e-13  # of a property, relative to its largest value on a segment: less hangs on rounding
 _NOISE = 8 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # in x/L, of the samples of a user's function: no wider feature is missed
 _FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
@@ -225,8 +226,8 @@ FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # x/L itself
 ONE = Profile((0.0, 1.0), ((1.0,),))
 
 
-def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) -> Profile:
-    """Convert a property as given by the user to a positive `Profile`: see `to_profile`.
+def as_profile(name: str, value: Property, breakpoints: Sequence[float] = (), power: int = 1) -> Profile:
+    """Convert a property as given by the user to a positive `Profile`: see `to_profile`, `check_positive`.
 
     Raises
     ------
@@ -234,7 +235,7 @@ def as_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
         As `to_profile`, or if the property is not positive everywhere.
     """
     profile = to_profile(name, value, breakpoints)
-    check_positive(name, profile)
+    check_positive(name, profile, power)
     return profile
 
 
@@ -402,14 +403,21 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
     return values
 
 
-def check_positive(name: str, profile: Profile) -> None:
-    """Raise a ValueError with the name and the place if a property is not positive and finite everywhere."""
-    ends = np.array(profile.breakpoints)
-    where, values = np.concatenate([ends[:-1], ends[1:]]), np.concatenate(profile.end_values())
+def check_positive(name: str, profile: Profile, power: int = 1) -> None:
+    """Refuse a property that is not positive and finite everywhere, naming it and the place.
+
+    A value counts as zero where its `power` is less than 5e-13 of the largest power on the segment.
+    """
+    ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
+    values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])
     if profile.degree > 1:  # else the least value is at an end
-        inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1].ravel()
+        inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1]
         where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
-    k = int(values.argmin()) if np.isfinite(values).all() else int(np.argmin(np.isfinite(values)))
-    if not (np.isfinite(values[k]) and values[k] > 0):
-        place = f" at x/L = {where[k]:.3f}"
-        raise InvalidValue(name, float(values[k]), "it must be positive and finite", where=place)
+    least = zero * np.abs(profile.series).sum(axis=0)
+    if (bad := ~(np.isfinite(values) & (values > least))).any():
+        k = np.unravel_index(np.where(bad, values, np.inf).argmin(), values.shape)
+        value = 0.0 if abs(values[k]) <= least[k[1]] else float(values[k])
+        bound = (
+            f"it must be positive and finite; less than {zero:.1g} of the largest beside it counts as zero"
+        )
+        raise InvalidValue(name, value, bound, "let a taper end above", where=f" at x/L = {where[k]:.3f}")

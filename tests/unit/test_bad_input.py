@@ -357,3 +357,18 @@ def test_a_smooth_bump_is_resolved_to_rounding(width):
     exact = 1 + 0.5 * np.exp(-(((xi - 0.3123) / width) ** 2))
     profile = as_profile("width", lambda x: 1 + 0.5 * np.exp(-(((x - 0.3123) / width) ** 2)))
     np.testing.assert_allclose(profile(xi), exact, rtol=1e-14)
+
+
+@pytest.mark.parametrize("polynomial", [(1, -1), (1, -0.3, -0.7), (1, -2, 1), (1, -3, 3, -1)])
+def test_a_taper_to_a_point_is_refused_whatever_rounding_makes_of_its_end(polynomial: tuple[float, ...]):
+    """Its stiffness is zero there; where that came out as 1e-19 it was taken before."""
+    said = set()
+    for change in (0.0, 1e-13, -1e-13, 1e-16):
+        thickness = Polynomial(np.array(polynomial) + change * (np.arange(len(polynomial)) == 1))
+        with pytest.raises(ValueError, match="less than 8e-05 of the largest") as refused:
+            Beam.rectangular(1.0, 0.1, 0.01 * thickness, 200e9, 7850.0)
+        said.add(str(refused.value))
+        with pytest.raises(ValueError, match="less than 5e-13 of the largest"):
+            Beam.from_stiffness(1.0, 1.0, thickness)
+    assert len(said) == 1 and said.pop().startswith("thickness = 0 at x/L = 1.000")
+    Beam.rectangular(1.0, 0.1, 0.01 * Polynomial(polynomial) + 1e-6, 200e9, 7850.0)
