@@ -24,7 +24,7 @@ _START = "start of the lining, from straight down, where the pin is"
 _END = "end of the lining, from straight down"
 _OFFSET = "distance of the pin from the brake's line of symmetry, to its shoe"
 _DEPTH = "depth of the pin below the drum's centre"
-_FORCE_ARM = "height of the actuating force above the drum's centre"
+_FORCE_ARM = "height of the actuating force above the drum's centre; its arm about the pin is a + c"
 _PRESSURE_ZERO = (
     "line where the pressure vanishes: through the pin (pivot), about which the shoe turns; straight down "
     "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
@@ -50,7 +50,7 @@ class Shoe:
         Pin (b, -c) [m], below the drum's centre; b may have either sign. With the pin outside the
         drum's radius the moment of the friction about it may change sign: then the trailing shoe can lock.
     force_arm : float or ndarray
-        Height a of the actuating force above the drum's centre [m].
+        Height a of the actuating force above the drum's centre [m]; its arm about the pin is a + c.
     pressure_zero : {"pivot", "axis"}
         Line on which the pressure vanishes: from the centre to the pin, about which a rigid shoe turns, or
         the -y axis, the assumption of Vardanyan et al. (2019): for comparison with them.
@@ -84,9 +84,7 @@ class Shoe:
         Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
         Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
     ]
-    force_arm: Annotated[
-        Numbers, Described("m", "a", "height of the actuating force above the drum's centre")
-    ]
+    force_arm: Annotated[Numbers, Described("m", "a", _FORCE_ARM)]
     pressure_zero: Annotated[Literal["pivot", "axis"], Described(meaning=_PRESSURE_ZERO)] = "pivot"
 
     def __post_init__(self) -> None:

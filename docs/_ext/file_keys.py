@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.edge.inputs import Input, Section, describe
@@ -82,7 +83,12 @@ def _default(entry: Input, name: str) -> str:
 def write_tables(app, docname: str, source: list[str]) -> None:
     if not MARK.search(source[0]):
         return
-    source[0] = MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), source[0])
+    source[0] = with_tables(source[0])
+
+
+def with_tables(text: str) -> str:
+    """A page with the tables in place of its marks."""
+    return MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), text)
 
 
 def note_sources(app, docname: str, source: list[str]) -> None:
@@ -105,3 +111,7 @@ def setup(app) -> dict[str, bool]:
     app.connect("source-read", note_sources)  # before the marks are replaced
     app.connect("source-read", write_tables)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+if __name__ == "__main__":
+    print(with_tables((Path(__file__).parents[1] / "input_files.md").read_text(encoding="utf-8")))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -81,3 +83,13 @@ def test_the_page_of_mechanisms_has_every_part() -> None:
     parts = page.partition("## Parts")[2].partition("##")[0]
     listed = re.findall(r"^\| `(\w+)` \|", parts, re.MULTILINE)
     assert listed == [part.key() for part in (*JOINTS, *LOADS)]
+
+
+def test_the_repository_prints_the_page_with_all_keys() -> None:
+    command = "docs/_ext/file_keys.py"
+    assert f"python {command}" in PAGE.read_text(encoding="utf-8")
+    made = subprocess.run(
+        [sys.executable, command], cwd=ROOT, capture_output=True, encoding="utf-8", check=True
+    )
+    assert "<!-- keys" not in made.stdout and "| `bending_stiffness` |" in made.stdout
+    assert "above the drum's centre; its arm about the pin is a + c" in made.stdout
