@@ -18,7 +18,7 @@ from beamdyn.cli.values import (
     Text,
     naming_option,
     parse_positive,
-    parse_quantity,
+    parse_speed,
 )
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.program import examples
@@ -105,15 +105,16 @@ def campbell(
     from beamdyn.tables.campbell import campbell_csv, campbell_tables, crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
-    speeds, unit = _parse_top(top_speed)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
+    alone = inputs[0].scene if len(inputs) == 1 else None  # several have no one rolling radius
+    speeds, unit = _parse_top(top_speed, alone)
     question = _question(
         inputs, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
         length=length, hub_radius=hub_radius, **options, physics=physics,
     )  # fmt: skip
     by_label = _label(inputs, labels, physics)
-    at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1])
+    at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1], alone)
     with naming_option("per_rev", "--per-rev", per_rev):
         result = campbell(
             by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
@@ -178,32 +179,34 @@ def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
     return Question(title, "\n\n".join(question.inputs for question in each))
 
 
-def _parse_top(text: str) -> tuple[Any, str]:
+def _parse_top(text: str, scene: Scene | None) -> tuple[Any, str]:
     """Speeds [rad/s] up to the top one, and the unit of speeds in the answer."""
     import numpy as np
 
     from beamdyn.common.edge.units import unit_as_written
 
-    top = parse_positive("--top-speed", text, "rad/s")
+    top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"
 
 
 def _parse_operation(
-    rated: str | None, operating: str | None, top_text: str, top: float
+    rated: str | None, operating: str | None, top_text: str, top: float, scene: Scene | None
 ) -> tuple[float | None, tuple[float, float] | None]:
     """The rated speed, and the lowest and highest operating speed [rad/s]."""
-    at = _parse_rated(rated, top_text, top)
-    range_ = None if operating is None else _parse_range(operating, top_text, top)
+    at = _parse_rated(rated, top_text, top, scene)
+    range_ = None if operating is None else _parse_range(operating, top_text, top, scene)
     if at is not None and range_ is not None and not range_[0] <= at <= range_[1]:
         raise ValueError(f'--rated = "{rated}": it lies outside --operating = "{operating}"; widen the range')
     return at, range_
 
 
-def _parse_rated(text: str | None, top_text: str, top: float) -> float | None:
+def _parse_rated(text: str | None, top_text: str, top: float, scene: Scene | None) -> float | None:
     if text is None:
         return None
-    return _up_to(top, parse_positive("--rated", text, "rad/s"), f'--rated = "{text}": it is', top_text)
+    return _up_to(
+        top, parse_positive("--rated", text, "rad/s", scene), f'--rated = "{text}": it is', top_text
+    )
 
 
 def _up_to(top: float, speed: float, words: str, top_text: str) -> float:
@@ -213,13 +216,13 @@ def _up_to(top: float, speed: float, words: str, top_text: str) -> float:
     return min(speed, top)
 
 
-def _parse_range(text: str, top_text: str, top: float) -> tuple[float, float]:
+def _parse_range(text: str, top_text: str, top: float, scene: Scene | None) -> tuple[float, float]:
     """Lowest and highest operating speed [rad/s]."""
     numbers, _, unit = text.strip().rpartition(" ")
     ends = numbers.split(":")
     if len(ends) != 2:
         raise ValueError(f'--operating = "{text}": give lowest:highest and a unit, e.g. "6.9:12.1 rpm"')
-    low, high = (parse_quantity("--operating", f"{part.strip()} {unit}", "rad/s") for part in ends)
+    low, high = (parse_speed("--operating", f"{part.strip()} {unit}", scene) for part in ends)
     if not 0 <= low < high:
         raise ValueError(f'--operating = "{text}": it must begin at 0 or above and end above its beginning')
     return low, _up_to(top, high, f"--operating = {ends[1].strip()} {unit}: it is", top_text)

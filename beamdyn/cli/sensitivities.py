@@ -134,5 +134,5 @@ def _solve(
         return frequency_sensitivities(scene, at, modes, inputs, discretization, tolerance)
     if what == "critical_speed":
         return critical_speed_sensitivities(scene, inputs, discretization, tolerance)
-    top = speed_or_final(scene, None) if speed is None else parse_positive("--speed", speed, "rad/s")
+    top = speed_or_final(scene, None) if speed is None else parse_positive("--speed", speed, "rad/s", scene)
     return crossing_sensitivities(scene, top, modes, inputs, order, discretization)

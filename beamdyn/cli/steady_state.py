@@ -63,10 +63,11 @@ def resonances(
     from beamdyn.tables.rows import crossings_csv
 
     outputs.check(scene)
-    top = parse_positive("--top-speed", top_speed, "rad/s")
+    loaded = load_with(scene, physics, top_speed)
+    top = parse_positive("--top-speed", top_speed, "rad/s", loaded)
     options = {"modes": modes, "order": order, "discretization": discretization}
     question = Question.on_file("beamdyn resonances", scene, top_speed=top_speed, **options, physics=physics)
-    result = resonance_speeds(load_with(scene, physics, top_speed), top, modes, order, discretization)
+    result = resonance_speeds(loaded, top, modes, order, discretization)
     tables, rows, draw = [crossings_table(result)], crossings_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, warnings_of(result))
 

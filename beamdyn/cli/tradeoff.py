@@ -49,10 +49,10 @@ def tradeoff(
     from beamdyn.tradeoffs import tradeoff
 
     outputs.check(scene)
-    given = None if speed is None else parse_speed("--speed", speed)
     end = None if t_end is None else parse_positive("--t-end", t_end, "s")
     limit = parse_positive("--budget", budget, "s")
     loaded = load_scene(scene)
+    given = None if speed is None else parse_speed("--speed", speed, loaded)
     question = Question.on_file(
         "beamdyn tradeoff", scene, speed=speed, modes=modes, t_end=t_end, budget=budget
     )

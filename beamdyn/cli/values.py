@@ -66,9 +66,9 @@ def parse_quantity(option: str, text: str, unit: str) -> float:
         raise replace(error, field=option) from None
 
 
-def parse_positive(option: str, text: str, unit: str) -> float:
-    """A number above zero with its unit, in SI."""
-    value = parse_quantity(option, text, unit)
+def parse_positive(option: str, text: str, unit: str, scene: Scene | None = None) -> float:
+    """A number above zero with its unit, in SI; a speed of a scene as `parse_speed` takes it."""
+    value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
     return value

@@ -156,7 +156,7 @@ def exact_stop(truck: Truck, conditions: StopConditions) -> dict[str, mpf]:
         mpf(getattr(conditions, name))
         for name in ("speed", "friction", "reaction_time", "rise_time", "gravity")
     )
-    L, h = mpf(truck.wheelbase), y + mpf(truck.front_wheel_radius)
+    L, h = mpf(truck.wheelbase), (y + mpf(truck.front_wheel_radius)) * conditions.sense
     pull, weight = g * mpmath.sin(mpf(conditions.slope)), (m + ml) * g
     front = weight * (L - a) * mpmath.cos(mpf(conditions.slope)) / (L + mu * h)
     A = pull - mu * front / (m + ml)

@@ -348,7 +348,7 @@ class VehicleType(ForkliftType):
     """The truck's stop."""
 
     title = "Vehicle"
-    purpose = "The truck reverses down a slope and brakes: stopping distance, and the torque of each brake."
+    purpose = "The truck drives down a slope and brakes: stopping distance, and the torque of each brake."
     sections = needs = ("truck", "stop")
     example_sweep = "stop.speed=10:30:21 km/h"
     sweep_results = "distance,torque_per_brake"

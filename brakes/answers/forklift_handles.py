@@ -24,7 +24,8 @@ Values = Callable[[float, float], dict[str, float]]
 
 def truck_handles(stop: Stop) -> list[Handle]:
     """Handles on the centres of gravity, the rear axle, the front wheel and the slope."""
-    t, beta = stop.truck, float(stop.conditions.slope)
+    t, sense = stop.truck, stop.conditions.sense
+    beta = sense * float(stop.conditions.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # of row vectors
 
@@ -35,7 +36,9 @@ def truck_handles(stop: Stop) -> list[Handle]:
 
     end = _pair(np.array([_GROUND * L, 0.0]) @ turn)
     handles = [
-        Handle("end of the slope", end, lambda x, y: {"stop.slope": float(np.arctan2(-y, x))}, step=0.05),
+        Handle(
+            "end of the slope", end, lambda x, y: {"stop.slope": sense * float(np.arctan2(-y, x))}, step=0.05
+        ),
         on_slope("rear axle", (L, _REAR_AXLE * r), lambda x, y: {"truck.wheelbase": x}),
         on_slope("top of the front wheel", (0, 2 * r), lambda x, y: {"truck.front_wheel_radius": y / 2}),
         on_slope("centre of gravity with the load", (t.cg[0], t.cg[1] + r), partial(_find_empty_cg, stop)),

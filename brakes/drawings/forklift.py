@@ -56,11 +56,12 @@ def answer_drawings(
 
 def truck(stop: Stop) -> Drawing:
     """The truck on its slope with weight, axle loads and tyre friction to one scale; of one case, in m."""
-    t, beta = stop.truck, float(stop.conditions.slope)
+    t, sense = stop.truck, stop.conditions.sense
+    beta = sense * float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     turn = np.array(
         [[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]]
-    )  # row vectors; downhill to +x
+    )  # row vectors; downhill to +x, of a truck that drives forwards to -x
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
     arrows = ForceArrows(1.1 * L / weight)
@@ -72,20 +73,20 @@ def truck(stop: Stop) -> Drawing:
     places = {
         "N_A": (np.zeros(2), np.array([0.0, float(stop.front_load)]), "normal"),
         "N_B": (np.array([L, 0.0]), np.array([0.0, float(stop.rear_load)]), "normal"),
-        "R_A": (np.zeros(2), np.array([-friction, 0.0]), "friction"),
+        "R_A": (np.zeros(2), np.array([-sense * friction, 0.0]), "friction"),
         "Mg": (cg, np.array([np.sin(beta), -np.cos(beta)]) * weight, "weight"),
     }
     for name, (at, vector, role) in places.items():
         arrows.add(at @ turn, vector @ turn, name, role, ends_here=name.startswith("N"))
     arrows.shapes.append(Symbol("dot", cg @ turn, "weight", 7.0))
     if not stop.stops:
-        _mark_moving_on(arrows, cg + np.array([0.0, 1.2 * r1]), L, turn)
+        _mark_moving_on(arrows, cg + np.array([0.0, 1.2 * r1]), sense * L, turn)
     key = {"weight": "weight", "normal": "axle loads", "friction": "friction of the tyres"}
     return arrows.drawing(_title(stop), "A forklift on a slope with the forces on it", key)
 
 
 def _mark_moving_on(arrows: ForceArrows, at: np.ndarray, length: float, turn: np.ndarray) -> None:
-    """Add an arrow of a length [m] down the slope, with the words that the truck does not stop."""
+    """Add an arrow of a length [m] along x, down the slope, with the words that the truck does not stop."""
     foot, tip = at @ turn, (at + np.array([length, 0.0])) @ turn
     arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))
     places = np.stack([(foot + tip) / 2, tip])
@@ -104,7 +105,7 @@ def outcome(stop: Stop) -> str:
 
 
 def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
-    """Add ground, wheels, body, mast and load; x down the slope, y up from the ground."""
+    """Add ground, wheels, body, mast and load; x towards the rear axle, y up from the ground."""
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
     ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn

@@ -1,4 +1,4 @@
-"""A truck that reverses down a slope and stops with locked front wheels (Yoo et al. 1997, section 2).
+"""A truck that drives down a slope and stops with locked front wheels (Yoo et al. 1997, section 2).
 
 Axes: x down the slope, y up from the ground; the origin is where the front wheels touch it. The front axle A
 is locked; the rear axle B, at x = L, leads and rolls. The wheels have no mass. With the total mass M, the
@@ -11,6 +11,9 @@ Load transfer: the friction at the ground moves mu h N_A / L from the braked fro
 axle. Both axle loads stay positive for any friction as long as the centre of gravity is between the axles.
 At rest gravity alone decides: the truck overturns past tan(beta) = b / h.
 
+That is a truck that reverses, as the paper's does. One that drives forwards has its front axle downhill,
+as if h had the other sign: N_A = M b g cos(beta) / (L - mu h); it overturns over that axle from mu = a / h.
+
 The paper's equation (3) and its tables differ; `brakes.reproduce.forklift_as_printed` has them.
 """
 
@@ -18,12 +21,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
 from beamdyn.common.array_checks import Numbers, keep_checked, together
-from beamdyn.common.checks import kind, refuse
+from beamdyn.common.checks import kind, one_of, refuse
 from beamdyn.common.described import Described
 from beamdyn.common.one_line import spanned
 from beamdyn.common.results import Result
@@ -165,6 +168,8 @@ class StopConditions:
         Time t2 in which the brake force rises linearly [s].
     gravity : float or ndarray
         Gravity g [m/s2].
+    direction : {"reverse", "forward"}
+        Which way the truck drives.
 
     Raises
     ------
@@ -186,10 +191,22 @@ class StopConditions:
     reaction_time: Annotated[Numbers, Described("s", "t1", "time before the brakes act", least=0)]
     rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)]
     gravity: Annotated[Numbers, Described("m/s2", "g", "gravity", above=0)] = STANDARD_GRAVITY
+    direction: Annotated[Literal["reverse", "forward"], Described(meaning="which way it drives")] = "reverse"
 
     def __post_init__(self) -> None:
+        one_of("direction", self.direction, ("reverse", "forward"))
         keep_checked(self)
-        together(**vars(self))
+        together(**self.numbers)
+
+    @property
+    def numbers(self) -> dict[str, Numbers]:
+        """The values that may be arrays, by name."""
+        return {name: value for name, value in vars(self).items() if name != "direction"}
+
+    @property
+    def sense(self) -> int:
+        """1 if the truck travels towards its rear axle, -1 towards the front axle."""
+        return 1 if self.direction == "reverse" else -1
 
 
 @dataclass(frozen=True)
@@ -263,8 +280,8 @@ class Stop(Result):
     @property
     def residual(self) -> Numbers:
         """Residual moment of the axles' forces about the centre of gravity, over weight times wheelbase."""
-        (a, y), truck = self.truck.cg, self.truck
-        height, friction = y + truck.front_wheel_radius, self.conditions.friction * self.front_load
+        (a, y), truck, c = self.truck.cg, self.truck, self.conditions
+        height, friction = y + truck.front_wheel_radius, c.sense * c.friction * self.front_load
         moment = (truck.wheelbase - a) * self.rear_load - a * self.front_load - height * friction
         return np.abs(moment) / ((self.front_load + self.rear_load) * truck.wheelbase)
 
@@ -275,7 +292,7 @@ class Stop(Result):
         The rounding of inputs and sums, over the margin to never stopping.
         """
         truck, c = self.truck, self.conditions
-        size = truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
+        size = (1 + c.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
         pull = c.gravity * np.abs(np.sin(c.slope))
         slowing = np.where(self.stops, np.abs(self.acceleration), np.inf)
         return (ROUNDING * (4 + size) * (3 + 2 * pull / slowing))[()]
@@ -303,7 +320,7 @@ _SENTENCES = {
 
 
 def stop(truck: Truck, conditions: StopConditions) -> Stop:
-    """Compute the stop of a truck that reverses down a slope.
+    """Compute the stop of a truck that drives down a slope.
 
     Parameters
     ----------
@@ -321,7 +338,7 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     Raises
     ------
     ValueError
-        If the truck would overturn at rest on the slope, or the shapes do not broadcast.
+        If the truck would overturn, at rest or forwards by braking, or the shapes do not broadcast.
 
     References
     ----------
@@ -338,11 +355,11 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     """
     kind("truck", truck, Truck)
     kind("conditions", conditions, StopConditions)
-    _refuse_overturning(truck, conditions.slope)
+    _refuse_overturning(truck, conditions)
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
-    together(truck=one_case, **vars(conditions))
-    beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*vars(conditions).values(), one_case)
-    slide = _slide(truck, beta, mu, g)
+    together(truck=one_case, **conditions.numbers)
+    beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case)
+    slide = _slide(truck, beta, mu, g, conditions.sense)
     phases = _brake(V, slide.acceleration, t2)
     stops = slide.acceleration < -LEAST_MARGIN * g * np.abs(np.sin(beta))
     braking = np.where(stops, phases.braking_distance, np.inf)
@@ -368,13 +385,20 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     )
 
 
-def _refuse_overturning(truck: Truck, slope: Numbers) -> None:
+def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:
+    slope, sense = conditions.slope, conditions.sense
     front, rear = truck.overturning_slopes
     together(slope=slope, truck=front)
     remedy = "less slope, or a lower centre of gravity"
-    for axle, limit, bad in (("rear", rear, slope >= rear), ("front", front, slope <= front)):
+    tilt = sense * np.asarray(slope)
+    for axle, limit, bad in (("rear", rear, tilt >= rear), ("front", front, tilt <= front)):
         bound = f"the truck overturns on it at rest, over the {axle} axle, past {{limit}}"
-        refuse(bad, "slope", slope, "rad", bound, remedy, limit=limit)
+        refuse(bad, "slope", slope, "rad", bound, remedy, limit=sense * limit)
+    (a, y), mu = truck.cg, np.asarray(conditions.friction)
+    least = mu * (y + truck.front_wheel_radius) + LEAST_MARGIN * truck.wheelbase
+    bad, limit = (sense < 0) & (a <= least), a / (y + truck.front_wheel_radius)
+    bound = "braking overturns the truck over the front axle from {limit} on"
+    refuse(bad, "friction", mu, "", bound, "less load, or nearer the axle and lower", limit=limit)
 
 
 class _Slide(NamedTuple):
@@ -387,9 +411,9 @@ class _Slide(NamedTuple):
     standing_rear_load: np.ndarray
 
 
-def _slide(truck: Truck, beta: np.ndarray, mu: np.ndarray, g: np.ndarray) -> _Slide:
+def _slide(truck: Truck, beta: np.ndarray, mu: np.ndarray, g: np.ndarray, sense: int) -> _Slide:
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
-    h, b, gc, gs = y + truck.front_wheel_radius, L - a, g * np.cos(beta), g * np.sin(beta)
+    h, b, gc, gs = sense * (y + truck.front_wheel_radius), L - a, g * np.cos(beta), g * np.sin(beta)
     N_A = M * b * gc / (L + mu * h)
     standing = M * (b * gc - h * gs) / L
     return _Slide(gs - mu * N_A / M, N_A, M * gc - N_A, standing, M * gc - standing)

@@ -30,12 +30,15 @@ def stops(draw):
     spare = m * x / max(mL, 1.0)  # a load further ahead would tip it
     xL = max(-0.9 * spare, -3.0) * number(0.0, 1.0) if mL > 0 else 0.0
     truck = Truck(m, (x, y), mL, (xL, number(0.0, 3.0)), r1, L)
+    direction = draw(st.sampled_from(("reverse", "forward")))
     front, rear = truck.overturning_slopes
     slope = 0.95 * (front + (rear - front) * number(0.0, 1.0))
+    pitching = truck.cg[0] / (truck.cg[1] + r1) if direction == "forward" else np.inf
     conditions = StopConditions(
-        slope=slope,
+        slope=slope if direction == "reverse" else -slope,
+        direction=direction,
         speed=number(0.1, 15.0),
-        friction=number(0.05, 1.5),
+        friction=min(number(0.05, 1.5), 0.95 * pitching),
         reaction_time=number(0.0, 2.0),
         rise_time=number(0.01, 1.0),
     )
@@ -45,11 +48,14 @@ def stops(draw):
 @given(stops())
 def test_momentum_and_moment_of_every_truck(found):
     """From free bodies: the locked wheel, and the body with the truck's parts as point weights."""
-    truck, mu, beta = found.truck, found.conditions.friction, found.conditions.slope
+    truck, mu, sense = found.truck, found.conditions.friction, found.conditions.sense
+    beta = sense * found.conditions.slope  # a truck that drives forwards travels to -x
     parts = [(truck.empty_mass, *truck.empty_cg), (truck.load_mass, *truck.load_cg)]
-    r1, L, A = truck.front_wheel_radius, truck.wheelbase, found.acceleration
+    r1, L, A = truck.front_wheel_radius, truck.wheelbase, sense * found.acceleration
     weight = G * np.array([np.sin(beta), -np.cos(beta)])
-    axle = np.array([-mu * found.front_load, found.front_load])  # on the massless wheel, and so on the body
+    axle = np.array(
+        [-sense * mu * found.front_load, found.front_load]
+    )  # on the massless wheel, and so on the body
     brakes = 2 * found.torque_per_brake
     assert brakes - r1 * mu * found.front_load == pytest.approx(0, abs=1e-10 * brakes)  # wheel, at its centre
     rear = np.array([0.0, found.rear_load])
@@ -57,7 +63,7 @@ def test_momentum_and_moment_of_every_truck(found):
     size = sum(m for m, *_ in parts) * G
     assert np.abs(force).max() <= 1e-10 * size
     moment = (
-        -brakes + L * found.rear_load
+        -sense * brakes + L * found.rear_load
     )  # about the front wheels' centre: reaction of the brakes, rear axle
     for m, x, y in parts:
         fx, fy = m * (weight - [A, 0.0])
@@ -67,7 +73,7 @@ def test_momentum_and_moment_of_every_truck(found):
 
 @given(stops())
 def test_standing_loads_balance_too(found):
-    truck, beta = found.truck, found.conditions.slope
+    truck, beta = found.truck, found.conditions.sense * found.conditions.slope
     parts = [(truck.empty_mass, *truck.empty_cg), (truck.load_mass, *truck.load_cg)]
     weight = sum(m for m, *_ in parts) * G
     carried = found.standing_front_load + found.standing_rear_load

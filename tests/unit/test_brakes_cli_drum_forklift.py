@@ -222,6 +222,13 @@ def test_a_truck_that_does_not_stop_is_an_answer(run, edited) -> None:
     assert "Forces in one brake" in out  # those of locked wheels
 
 
+def test_a_truck_may_drive_forwards(run, edited, tmp_path: Path) -> None:
+    file = edited(FORKLIFT, 'direction = "reverse"', 'direction = "forward"')
+    assert run("forklift", file)[0] == BAD_INPUT  # the load pulls it over its front axle
+    file.write_text(file.read_text().replace('"3500 kg"', '"0 kg"'))
+    assert run("forklift", file, "--plot", tmp_path / "forward.svg")[0] == DONE
+
+
 def test_a_duo_servo_brake_that_locks_is_an_answer(run, tmp_path: Path) -> None:
     text = FORKLIFT.read_text()
     path = tmp_path / "brake.toml"

@@ -157,6 +157,24 @@ def test_no_axle_lifts_while_sliding_with_the_centre_between_them():
     assert (found.front_load > 0).all() and (found.rear_load > 0).all()
 
 
+def test_a_truck_that_drives_forwards_may_overturn_over_its_front_axle():
+    """From mu = a / h on, whatever the slope; at rest past tan(beta) = a / h downhill."""
+    truck = Truck(**TRUCK | {"load_mass": 0.0})
+    limit = truck.cg[0] / (truck.cg[1] + truck.front_wheel_radius)
+    road = {"speed": 3.0, "reaction_time": 0.5, "rise_time": 0.3, "direction": "forward"}
+    found = forklift.stop(truck, StopConditions(0.1, friction=0.999 * limit, **road))
+    assert 0 < found.rear_load < 0.01 * found.front_load
+    for change in (0.0, -1e-14, 1e-14):
+        conditions = StopConditions(0.1, friction=limit * (1 + change), **road)
+        refused(
+            lambda c=conditions: forklift.stop(truck, c),
+            "friction",
+            "overturns the truck over the front axle",
+        )
+    steep = StopConditions(1.001 * np.arctan(limit), friction=0.3, **road)
+    refused(lambda: forklift.stop(truck, steep), "at rest, over the front axle")
+
+
 def test_braking_loads_the_leading_rear_axle():
     found = stop(friction=np.array([1e-9, 0.3, 0.7]))
     assert (np.diff(found.rear_load) > 0).all() and (np.diff(found.front_load) < 0).all()

@@ -94,3 +94,13 @@ def test_one_per_rev_line_can_be_asked_for(capsys):
     assert main(["campbell", "examples/blade.toml", "--top-speed", "100 rad/s", "--per-rev", "2P"]) == 0
     said = capsys.readouterr().out
     assert " 2P " in said and " 1P " not in said
+
+
+@pytest.mark.parametrize(
+    ("command", "more"),
+    [("resonances", ()), ("campbell", ("--operating", "20:59.4 km/h", "--rated", "50 km/h"))],
+)
+def test_the_top_speed_of_a_wheel_may_be_that_of_the_vehicle(capsys, command: str, more: tuple[str, ...]):
+    assert main([command, ROLLING, "--top-speed", "59.4 km/h", *more]) == 0
+    assert "up to 55 rad/s" in capsys.readouterr().out
+    assert main([command, "examples/blade.toml", "--top-speed", "60 km/h"]) == 2
