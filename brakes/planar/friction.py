@@ -178,9 +178,25 @@ def _jams_when_disturbed(
         for sense in (-1.0, 1.0):
             offset = np.zeros((len(start), system.size))
             offset[:, [coordinate]] = sense * size
-            jams |= _newton(system, balance, multiplier, law, offset)[1]
-    jams &= unpressed.any(axis=1)
+            jams |= _jams_by(system, balance, multiplier, law, unpressed, offset)
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
+
+
+def _jams_by(
+    system: System,
+    balance: Balance,
+    start: np.ndarray,
+    law: np.ndarray,
+    unpressed: np.ndarray,
+    offset: np.ndarray,
+) -> np.ndarray:
+    """Where (S,) forces (S, 3 n) on the bodies press an unpressed joint so that the mechanism jams."""
+    without = _newton(system, balance, start, np.where(unpressed, 0.0, law), offset)[0]
+    pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
+    if not pressed.any():
+        return np.zeros(len(start), bool)
+    rubbing = np.where(unpressed & ~pressed, 0.0, law)  # what stays unpressed has a direction of rounding
+    return pressed.any(axis=1) & _newton(system, balance, start, rubbing, offset)[1]
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:

@@ -7,10 +7,22 @@ import math
 import numpy as np
 import pytest
 
-from brakes.planar import GROUND, Bar, Force, Mechanism, Moment, Pin, RotationLock, Slot, solve
+from brakes.planar import (
+    GROUND,
+    Bar,
+    Force,
+    Mechanism,
+    Moment,
+    Pin,
+    RotationLock,
+    Slot,
+    solve,
+    solve_with_friction,
+    stroke,
+)
 
 
-@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-8])
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-8, 3e-8])
 def test_a_toggle_met_exactly_or_nearly_is_undecided_but_never_a_number(angle: float):
     """Crank and rod in line, the slider pushed: the crank's moment cannot be 0 / 0, the slider is held."""
     mechanism = Mechanism(
@@ -26,7 +38,12 @@ def test_a_toggle_met_exactly_or_nearly_is_undecided_but_never_a_number(angle: f
     answer = solve(mechanism)
     assert answer.status == "near a toggle"  # at it, no push on the slider holds a moment on the crank
     assert "too near a toggle position to decide" in answer.message and "crank turns" in answer.message
+    assert "at least 1e-07 is needed" in answer.message and "draw it further from" in answer.message
     assert answer.loose == ("crank",)
+    with pytest.raises(ValueError, match="too near a toggle position to decide"):
+        solve_with_friction(mechanism, "turn")
+    with pytest.raises(ValueError, match="or is too near a toggle position to decide"):
+        stroke(mechanism, "push", [0.0, 0.01])
     assert np.isnan(answer.amplitudes["push"])
     held = Mechanism(
         mechanism.bodies,
@@ -38,6 +55,26 @@ def test_a_toggle_met_exactly_or_nearly_is_undecided_but_never_a_number(angle: f
     moment = 5.0 * 0.1 * (1 + 0.1 / 0.3) * angle  # of the push on the crank, to first order in the angle
     assert answer.amplitudes["turn"] == pytest.approx(moment, rel=1e-6, abs=1e-15)
     assert answer.magnitudes["rod"] == pytest.approx(5.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("beyond", [0.0, math.pi])
+def test_a_crank_near_a_dead_centre_is_solved_or_undecided(beyond: float):
+    """Undecided up to some angle, determined from there on; 3e-7 rad beside one there was no equilibrium."""
+    found = []
+    for angle in (1e-12, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 1e-5, 1e-3):
+        x, y = 0.1 * math.cos(beyond + angle), 0.1 * math.sin(beyond + angle)
+        pin = (x + math.sqrt(0.09 - y * y), 0.0)
+        joints = (
+            Pin("O", "crank", GROUND, (0, 0)),
+            Pin("A", "crank", "rod", (x, y)),
+            Pin("B", "rod", "slider", pin),
+            Slot("guide", "slider", GROUND, pin, along=(1, 0)),
+            RotationLock("upright", "slider", GROUND),
+        )
+        loads = (Moment("turn", "crank", 10.0), Force("push", "slider", pin, (-1, 0)))
+        found.append(solve(Mechanism(("crank", "rod", "slider"), joints, loads)).status)
+    assert found == sorted(found, reverse=True)
+    assert set(found) == {"near a toggle", "determined"}
 
 
 @pytest.mark.parametrize("offset", [1e-2, 1e-4, 1e-6])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.invariant_verdicts import count_changes, transform
+from benchmarks.invariant_verdicts import count_changes, draw_mechanism, transform, verdicts
 from benchmarks.stated_mechanism_errors import measure
 from brakes.planar import (
     GROUND,
@@ -26,6 +26,16 @@ from brakes.planar import (
 def test_random_mechanisms_have_the_verdicts_that_they_have_elsewhere():
     """Twenty of the 500 of the benchmark."""
     assert not [*count_changes(20)]
+
+
+def test_what_no_disturbance_presses_jams_nothing():
+    """The 95th mechanism of this seed: whether a disturbance of another part jammed it hung on rounding."""
+    rng = np.random.default_rng(5)
+    *_, (mechanism, driver) = (draw_mechanism(rng) for _ in range(95))
+    before = verdicts(mechanism, driver)
+    for angle in (0.5, 1.0, math.pi / 2, 2.0, 3.0):
+        assert verdicts(transform(mechanism, angle=angle), driver) == before
+    assert verdicts(transform(mechanism, scale=1e-6), driver, 1e-6) == before
 
 
 def crank_with_a_side_load() -> Mechanism:

@@ -388,7 +388,10 @@ def test_toggles_are_said_in_the_units_of_the_drawing_wherever_rounding_puts_its
     tables = tomllib.loads(CLAMP)
     tables["points"]["C"] = [f"{20 + moved!r} mm", f"{20 - moved!r} mm"]
     tables["run"] |= {"travel": "-20 mm"}
-    (warning,) = MECHANISM.answer(tables, "test").warnings
+    answer = MECHANISM.answer(tables, "test")
+    (toggle,) = answer.motion.toggles
+    assert 1e3 * toggle.value == pytest.approx(hand_where_the_arm_stands_still(), abs=1e-5)
+    (warning,) = answer.warnings
     found = re.match(r"toggle position of 'work' at driver value (\S+) mm: ", warning)
     assert found and float(found[1]) == pytest.approx(hand_where_the_arm_stands_still(), abs=6e-5)
 
