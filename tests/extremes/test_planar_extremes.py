@@ -22,7 +22,7 @@ from brakes.planar import (
 )
 
 
-@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-8, 3e-8])
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-8])
 def test_a_toggle_met_exactly_or_nearly_is_undecided_but_never_a_number(angle: float):
     """Crank and rod in line, the slider pushed: the crank's moment cannot be 0 / 0, the slider is held."""
     mechanism = Mechanism(
