@@ -363,9 +363,13 @@ def test_what_a_caliper_does_not_reach_is_said_as_its_file_and_form_have_it(tabl
     assert str(refused.value) == said
 
 
-def test_places_are_said_in_the_units_of_the_drawing():
-    tables = tomllib.loads(CLAMP)
+@pytest.mark.parametrize("moved", [0.0, 1e-12, 1e-9, 1e-6])
+def test_places_are_said_in_the_units_of_the_drawing(moved: float):
+    tables, rng = tomllib.loads(CLAMP), np.random.default_rng(1)
     tables["points"]["B"] = ["20 mm", "20 mm"]
+    for name, point in tables["points"].items():
+        near = (float(given.removesuffix(" mm")) + moved * rng.uniform(-1, 1) for given in point)
+        tables["points"][name] = [f"{x!r} mm" for x in near]
     answer = MECHANISM.answer(tables, "test")
     assert "handle turns about (20, 20) mm" in answer.refusals[0]
     assert "turns about (20, 20) mm" in str(answer.tables()[-1])
