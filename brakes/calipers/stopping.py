@@ -15,6 +15,7 @@ from brakes.calipers.stance import GRAVITY, Stance
 
 _RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
+_EQUAL = 1e-9  # relative difference that is rounding
 _MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
 
@@ -140,11 +141,11 @@ def stop(
     most = float(np.fmin(grip, pitch)) * inertia / factor
     most = math.inf if math.isnan(most) else most
     distance, peak = _distance(energy, factor, pad_force, most)
-    limited_by = "brake" if peak <= most else "grip" if grip < pitch else "pitching over"
+    limited_by = "brake" if peak <= most * (1 + _EQUAL) else "grip" if grip < pitch else "pitching over"
     stops = distance < math.inf
     deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
     held = factor * min(peak, most) / inertia / GRAVITY if math.isnan(grip) else 0.0
-    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP else "beyond grip"
+    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP * (1 + _EQUAL) else "beyond grip"
     words = _WORDS[status].format(distance=distance, held=held)
     return StoppingDistance(
         distance,

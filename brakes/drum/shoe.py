@@ -31,7 +31,7 @@ _PRESSURE_ZERO = (
 )
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 _EPS = np.finfo(float).eps
-_LEAST_MARGIN = 5e-13  # margin to self-locking that cannot be told from none
+_LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -98,17 +98,25 @@ class Shoe:
 
     def _check_pin(self) -> None:
         b, y = self.pivot
-        refuse(np.asarray(y) >= 0, "pivot[1]", y, "m", "the pin lies below the centre", "give (b, -c), c > 0")
+        least = _LEAST_MARGIN * np.asarray(self.drum_radius)
+        refuse(
+            np.asarray(y) >= -least,
+            "pivot[1]",
+            y,
+            "m",
+            "the pin lies below the centre",
+            "give (b, -c), c > 0",
+        )
         far = np.hypot(b, y)
         name, bound = "distance of the pivot from the centre", "more than two drum radii"
-        refuse(far > 2 * np.asarray(self.drum_radius), name, far, "m", bound, "give {unit}")
+        refuse(far > 2 * np.asarray(self.drum_radius) + least, name, far, "m", bound, "give {unit}")
         arm = self.force_arm - np.asarray(y)
-        refuse(arm <= 0, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
+        refuse(arm <= least, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
 
     def _check_arc(self) -> None:
         a1, a2 = self.lining
         bound = "the arc is empty: it must exceed {other}"
-        refuse(np.asarray(a2) - a1 <= 0, "lining[1]", a2, "rad", bound, other="lining[0]")
+        refuse(np.asarray(a2) - a1 <= _ROUNDING, "lining[1]", a2, "rad", bound, other="lining[0]")
         pin, start = self.pin_angle, np.asarray(a1)
         advice = "start it beyond; angles are in {unit}, from -y"
         bound = "the lining overlaps the pin, at {limit}"

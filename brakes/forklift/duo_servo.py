@@ -19,7 +19,7 @@ from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 from beamdyn.common.one_line import error_at_most, spanned, warned
 from beamdyn.common.results import Result
-from brakes.forklift.levers import ROUNDING, Levers
+from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 from brakes.forklift.vehicle import ACUTE
 
 
@@ -96,7 +96,13 @@ class DuoServo:
             refuse(sense * np.asarray(v) <= 0, f"{name}[1]", v, "m", f"it lies {side} the drum's centre")
             far = np.hypot(u, v)
             bound = "it must lie inside the drum (drum_radius)"
-            refuse(far >= self.drum_radius, f"distance of {name} from the centre", far, "m", bound)
+            refuse(
+                far >= self.drum_radius * (1 - LEAST_MARGIN),
+                f"distance of {name} from the centre",
+                far,
+                "m",
+                bound,
+            )
 
     def move_shoes(
         self, clearance: Annotated[Numbers, Described("m", "c_L", "between lining and drum at rest", above=0)]

@@ -12,7 +12,7 @@ from beamdyn.common.checks import refuse
 from beamdyn.common.described import Described
 
 ROUNDING = np.finfo(float).eps
-LEAST_MARGIN = 5e-13  # margin to self-locking, or to never stopping, that cannot be told from none
+LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,9 @@ class Levers:
         together(**vars(self))
         for name, value in (("alpha1 + gamma", self.phi1), ("alpha2 - gamma", self.phi2)):
             bound = "the piston's force and the adjuster's are more than a right angle apart"
-            refuse(np.abs(value) > np.pi / 2, name, value, "rad", bound, "angles are in {unit}")
+            refuse(
+                np.abs(value) > np.pi / 2 + LEAST_MARGIN, name, value, "rad", bound, "angles are in {unit}"
+            )
 
     @property
     def in_radii(self) -> Levers:

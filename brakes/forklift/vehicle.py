@@ -101,12 +101,12 @@ class Truck:
         self._check("the centre of gravity with the load", *self.cg, "take less load, or nearer the axle")
 
     def _check(self, name: str, x: Numbers, y: Numbers, remedy: str) -> None:
-        x, y = np.asarray(x), np.asarray(y)
+        x, y, least = np.asarray(x), np.asarray(y), LEAST_MARGIN * np.asarray(self.wheelbase)
         ahead = "it is ahead of the front wheel: the truck tips over it"
-        refuse(x <= 0, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
+        refuse(x <= least, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
         behind = "it is behind the rear wheel, at wheelbase = {limit}"
         refuse(
-            x >= self.wheelbase,
+            x >= self.wheelbase - least,
             f"x of {name}",
             x,
             "m",
@@ -116,7 +116,7 @@ class Truck:
             other="empty_cg",
         )
         low = "it is below the ground (-front_wheel_radius)"
-        refuse(y + self.front_wheel_radius <= 0, f"y of {name}", y, "m", low, remedy, other="empty_cg")
+        refuse(y + self.front_wheel_radius <= least, f"y of {name}", y, "m", low, remedy, other="empty_cg")
 
     @property
     def mass(self) -> Numbers:

@@ -232,3 +232,16 @@ def test_temperature_rise():
     assert drum.temperature_rise(100e3, 10.0) == pytest.approx(20.0)
     assert drum.temperature_rise(100e3, 10.0, 400.0, 0.9) == pytest.approx(22.5)
     refused(lambda: drum.temperature_rise(1.0, 1.0, share=1.1), "share")
+
+
+@pytest.mark.parametrize("change", [-1e-13, 0.0, 1e-13])
+def test_borders_of_a_shoe_do_not_hang_on_the_thirteenth_digit(change: float):
+    given = {"drum_radius": 0.1, "face_width": 0.05, "lining": (0.5, 2.0), "force_arm": 0.1}
+    drum.Shoe(**given, pivot=(0.0, -0.2 * (1 + change)))  # two radii from the centre
+    for border, said in (
+        ({"pivot": (0.0, -0.08), "force_arm": -0.08 * (1 + change)}, "above the pin"),
+        ({"pivot": (0.0, -0.08), "lining": (0.5, 0.5 + change)}, "the arc is empty"),
+        ({"pivot": (0.05, -0.1 * abs(change))}, "below the centre"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            drum.Shoe(**given | border)
