@@ -185,7 +185,7 @@ class CaliperAnswer(PlanarAnswer):
             table(_STROKE, _STROKE_HEADS, [self._stroke_row(k) for k in select_rows(len(run.cable))]),
             reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
             *self._sentences(),
-            describe_statics(self.equilibrium, run.message, run.virtual_work.max()),
+            describe_statics(self.equilibrium, run.message, run.virtual_work.max(), self.error),
         ]
 
     def _stroke_row(self, k: int) -> list[str]:

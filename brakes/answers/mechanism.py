@@ -194,7 +194,7 @@ class MechanismAnswer(PlanarAnswer):
             reactions_table(self.equilibrium, self._forces_title("as drawn")),
             *([self.friction.table()] if self.friction else []),
             *(self._stroke_tables(self.motion) if self.motion else []),
-            describe_statics(self.equilibrium, self.message, float(np.max(self.last.virtual_work))),
+            describe_statics(self.equilibrium, self.message, np.max(self.last.virtual_work), self.error),
         ]
 
     def _forces_title(self, where: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
+from beamdyn.common.one_line import rounded_up
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, Joint, Load, Mechanism
 
@@ -94,10 +95,11 @@ def largest_error(equilibrium: Equilibrium) -> float:
     return float(np.fmax.reduce(equilibrium.error, axis=None))
 
 
-def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float) -> str:
-    """Diagnosis in a sentence or two."""
+def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float, error: float) -> str:
+    """Diagnosis in a sentence or two, with the error of the forces, nan where there are none."""
+    stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
     return (
         f"Statics: {in_small_units(message)}. Mobility {int(np.max(equilibrium.mobility))}, indeterminacy "
         f"{int(np.max(equilibrium.indeterminacy))}; virtual work of all loads "
-        f"{virtual_work:.1e} of the largest force."
+        f"{virtual_work:.1e} of the largest force.{stated}"
     )

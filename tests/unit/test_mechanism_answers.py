@@ -15,6 +15,7 @@ import pytest
 
 from beamdyn._version import __version__
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.one_line import rounded_up
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED
 from brakes.cli import main
@@ -445,3 +446,9 @@ def test_a_body_with_two_pins_at_one_place_is_drawn():
     tables = {"bodies": ["arm"], "points": {"A": ["0 mm", "0 mm"]}, "pin": pins}
     ((drawing,),) = MECHANISM.answer(tables, "test").drawings(0.0)
     assert sum(getattr(shape, "kind", "") == "pin" for shape in drawing.shapes) == 2
+
+
+def test_what_is_printed_states_the_error_of_the_forces():
+    answer = MECHANISM.answer({"caliper": "v-brake"}, "test")
+    assert 0 < answer.error < 1e-12
+    assert f"Error of the forces: {rounded_up(answer.error)} of the largest" in str(answer.tables()[-1])
