@@ -57,7 +57,19 @@ def test_a_thick_section_is_sent_to_keys_of_the_file(capsys, tmp_path):
 def test_stations_in_lengths_are_offered_where_fractions_are_wanted(capsys, tmp_path):
     table = '{ stations = ["0 mm", "40 mm"], values = ["0.2 mm", "0.1 mm"] }'
     said = refusal(capsys, tmp_path, STRIP.replace('"0.2 mm"', table), "modes")
-    assert "give fractions x/L, or lengths with their unit" in said
+    assert (
+        "must be the tip, at 1 or the beam's length; give fractions x/L, or lengths with their unit" in said
+    )
+    said = refusal(capsys, tmp_path, STRIP.replace("[beam]", '[beam]\nbreakpoints = ["60 mm"]'), "modes")
+    assert "give fractions x/L between 0 and 1, ends excluded, or lengths with their unit" in said
+
+
+def test_odd_characters_among_varied_values_are_read_or_named(capsys, tmp_path):
+    said = refusal(capsys, tmp_path, STRIP, "study", "--vary", "beam.length=4\u041e:50:2 mm")
+    assert "it has the character CYRILLIC CAPITAL LETTER O (U+041E)" in said
+    assert (
+        main(["study", "examples/tyre_harvester.toml", "--vary", "beam.length=\uff14\uff10,50\u00a0mm"]) == 0
+    )
 
 
 @pytest.mark.parametrize("values", ["nan:0.05:3 m", "0.05,nan m", "0.05:inf:3 m"])

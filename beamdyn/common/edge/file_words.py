@@ -8,8 +8,9 @@ _COMMANDS = {"equilibrium_branches": "beamdyn branches", "frequency_locus": "bea
 _BEAM = {
     "Beam.from_stiffness": "mass_per_length and bending_stiffness in [beam]",
     "Beam.rectangular": "width and thickness in [beam]",
-    "give fractions x/L": "give fractions x/L, or lengths with their unit",
+    "the last station must be 1, the tip": "the last station must be the tip, at 1 or the beam's length",
 }
+_FRACTIONS = re.compile(r"give fractions x/L( between 0 and 1, ends excluded)?")
 _PHYSICS = re.compile(r"Physics\((.*?)\)")
 
 
@@ -21,6 +22,7 @@ def as_in_files(sentence: str) -> str:
     """
     for function, command in (_COMMANDS | _BEAM).items():
         sentence = sentence.replace(function, command)
+    sentence = _FRACTIONS.sub(r"give fractions x/L\1, or lengths with their unit", sentence)
     return _PHYSICS.sub(lambda call: f"[physics] {_as_keys(call[1])}", sentence)
 
 

@@ -223,14 +223,19 @@ def _no_quantity(given: object, unit: str) -> tuple[str, str]:
             return "a table where one quantity is wanted", f"give e.g. {_example(unit)}"
         case float() | str() if _NO_NUMBER.match(str(given)):
             return "not a finite number", f"give e.g. {_example(unit)}"
-        case str() if odd := _odd_character(given):
+        case str() if odd := odd_character(given):
             return f"not a number with a unit: it has the character {odd}", f"give e.g. {_example(unit)}"
         case str() if _TEXT.fullmatch(point := given.translate(_PLAIN).replace(",", ".", 1)):
             return "a decimal comma", f"give a point, {show(point)}"
     return "not a number with a unit", f"give e.g. {_example(unit)}"
 
 
-def _odd_character(text: str) -> str:
+def in_plain_characters(text: str) -> str:
+    """A text with plain minus signs, spaces and digits in place of those copied from printed pages."""
+    return text.translate(_PLAIN)
+
+
+def odd_character(text: str) -> str:
     """The name of the first character that no number or unit has, and that may look like one that does."""
     plain = text.translate(_PLAIN)
     odd = next((c for c in plain if not (c.isascii() or c in _KNOWN_SIGNS)), "")

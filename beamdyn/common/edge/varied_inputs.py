@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.inputs import Input, parts_of
-from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)
@@ -104,7 +104,8 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     ValueError
         If there is no such input, or the values do not fit it.
     """
-    key, _, rest = text.partition("=")
+    key, _, given = text.partition("=")
+    rest = in_plain_characters(given)
     words = f'{option} = "{text}"'
     entry = find_input(inputs, key.strip(), words)
     if match := _RANGE.fullmatch(rest):
@@ -113,6 +114,8 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
         return _list(entry, match[1].split(","), match[2], words)
     if odd := _NO_NUMBER.search(rest):
         raise ValueError(f"{words}: {odd[0]} is not a finite number; give numbers")
+    if odd := odd_character(rest):
+        raise ValueError(f"{words}: it has the character {odd}, which no number or unit has")
     unit = f" {entry.quantity.unit}".rstrip()
     form = f'"{entry.path}=1:2:11{unit}", at equal ratios "1:2:11:log{unit}", or a list, "1,1.5,2{unit}"'
     raise ValueError(f"{words}: give KEY=start:stop:count unit, e.g. {form}")
