@@ -81,7 +81,9 @@ def test_one_truck_that_tips_is_a_row_with_its_reason(brakes, tmp_path):
     assert heads[-1] == "no_answer" and len(rows) == 8
     for slope, torque, *_, why in rows:
         tips = float(slope) > 65  # tan of it is the distance of the front axle over the height: 64.66 deg
-        assert np.isnan(float(torque)) == tips and why.startswith(f"slope = {float(slope):g} deg") == tips
+        assert (
+            np.isnan(float(torque)) == tips and why.startswith(f"stop.slope = {float(slope):g} deg") == tips
+        )
 
 
 def test_rows_beside_a_refused_one_are_those_without_it(brakes, tmp_path):
