@@ -11,6 +11,7 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.modal.end_layers import split_layers
 from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -123,6 +124,8 @@ def _choose(
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
+    if isinstance(discretization, str):
+        scene = split_layers(scene, float(np.abs(speeds).max(initial=0.0)), target)
     found: tuple[Model, EstimatedModes | None] | None = None
     for finer in list_models(scene, discretization, modes, target, cheapest):
         if not isinstance(discretization, str):
@@ -211,9 +214,11 @@ def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Disc
 
 
 def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
-    from beamdyn.equations.fem import MOST_ELEMENTS, Fem  # here, because scikit-fem is slow to import
+    from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem  # here, because scikit-fem is slow to import
 
-    return Fem(min(max(4 if cheapest else 80, 2 * _count_segments(scene), 4 * modes), MOST_ELEMENTS))
+    segments = _count_segments(scene)
+    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    return Fem(min(max(least, 2 * segments, 4 * modes), MOST_ELEMENTS))
 
 
 # First candidate of each kind, by scene, modes, target and whether to begin with the smallest.
