@@ -74,9 +74,7 @@ def _of_modes(
         return modes.error, np.abs(np.sqrt(np.abs(squared / true)) - 1), known / 2
 
 
-def _of_critical_speed(
-    scene: bd.Scene, discretization: str, tolerance: float
-) -> tuple[float, float, float]:
+def _of_critical_speed(scene: bd.Scene, discretization: str, tolerance: float) -> tuple[float, float, float]:
     point = bd.critical_point(scene, discretization, tolerance)
     true, known = reference_critical_speed(scene, min(point.error, 1.0) / 10)
     if point.speed == true or np.isinf(point.error):
@@ -101,13 +99,17 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
         yield "... unresolved", f"{np.isinf(stated).mean():.2%}", ""
         tolerance = np.concatenate([np.full(len(case.stated), case.tolerance) for case in answered])
         met = np.isfinite(stated) & (stated <= tolerance)
-        yield "... tolerance met; true error over it, median", (
-            f"{met.mean():.1%}; {np.median((true / tolerance)[met]):.1g}"
-        ), ""
+        yield (
+            "... tolerance met; true error over it, median",
+            (f"{met.mean():.1%}; {np.median((true / tolerance)[met]):.1g}"),
+            "",
+        )
     for case in cases:
         for mode, (a, b, c) in enumerate(zip(case.stated, case.true, case.known, strict=True), 1):
             if b - c > a:
-                what = f"not covered: scene {case.number}, {mode}, {case.discretization}, {case.tolerance:.1e}"
+                what = (
+                    f"not covered: scene {case.number}, {mode}, {case.discretization}, {case.tolerance:.1e}"
+                )
                 yield what, f"{b:.1e} > {a:.1e}", f"{(b - c) / a:.2f}"
     yield from ((f"refused: scene {case.number}", case.refusal, "") for case in refused)
 
@@ -126,7 +128,10 @@ def main() -> None:
     parser.add_argument("--critical", action="store_true", help="critical speeds in place of modes")
     given = parser.parse_args()
     found = Cases(partial(measure, seed=given.seed, critical=given.critical), Case).run(given)
-    show(f"stated errors at any tolerance of {'critical speeds' if given.critical else 'modes'}", lambda: summarize(found))
+    show(
+        f"stated errors at any tolerance of {'critical speeds' if given.critical else 'modes'}",
+        lambda: summarize(found),
+    )
 
 
 if __name__ == "__main__":

@@ -43,14 +43,17 @@ def random_table_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     jumps = places[1:-1][rng.random(len(places) - 2) < 0.3]
     stations = np.sort(np.concatenate([places, jumps])).tolist()
     mass, stiffness = (
-        bd.Table(stations, (10 ** rng.uniform(-decades, decades, len(stations))).tolist()) for decades in (0.5, 1)
+        bd.Table(stations, (10 ** rng.uniform(-decades, decades, len(stations))).tolist())
+        for decades in (0.5, 1)
     )
     beam = bd.Beam.from_stiffness(
         1.0,
         mass,
         stiffness,
         tip=bd.TipMass(10 ** rng.uniform(-2, 0), rng.uniform(-0.05, 0.1)) if rng.random() < 0.4 else None,
-        point_masses=[bd.PointMass(rng.uniform(0.1, 0.9), 10 ** rng.uniform(-2, 0))] if rng.random() < 0.3 else (),
+        point_masses=[bd.PointMass(rng.uniform(0.1, 0.9), 10 ** rng.uniform(-2, 0))]
+        if rng.random() < 0.3
+        else (),
         point_springs=[bd.PointSpring(rng.uniform(0.1, 0.9), 10 ** rng.uniform(-1, 3))]
         if rng.random() < 0.3
         else (),

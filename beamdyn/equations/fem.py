@@ -133,10 +133,11 @@ def _subdivide(ends: np.ndarray, elements: int, on_each: int) -> np.ndarray:
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
     """Distribute elements among segments in proportion to their length, at least so many on each.
 
-    None has less than half of an equal share: short segments are refined with the others.
+    Short segments are refined with the others: none has less than half of an equal share, but in elements ten
+    times as short as equal ones, beyond which rounding costs more than it gains.
     """
-    least = max(least, total // (2 * len(lengths)))
-    counts = np.maximum(least, np.floor(total * lengths / lengths.sum()).astype(int))
+    share = total * np.minimum(np.maximum(lengths, 0.5 / len(lengths)), 10 * lengths)
+    counts = np.maximum(least, np.floor(share / lengths.sum()).astype(int))
     while counts.sum() < total:
         counts[np.argmax(lengths / counts)] += 1
     return counts

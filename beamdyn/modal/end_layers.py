@@ -17,7 +17,9 @@ from beamdyn.equations.root_motion import root_motion
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
-_LENGTHS = 3.0  # of a layer, and half a length more for each factor e of accuracy: its energy falls twice as fast
+_LENGTHS = (
+    3.0  # of a layer, and half a length more for each factor e of accuracy: its energy falls twice as fast
+)
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
 _SHORTEST = 1e-4  # and the shortest
 _TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies

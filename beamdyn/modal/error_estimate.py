@@ -16,7 +16,7 @@ from beamdyn.scene.scene import Scene
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 # Ratios of the distances of meshes: of order 2, which no number exceeds; where it is not known; largest taken.
 _OF_ORDER_2, _UNKNOWN, _FALLING = 0.25, 0.5, 0.8
-_OF_ENTRIES = 0.25 * np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
+_OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
 _OF_ORDER_4 = 48.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow

@@ -293,8 +293,8 @@ def _list_models(
 ) -> Iterator[Model]:
     """List the models in which a critical speed is sought; see `list_models`."""
     named = isinstance(discretization, str)
-    modes, scene = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
-    return list_models(scene, discretization, modes, target, cheapest)
+    modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
+    return list_models(split, discretization, modes, target, cheapest, split is not scene)
 
 
 @dataclass(frozen=True)

@@ -50,9 +50,7 @@ def reference_frequencies(
         eigen = _refined(scene, functions).solver.solve(np.array([speed]), modes)
         squared = np.real(-(eigen.eigenvalue[0] ** 2))
         found.append(squared)
-        uncertainty = eigen.rounding[0] + (
-            np.abs(found[-1] / found[-2] - 1) if len(found) > 1 else np.inf
-        )
+        uncertainty = eigen.rounding[0] + (np.abs(found[-1] / found[-2] - 1) if len(found) > 1 else np.inf)
         if (uncertainty <= accuracy).all():
             break
     return squared, uncertainty
