@@ -1,9 +1,9 @@
 """Whether the errors stated at any tolerance cover the true ones, and no mode is lost.
 
-Run: python -m benchmarks.stated_tolerance_errors [--scenes N] [--critical] [--save FILE].  Random beams with a
-body at the tip, at speeds to 0.999 of the critical one and gamma to 3000, at tolerances from 0.1 to 1e-8, by
-assumed modes and by elements in turn, against assumed modes on segments that shrink towards both ends, which
-are doubled until they hold to a tenth of the stated error.
+Run: python -m benchmarks.stated_tolerance_errors [--scenes N] [--critical] [--save FILE].  Random beams with
+a body at the tip, at speeds to 0.999 of the critical one and gamma to 3000, at tolerances from 0.1 to 1e-8,
+by assumed modes and by elements in turn, against assumed modes on segments that shrink towards both ends,
+which are doubled until they hold to a tenth of the stated error.
 """
 
 from __future__ import annotations

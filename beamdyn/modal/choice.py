@@ -233,8 +233,8 @@ def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each:
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 
-# First candidate of each kind, for beams without and with segments for layers at the ends, by scene, modes, target
-# and whether to begin with the smallest.
+# First candidate of each kind, for beams without and with segments for layers at the ends: by scene, modes,
+# target and whether to begin with the smallest.
 _FIRST_CANDIDATE: dict[tuple[str, bool], Callable[[Scene, int, float, bool], Discretization]] = {
     ("ritz", False): _first_ritz,
     ("ritz", True): _first_ritz,

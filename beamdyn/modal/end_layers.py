@@ -1,8 +1,8 @@
 """Short layers at the ends of a fast beam, in which tension lets it bend: they get functions of their own.
 
-A beam of bending stiffness EI under a tension N bends within a few lengths (EI/N)^(1/2) from an end.  A body at
-the tip may vibrate, or tip over, within such a layer alone.  Two bases that do not resolve it agree with each
-other, and both lack that mode.
+A beam of bending stiffness EI under a tension N bends within a few lengths (EI/N)^(1/2) from an end.  A body
+at the tip may vibrate, or tip over, within such a layer alone.  Two bases that do not resolve it agree with
+each other, and both lack that mode.
 """
 
 from __future__ import annotations
@@ -17,9 +17,7 @@ from beamdyn.equations.root_motion import root_motion
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
-_LENGTHS = (
-    3.0  # of a layer, and half a length more for each factor e of accuracy: its energy falls twice as fast
-)
+_LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
 _SHORTEST = 1e-4  # and the shortest
 _TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies

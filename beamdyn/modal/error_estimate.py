@@ -14,14 +14,15 @@ from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
-# Ratios of the distances of meshes: of order 2, which no number exceeds; where it is not known; largest taken.
+# Ratios of the distances of meshes: of order 2, the least taken; where it is not known; the largest taken.
 _OF_ORDER_2, _UNKNOWN, _FALLING = 0.25, 0.5, 0.8
+_HALVED = 0.7  # size of a mesh over that of the finer one, of which it has half the elements
 _OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
 _OF_ORDER_4 = 48.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
-# Parts of a mode's distance, and of the largest, elsewhere; functions of segments converge each at its own rate.
+# Parts of a mode's distance, and of the largest, elsewhere; several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01), (3.0, 0.05), (2.0, 0.3)
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
@@ -123,8 +124,8 @@ def _check_size(model: Model, modes: int) -> None:
 def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndarray) -> np.ndarray:
     """What extrapolation leaves of the error of a number, by its distances over three meshes.
 
-    Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth of
-    the one before; where they are longer than a layer, or cross a steep change of a property, it falls less.
+    Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
+    of the one before; where they are longer than a layer, or cross a steep change, it falls less.
 
     Parameters
     ----------
@@ -161,7 +162,7 @@ def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
 def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
     """Squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan where it has none."""
     coarsest = model.coarser.coarser
-    if coarsest.solver.size >= model.coarser.solver.size:
+    if coarsest.solver.size > _HALVED * model.coarser.solver.size:  # it has as many on short segments
         return np.full((len(speeds), count), np.nan)
     found = eigenvalues_over_speeds(coarsest.solver, speeds, min(count, coarsest.solver.size)) ** 2
     lacking = np.full((len(speeds), count - found.shape[1]), np.nan)
