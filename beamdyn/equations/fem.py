@@ -19,7 +19,7 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
 MOST_ELEMENTS = 1000  # largest number accepted
-_MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
+MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
 # Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
@@ -104,9 +104,9 @@ class Fem:
 
     def finer(self) -> Fem | None:
         """A mesh of a quarter more elements, up to 100; None at 100 or more."""
-        if self.elements >= _MOST_REFINED:
+        if self.elements >= MOST_REFINED:
             return None
-        return replace(self, elements=min(_MOST_REFINED, 5 * self.elements // 4))
+        return replace(self, elements=min(MOST_REFINED, 5 * self.elements // 4))
 
     def fits(self, modes: int) -> bool:
         """Whether the coarser mesh has functions enough for a number of modes."""
@@ -131,8 +131,13 @@ def _subdivide(ends: np.ndarray, elements: int, on_each: int) -> np.ndarray:
 
 
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
-    """Distribute elements among segments in proportion to their length, at least so many on each."""
-    counts = np.maximum(least, np.floor(total * lengths / lengths.sum()).astype(int))
+    """Distribute elements among segments in proportion to their length, at least so many on each.
+
+    Short segments are refined with the others: none has less than half of an equal share, but in elements ten
+    times as short as equal ones, beyond which rounding costs more than it gains.
+    """
+    share = total * np.minimum(np.maximum(lengths, 0.5 / len(lengths)), 10 * lengths)
+    counts = np.maximum(least, np.floor(share / lengths.sum()).astype(int))
     while counts.sum() < total:
         counts[np.argmax(lengths / counts)] += 1
     return counts

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.modal.end_layers import split_layers
 from beamdyn.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -27,6 +29,7 @@ _MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more func
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
+_ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of half as many resolves it, too
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -123,8 +126,10 @@ def _choose(
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
+    speed = float(np.abs(speeds).max(initial=0.0))
+    split = split_layers(scene, speed, target) if isinstance(discretization, str) else scene
     found: tuple[Model, EstimatedModes | None] | None = None
-    for finer in list_models(scene, discretization, modes, target, cheapest):
+    for finer in list_models(split, discretization, modes, target, cheapest, split is not scene):
         if not isinstance(discretization, str):
             return finer, None
         if finer.solver.size < modes and found is None and _refine(finer) is not None:
@@ -147,10 +152,16 @@ def least_target(discretization: DiscretizationChoice) -> float:
 
 
 def list_models(
-    scene: Scene, discretization: DiscretizationChoice, modes: int, target: float, cheapest: bool
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    modes: int,
+    target: float,
+    cheapest: bool,
+    has_layers: bool = False,
 ) -> Iterator[Model]:
     """List the models to try, from the smallest sensible one to the finest; of an instance, that one.
 
+    `has_layers` says whether segments are those of `beamdyn.modal.end_layers`, which need several elements.
     The other parameters and what is raised are those of `choose_model`.
     """
     segments = _count_segments(scene)
@@ -160,7 +171,8 @@ def list_models(
             f"{_MOST_SEGMENTS}; give fewer stations, or its properties as polynomials or functions of x/L"
         )
     if isinstance(discretization, str):
-        model = Model(scene, _find_first(discretization, scene, modes, target, cheapest))
+        first = _FIRST_CANDIDATE[discretization, has_layers](scene, modes, target, cheapest)
+        model = Model(scene, _enlarge(first, scene, modes))
     else:
         model = Model(scene, _check_size(discretization, modes, segments))
     return _list_from(model, isinstance(discretization, str))
@@ -183,9 +195,8 @@ def _refine(model: Model) -> Model | None:
     return refined
 
 
-def _find_first(name: str, scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
-    """Find the smallest sensible discretization of one kind."""
-    first = _FIRST_CANDIDATE[name](scene, modes, target, cheapest)
+def _enlarge(first: Discretization, scene: Scene, modes: int) -> Discretization:
+    """The first discretization, or a finer one, that has functions enough for the modes."""
     segments = _count_segments(scene)
     while not _fits(first, modes, segments) and (finer := first.finer()) is not None:
         first = finer
@@ -210,17 +221,27 @@ def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Disc
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
-def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
-    from beamdyn.equations.fem import MOST_ELEMENTS, Fem  # here, because scikit-fem is slow to import
+def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each: int = 2) -> Discretization:
+    from beamdyn.equations.fem import (
+        MOST_ELEMENTS,
+        MOST_REFINED,
+        Fem,
+    )  # here, because scikit-fem is slow to import
 
-    return Fem(min(max(4 if cheapest else 80, 2 * _count_segments(scene), 4 * modes), MOST_ELEMENTS))
+    segments = _count_segments(scene)
+    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 
-# First candidate of each kind, by scene, modes, target and whether to begin with the smallest.
-_FIRST_CANDIDATE: dict[str, Callable[[Scene, int, float, bool], Discretization]] = {
-    "ritz": _first_ritz,
-    "fem": _first_fem,
+# First candidate of each kind, for beams without and with segments for layers at the ends: by scene, modes,
+# target and whether to begin with the smallest.
+_FIRST_CANDIDATE: dict[tuple[str, bool], Callable[[Scene, int, float, bool], Discretization]] = {
+    ("ritz", False): _first_ritz,
+    ("ritz", True): _first_ritz,
+    ("fem", False): _first_fem,
+    ("fem", True): partial(_first_fem, on_each=_ON_LAYERS),
 }
+_NAMES = tuple(dict.fromkeys(name for name, _ in _FIRST_CANDIDATE))
 
 
 def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
@@ -270,7 +291,7 @@ def _check_size(discretization: Discretization, modes: int, segments: int) -> Di
 
 def check_discretization(discretization: object) -> None:
     """Refuse what is neither the name of a discretization nor one."""
-    named = isinstance(discretization, str) and discretization in _FIRST_CANDIDATE
+    named = isinstance(discretization, str) and discretization in _NAMES
     if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
-        bound = f"give {', '.join(map(repr, _FIRST_CANDIDATE))}, a beamdyn.Ritz or a beamdyn.Fem"
+        bound = f"give {', '.join(map(repr, _NAMES))}, a beamdyn.Ritz or a beamdyn.Fem"
         raise InvalidValue("discretization", discretization, bound)

@@ -7,17 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.discretization import Discretization
 from beamdyn.modal.eigensolver import Eigen
 from beamdyn.modal.model import Model
 from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
+from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
-_OF_ORDER_2 = 1 / 3  # of the distance of two meshes, what is left of it by extrapolation at order 2 or more
-_RESOLVED = 0.3  # stiffness of an element by tension over that by bending: it is three layers long
+# Ratios of the distances of meshes: of order 2, the least taken; where it is not known; the largest taken.
+_OF_ORDER_2, _UNKNOWN, _FALLING = 0.25, 0.5, 0.8
+_HALVED = 0.7  # size of a mesh over that of the finer one, of which it has half the elements
+_OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
+_OF_ORDER_4 = 48.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
-_REGULAR, _IRREGULAR = (1.0, 0.01), (2.0, 0.3)  # parts of a mode's distance, and of the largest, elsewhere
+# Parts of a mode's distance, and of the largest, elsewhere; several segments converge at several rates.
+REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01), (3.0, 0.05), (2.0, 0.3)
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
@@ -90,7 +96,11 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         if order is not None:
-            truncation = relative * np.where(_layers_are_resolved(model, speeds), _OF_ORDER_2, 1.0)[:, None]
+            before = coarse**2 - _coarsest_squares(model, speeds, compared)
+            noise = (fine.rounding[:, :compared] + integration_error(model, squared)) * np.abs(squared)
+            noise += _rounding_of_elements(model, fine.vector[:, :, :compared])
+            truncation = (extrapolation_error(distance, before, noise) + noise) / (2 * np.abs(squared))
+            truncation = _not_below_lower_modes(truncation, np.abs(squared) / model.solver.lowest_at_rest)
         else:
             truncation = _ritz_error_of(model, fine, distance, squared)
     error = truncation + _ROUNDING * fine.rounding[:, :compared] + integration_error(model, squared)
@@ -111,17 +121,52 @@ def _check_size(model: Model, modes: int) -> None:
         raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
-def _layers_are_resolved(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Whether elements are shorter than the layers in which the tension lets the beam bend, shape (S,).
+def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """What extrapolation leaves of the error of a number, by its distances over three meshes.
 
-    The tension N has layers of the length (EI/N)^(1/2), for instance at a clamped root.  Stiffnesses of
-    functions of one element of length h by N and by E I have the quotient N h^2/(30 EI) or so.  Where
-    elements are far longer than the layers, their error falls with h only.
+    Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
+    of the one before; where they are longer than a layer, or cross a steep change, it falls less.
+
+    Parameters
+    ----------
+    distance, before : ndarray
+        Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
+    noise : ndarray
+        Rounding error of these differences.
+
+    Returns
+    -------
+    ndarray
+        inf where the differences do not fall.
     """
-    pencil = model.solver.pencil
-    rest, spin = np.diag(pencil.K0), np.diag(pencil.K2)
-    most = np.max(spin[rest > 0] / rest[rest > 0], initial=0.0)
-    return speeds**2 * most <= _RESOLVED
+    size = np.abs(distance)
+    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), _OF_ORDER_2)
+    left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
+    return np.maximum(size * left, np.nan_to_num(np.abs(before)) / _OF_ORDER_4)
+
+
+def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Raise errors (S, k) to those of lower modes: elements resolve these better, but for coincidences.
+
+    `size` are the squares over the lowest at rest: a small one has a larger relative error.
+    """
+    return np.maximum(error, np.maximum.accumulate(error * np.minimum(size, 1.0), axis=1))
+
+
+def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
+    """Rounding error (S, k) of squared eigenvalues of modes (S, n, k): short elements have stiff entries."""
+    K, size = np.abs(model.solver.pencil.K0), np.abs(v)
+    return _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", size**2, K**2, size**2, optimize=True))
+
+
+def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan where it has none."""
+    coarsest = model.coarser.coarser
+    if coarsest.solver.size > _HALVED * model.coarser.solver.size:  # it has as many on short segments
+        return np.full((len(speeds), count), np.nan)
+    found = eigenvalues_over_speeds(coarsest.solver, speeds, min(count, coarsest.solver.size)) ** 2
+    lacking = np.full((len(speeds), count - found.shape[1]), np.nan)
+    return np.concatenate([found, lacking], axis=1)
 
 
 def error_of_assumed_modes(
@@ -130,7 +175,7 @@ def error_of_assumed_modes(
     rounding: np.ndarray,
     lowest_at_rest: np.ndarray,
     is_slender: bool = True,
-    is_regular: bool = True,
+    parts: tuple[float, float] = REGULAR,
 ) -> np.ndarray:
     """Errors that `solve_with_error` states of assumed modes that stand on no hinge.
 
@@ -146,21 +191,28 @@ def error_of_assumed_modes(
         Lowest squared frequency at rest of each.
     is_slender : bool
         Whether the beams are slender, clamped, and bend in one plane.
-    is_regular : bool
-        Whether the basis converges regularly.
+    parts : tuple of float
+        How the basis converges: see `parts_of_distances`.
 
     Returns
     -------
     ndarray, shape (S, k)
         inf where unresolved.
     """
-    margin, parts = _MARGIN if is_slender else _MARGIN_OF_FIELDS, _REGULAR if is_regular else _IRREGULAR
+    margin = _MARGIN if is_slender else _MARGIN_OF_FIELDS
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         error = _ritz_error(distance, squared, lowest_at_rest, margin, parts) + _ROUNDING * rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
     resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)
+
+
+def parts_of_distances(scene: Scene, discretization: Discretization) -> tuple[float, float]:
+    """Parts of a mode's own distance between two bases, and of the largest distance, that are its error."""
+    if not discretization.converges_regularly:
+        return _IRREGULAR
+    return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
 
 
 def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
@@ -201,7 +253,7 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
 def _ritz_error_of(model: Model, fine: Eigen, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
     """The error `_ritz_error` of a model, by its basis and by what it may lack."""
     margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_FIELDS
-    parts = _REGULAR if model.discretization.converges_regularly else _IRREGULAR
+    parts = parts_of_distances(model.scene, model.discretization)
     lowest = 0.0 if _are_above_rest(model, fine, squared) else model.solver.lowest_at_rest
     return _ritz_error(distance, squared, np.asarray(lowest), margin, parts)
 

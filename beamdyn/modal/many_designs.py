@@ -30,7 +30,7 @@ from beamdyn.modal.eigen import (
     select_lowest,
     solve_diagonal,
 )
-from beamdyn.modal.error_estimate import error_of_assumed_modes
+from beamdyn.modal.error_estimate import REGULAR, error_of_assumed_modes
 
 _EPS = float(np.finfo(float).eps)
 _MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
@@ -190,14 +190,14 @@ class Estimate:
     ----------
     is_slender : bool
         Whether the designs are slender beams, clamped, in one plane.
-    is_regular : bool
-        Whether the basis converges regularly.
+    parts : tuple of float
+        How the basis converges: see `parts_of_distances`.
     rounding : float
         Rounding errors over those of a slender beam, clamped, in one plane.
     """
 
     is_slender: bool = True
-    is_regular: bool = True
+    parts: tuple[float, float] = REGULAR
     rounding: float = 1.0
 
 
@@ -261,7 +261,7 @@ def _solve_at(
         distance = squared - coarser.damped(speeds, ratio, count)[0] ** 2
     rounding = estimate.rounding * rounding
     lowest = np.repeat(fine.lowest_at_rest, speeds.shape[1])
-    kind = estimate.is_slender, estimate.is_regular
+    kind = estimate.is_slender, estimate.parts
     error = error_of_assumed_modes(squared, distance, rounding, lowest, *kind)
     shape = *speeds.shape, count
     return s.reshape(shape), error.reshape(shape), rounding.reshape(shape)
@@ -306,7 +306,7 @@ def speeds_of_meeting(
     distance = np.where(exists, of_coarser - squared, 0.0)
     relative = estimate.rounding * rounding * squared / 2
     of_rows, off, sure = (values.reshape(-1, count) for values in (-squared, distance, relative))
-    kind = estimate.is_slender, estimate.is_regular
+    kind = estimate.is_slender, estimate.parts
     error = error_of_assumed_modes(of_rows, off, sure, squared[..., 0].ravel(), *kind).reshape(squared.shape)
     return np.where(exists, np.sqrt(squared), np.inf), np.where(exists, error, np.inf), relative
 

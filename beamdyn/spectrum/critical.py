@@ -25,7 +25,8 @@ from beamdyn.modal.choice import (
     warn_of_missed_tolerance,
 )
 from beamdyn.modal.eigen import Solver
-from beamdyn.modal.error_estimate import UNRESOLVED, integration_error
+from beamdyn.modal.end_layers import split_tip
+from beamdyn.modal.error_estimate import UNRESOLVED, extrapolation_error, integration_error
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -291,8 +292,9 @@ def _list_models(
     scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
 ) -> Iterator[Model]:
     """List the models in which a critical speed is sought; see `list_models`."""
-    modes = _SIZED_FOR if isinstance(discretization, str) else 1
-    return list_models(scene, discretization, modes, target, cheapest)
+    named = isinstance(discretization, str)
+    modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
+    return list_models(split, discretization, modes, target, cheapest, split is not scene)
 
 
 @dataclass(frozen=True)
@@ -336,7 +338,12 @@ def _compare(model: Model) -> _Found:
     if not 0 < softening < np.inf:  # False for nan, too
         return _Found(model, coarse, np.inf, np.inf, np.inf)
     rounding, by_springs = solver.critical_rounding, _rounding_on_springs(model)
-    error = abs(distance) / (2 * softening) + rounding + model.discretization.rounding + by_springs
+    noise = rounding + model.discretization.rounding + by_springs
+    left = abs(distance)
+    if order is not None:
+        before = coarse_softening - coarse.coarser.solver.softening
+        left = float(extrapolation_error(*np.array([distance, before, noise * softening])))
+    error = left / (2 * softening) + noise
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
     return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)

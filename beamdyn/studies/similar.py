@@ -28,6 +28,7 @@ import numpy as np
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import Discretization
+from beamdyn.modal.error_estimate import parts_of_distances
 from beamdyn.modal.many_designs import Estimate, PencilStack
 from beamdyn.modal.model import Model
 from beamdyn.scene.beam import TipMass
@@ -248,7 +249,7 @@ class SimilarDesigns(FieldsOnly):
         """How the errors of a basis are estimated."""
         on_springs = np.isfinite(self.reference.mount.root_stiffness)
         rounding = _ROUNDING_OF_PLANES if self._planes == 2 else _ROUNDING_ON_SPRINGS if on_springs else 1.0
-        return Estimate(rounding == 1.0, discretization.converges_regularly, rounding)
+        return Estimate(rounding == 1.0, parts_of_distances(self.reference, discretization), rounding)
 
     def weights(self, designs: np.ndarray) -> np.ndarray:
         """Weights (R, T) of the T node scenes in the matrices of R designs."""

@@ -142,7 +142,7 @@ def test_a_tip_body_behind_the_end_topples_and_one_before_it_does_not() -> None:
 
 
 def test_none_found_is_warned_of_with_how_far_it_was_looked() -> None:
-    tip = bd.TipMass(1e-3, -1e-7)  # topples in a layer too thin for any basis
+    tip = bd.TipMass(1e-3, -1e-9)  # topples in a layer too thin for any basis
     scene = bd.Scene(replace(HARVESTER.beam, tip=tip))
     with pytest.warns(UserWarning, match=r"a critical speed exists \(.*topples.*certainly none below"):
         assert math.isinf(bd.critical_speed(scene))
@@ -337,7 +337,7 @@ def test_nothing_topples_below_the_bound() -> None:
 
 
 def test_none_below_of_two_planes_apart_is_the_lower_of_both() -> None:
-    tip = bd.TipMass(1e-3, -1e-7)  # topples in a layer too thin for any basis
+    tip = bd.TipMass(1e-3, -1e-9)  # topples in a layer too thin for any basis
     beam = replace(HARVESTER.beam, tip=tip)
     both, *single = (
         bd.critical_point(bd.Scene(beam, bd.Mount(bending_angle=psi), physics=bd.Physics(planes)))

@@ -1,0 +1,114 @@
+"""Whether assumed modes and finite elements agree within both their stated errors.
+
+Run: python -m benchmarks.two_discretizations [--scenes N] [--save FILE].  Random beams whose properties are
+tables with kinks and jumps, with springs at the root and along the beam, point masses and bodies at the tip.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from beamdyn.modal.model import Model
+from benchmarks.resumable import Cases, add_options
+from benchmarks.rows import Row, show
+
+SEED = 8
+_MODES = 3
+
+
+@dataclass(frozen=True)
+class Case:
+    """Relative distance of both answers, mode by mode, and the sum of their stated errors, or a refusal."""
+
+    number: int
+    distance: tuple[float, ...] = ()
+    stated: tuple[float, ...] = ()
+    of_elements: tuple[float, ...] = ()
+    refusal: str = ""
+
+
+def random_table_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
+    """A beam of two to eight stations, whose stiffness varies a hundredfold, and a speed."""
+    places = np.unique(np.concatenate([[0.0, 1.0], rng.uniform(0.01, 0.99, int(rng.integers(0, 7)))]))
+    jumps = places[1:-1][rng.random(len(places) - 2) < 0.3]
+    stations = np.sort(np.concatenate([places, jumps])).tolist()
+    mass, stiffness = (
+        bd.Table(stations, (10 ** rng.uniform(-decades, decades, len(stations))).tolist())
+        for decades in (0.5, 1)
+    )
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        mass,
+        stiffness,
+        tip=bd.TipMass(10 ** rng.uniform(-2, 0), rng.uniform(-0.05, 0.1)) if rng.random() < 0.4 else None,
+        point_masses=[bd.PointMass(rng.uniform(0.1, 0.9), 10 ** rng.uniform(-2, 0))]
+        if rng.random() < 0.3
+        else (),
+        point_springs=[bd.PointSpring(rng.uniform(0.1, 0.9), 10 ** rng.uniform(-1, 3))]
+        if rng.random() < 0.3
+        else (),
+    )
+    spring = rng.choice([np.inf, 10 ** rng.uniform(-2, 3)])
+    mount = bd.Mount(rng.uniform(0, 2), rng.choice([0.0, np.pi]), rng.choice([0.0, np.pi / 2, 0.7]), spring)
+    scene = bd.Scene(beam, mount)
+    solver = Model(scene, bd.Ritz(10)).solver
+    share = rng.choice([0.0, rng.uniform(0, 0.95)])
+    return scene, float(share * min(solver.critical_speed, 20 * np.sqrt(abs(solver.lowest_at_rest))))
+
+
+def measure(number: int, seed: int) -> list[Case]:
+    """Both answers for the scene with this number."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of beams that no material has
+        scene, speed = random_table_scene(np.random.default_rng([seed, number]))
+        try:
+            ritz, fem = (bd.natural_modes(scene, speed, _MODES, name) for name in ("ritz", "fem"))
+        except (ValueError, ArithmeticError) as error:
+            return [Case(number, refusal=str(error))]
+    distance = np.abs(fem.eigenvalue / ritz.eigenvalue - 1)
+    return [Case(number, *(tuple(each.tolist()) for each in (distance, ritz.error + fem.error, fem.error)))]
+
+
+def summarize(cases: Sequence[Case]) -> Iterator[Row]:
+    """How many scenes agree, and by how much the others do not."""
+    found = [case for case in cases if not case.refusal]
+    ratio = np.array([np.max(np.array(case.distance) / np.array(case.stated)) for case in found])
+    yield "random scenes; refused", f"{len(cases)}; {len(cases) - len(found)}", "2000"
+    yield "agree within both stated errors", f"{np.mean(ratio <= 1):.2%}", "99.9 %"
+    yield "distance over stated errors: median, largest", f"{np.median(ratio):.1g}, {ratio.max():.3g}", "1"
+    yield "stated by elements, median", f"{np.median([case.of_elements for case in found]):.1e}", ""
+    yield "unresolved", f"{np.isinf([case.stated for case in found]).mean():.2%}", ""
+    for case, by in zip(found, ratio, strict=True):
+        if by > 1:
+            yield f"not: scene {case.number}", f"{max(case.distance):.1e}", f"{by:.2f}"
+    yield from ((f"refused: scene {case.number}", case.refusal, "") for case in cases if case.refusal)
+
+
+def measure_sample() -> Iterator[Row]:
+    """The first 100 scenes."""
+    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(100)))
+
+
+PARTS = (measure_sample,)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, scenes=2000, seed=SEED)
+    given = parser.parse_args()
+    found = Cases(partial(measure, seed=given.seed), Case).run(given)
+    show("assumed modes beside finite elements", lambda: summarize(found))
+
+
+if __name__ == "__main__":
+    main()
