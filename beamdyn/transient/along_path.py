@@ -140,9 +140,9 @@ def distance_along_path(
     -------
     float or None
         None where it takes more than the oscillators: gyroscopic coupling, coordinates that the larger
-        model does not contain, a mode that diverges or is heavily damped, modes whose coupling does not settle,
-        a motion that grows, and where
-        ringing counts most: after an abrupt start, or in a record that is rough from sample to sample.
+        model does not contain, a mode that diverges or is heavily damped, coupling of modes that does not
+        settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
+        in a record that is rough from sample to sample.
     """
     residual = _Residual.of(system, larger)
     if residual is None or _grows(path, system):
@@ -306,7 +306,8 @@ class _Oscillators:
 
     def coupling(self, y: np.ndarray) -> np.ndarray:
         """Force on each mode by the motion y of the others: shape (N, n)."""
-        return sum(k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
+        each = (k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
+        return sum(each, np.zeros_like(y))
 
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray

@@ -79,9 +79,9 @@ def test_a_mode_that_the_steps_do_not_resolve_is_followed():
     assert few.mode_error / 2 == pytest.approx(few.distance_from(run), rel=0.15)
 
 
-@pytest.mark.parametrize(("number", "modes"), [(1022, 6), (1362, 5), (1446, 3)])
+@pytest.mark.parametrize(("number", "modes"), [(1046, 9), (1058, 7)])
 def test_coupling_of_modes_that_the_mean_of_a_stretch_lacks_is_found(number, modes):
-    """A wavy road changes the stiffness: without the coupling by it the distance is found 2.8 to 5.3 times small."""
+    """A wavy road changes the stiffness: without this coupling the distance is two to six times too small."""
     given = random_wave_run(np.random.default_rng([7, number]))
     run = bd.simulate(**given | {"modes": modes, "tolerance": 1e-5})
     assert run.mode_error / 2 == pytest.approx(run.distance_from(run.request.run_refined()), rel=0.15)
