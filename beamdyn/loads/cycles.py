@@ -203,4 +203,3 @@ def _load_counter() -> Callable[[np.ndarray], Iterable[tuple[float, ...]]]:
     except ImportError:
         raise ImportError("count_cycles needs rainflow: pip install 'beamdyn[fatigue]'") from None
     return extract_cycles
-
