@@ -3,9 +3,10 @@
 Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics | --cycles] [--save FILE].  Random scenes
 in motion as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary
 inertia and springs in all combinations; with --cycles, damage-equivalent ranges of the moment at the root,
-against cycles counted from 200 001 samples of the same run.  The reference has twice as many modes at three speeds, at least 24 shapes, in a
-large basis, and finer steps: both errors together, of modes and of time.  Modes contribute to shear
-forces as k^-2 after a sudden load, so that the reference itself has a part of the error there.
+against cycles counted from 200 001 samples of the same run.  The reference of the others has twice as many
+modes at three speeds, at least 24 shapes, in a large basis, and finer steps: both errors together, of modes
+and of time.  Modes contribute to shear forces as k^-2 after a sudden load, so that the reference itself has a
+part of the error there.
 """
 
 from __future__ import annotations

@@ -119,7 +119,7 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Values of largest size from `first` to `last`, about times t [s] (O, 1), and their times: (O, 1)."""
+        """Values of largest size from `first` to `last`, about times t [s], and their times: (O, 1)."""
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
             near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)

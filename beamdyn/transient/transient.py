@@ -78,8 +78,8 @@ class Transient(StatesModelError):
 
     Notes
     -----
-    The modal truncation error is `mode_error`, relative to `largest` as on `Sweep`; it takes a second motion at
-    its first use.
+    The modal truncation error is `mode_error`, relative to `largest` as on `Sweep`; it takes a second motion
+    at its first use.
 
     Examples
     --------
