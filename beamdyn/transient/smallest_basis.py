@@ -42,12 +42,24 @@ def _whole_error(run: Transient) -> float:
 
 def _search(request: TransientRequest) -> Transient:
     """Add modes until the truncation error meets the tolerance, or takes too much work."""
-    run = request.run()
-    if run.mode_error > request.tolerance and (finer := run.with_more_modes) is not None:
+    run, tolerance = request.run(), request.tolerance
+    if run.mode_error > tolerance and (finer := run.with_more_modes) is not None:
         # A sudden motion excites many modes: as many modes at rest may then be the better basis.
         at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
-        run = min(run, at_rest, key=lambda each: each.distance_from_path(*finer))
-    return _add_modes(run, request.tolerance)
+        if at_rest.distance_from_path(*finer) < run.distance_from_path(*finer):
+            run = _refine_better(at_rest, run, tolerance)
+    return _add_modes(run, tolerance)
+
+
+def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
+    """Refine modes at rest; where they are far from the tolerance, those at speeds if these converge faster.
+
+    Few modes tell little of that: those at rest may be closer, and then fall behind for good.
+    """
+    if at_rest.mode_error <= _NEARLY * tolerance:
+        return at_rest
+    refined = [run for run in (at_rest.refined, at_speeds.refined) if run is not None]
+    return min(refined, key=lambda run: run.mode_error, default=at_rest)
 
 
 def _add_modes(run: Transient, tolerance: float) -> Transient:
