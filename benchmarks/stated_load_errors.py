@@ -1,10 +1,12 @@
 """Whether the stated errors of loads along the span cover the true ones, in random transients.
 
-Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics] [--save FILE].  Random scenes in motion
-as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary inertia and
-springs in all combinations.  The reference has twice as many modes at three speeds, at least 24 shapes, in a
-large basis, and finer steps: both errors together, of modes and of time.  Modes contribute to shear
-forces as k^-2 after a sudden load, so that the reference itself has a part of the error there.
+Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics | --cycles] [--save FILE].  Random scenes
+in motion as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary
+inertia and springs in all combinations; with --cycles, damage-equivalent ranges of the moment at the root,
+against cycles counted from 200 001 samples of the same run.  The reference of the others has twice as many
+modes at three speeds, at least 24 shapes, in a large basis, and finer steps: both errors together, of modes
+and of time.  Modes contribute to shear forces as k^-2 after a sudden load, so that the reference itself has a
+part of the error there.
 """
 
 from __future__ import annotations
@@ -33,6 +35,8 @@ _TIMES = 1000  # at which loads are compared
 _MORE, _MANY = 2, 8  # modes of the reference over those of the run at each of its speeds, and at least
 _ROUNDING = 1e-8  # of the reference, over the largest along the span
 _FINER, _FINEST = 1e-2, 1e-9  # tolerance of its steps over that of the run, and at least
+_SAMPLES, _PARTS = 200_001, 400  # of the run from which cycles are counted, so many parts at once
+_EXPONENTS = 3.0, 10.0
 _QUANTITIES = "force", "moment", "strain"
 _STATIONS = np.linspace(0, 0.9, 7)  # over the length; at the tip all loads but a body's vanish
 SEED = 18
@@ -69,6 +73,30 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
         return [Case(number, {}, {}, {}, str(error))]
     found = dict(_errors(loads, exact))
     stated, true, over = ({name: each[which] for name, each in found.items()} for which in range(3))
+    return [Case(number, stated, true, over)]
+
+
+def measure_cycles(number: int, seed: int) -> list[Case]:
+    """Stated and true errors of equivalent ranges of the root's moment in the run with this number."""
+    from rainflow import extract_cycles
+
+    given = of_few_modes(np.random.default_rng([seed, number]), random_run)
+    try:
+        loads = bd.transient_loads(bd.simulate(**given), at=[0.0])
+    except (ValueError, ArithmeticError) as error:
+        return [Case(number, {}, {}, {}, str(error))]
+    cycles, times = bd.count_cycles(loads, "moment"), np.linspace(0, given["t_end"], _SAMPLES)
+    values = np.concatenate([loads.at("moment", some)[:, 0, 0] for some in np.array_split(times, _PARTS)])
+    counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3).T
+    exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
+    error = loads.run.time_error / (loads.run.largest or 1.0) * float(np.abs(values).max())
+    stated, true, over = {}, {}, {}
+    for found in cycles.equivalents(_EXPONENTS, 1.0, error):
+        size = exact.equivalent_range(found.exponent) or 1.0
+        name = f"equivalent-ranges, exponent {found.exponent:g}"
+        stated[name] = found.error / size
+        true[name] = abs(found.range - exact.equivalent_range(found.exponent)) / size
+        over[name] = stated[name] / max(true[name], 1e-300)
     return [Case(number, stated, true, over)]
 
 
@@ -145,10 +173,14 @@ PARTS = (measure_sample,)
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser, scenes=500, seed=SEED)
-    parser.add_argument("--physics", action="store_true", help="with all physics in all combinations")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--physics", action="store_true", help="with all physics in all combinations")
+    kind.add_argument("--cycles", action="store_true", help="of damage-equivalent ranges")
     given = parser.parse_args()
     draw = random_physics_run if given.physics else random_run
-    runs = Cases(partial(measure, seed=given.seed, draw=draw), Case).run(given)
+    of_loads = partial(measure, seed=given.seed, draw=draw)
+    measure_one = partial(measure_cycles, seed=given.seed) if given.cycles else of_loads
+    runs = Cases(measure_one, Case).run(given)
     show("stated errors of loads along the span", lambda: summarize(runs))
 
 

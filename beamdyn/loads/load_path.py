@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,12 +14,16 @@ from beamdyn.loads.load_time_error import time_errors_of_rows
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours
 from beamdyn.loads.section_points import StationOutputs
 from beamdyn.loads.stations import SpanStations
+from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.simulate import Transient
 from beamdyn.transient.system import ModalSystem
 
 _COMPARED = 4000  # times at which two runs are compared; at most twice as many
 _BATCH = 500  # times at once
 _REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
+_OF_TURNING_POINTS = 2  # refinements of a turning point: values within 1e-6, as parts of the largest range
+_BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
+_BEFORE_JUMP = 1e-9  # over a segment: loads may jump at its end
 
 
 @dataclass(frozen=True)
@@ -66,10 +70,29 @@ class LoadPath(FieldsOnly):
         """Outputs at times t [s] (T,): shape (T, S, K)."""
         return self.rows.at(self._system.root(t), *self.run.path.at(t))
 
-    def series_of(self, station: int, output: int, t: np.ndarray) -> np.ndarray:
-        """One output of one station at times t [s] (T,): shape (T,)."""
+    def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
+        """Values of one output of one station at its turning points from start to end [s], and at these."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
-        return self._each_at(single, t[None])[0]
+        t = self._dense_times(start, end)
+        values = np.concatenate([self._each_at(single, some[None])[0] for some in _batches(t)])
+        slopes = np.diff(values)
+        turns = 1 + np.flatnonzero(slopes[:-1] * slopes[1:] < 0)
+        found = [values[:2], values[-1:]]  # the second: counters take no history of two values
+        for k in _batches(turns):
+            sign = np.sign(slopes[k - 1])[:, None]
+            near = t[k, None], t[k - 1, None], t[k + 1, None]
+            best, _ = self._refine(single, lambda y, sign=sign: sign * y, *near, _OF_TURNING_POINTS)
+            found.insert(-1, best[:, 0])
+        return np.concatenate(found)
+
+    def _dense_times(self, start: float, end: float) -> np.ndarray:
+        """Times from start to end [s], several between two samples of the run and one before each jump."""
+        samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
+        between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
+        pieces = np.array(smooth_piece_ends(self.run.request.motion, self.run.path.end))
+        before = pieces[1:] - _BEFORE_JUMP * np.diff(pieces)
+        t = np.unique(np.concatenate([between, before, [start, end]]))
+        return t[(t >= start) & (t <= end)]
 
     def loads_at(self, t: np.ndarray) -> np.ndarray:
         """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
@@ -82,15 +105,29 @@ class LoadPath(FieldsOnly):
         values, times = self._largest_samples(start, end)
         station, component = (index.ravel() for index in np.indices(values.shape))
         single = self.rows.chosen(station, component)
-        t, half_width = times.ravel()[:, None], self._longest_gap
-        found = values.ravel()[:, None]
-        for _ in range(_REFINEMENTS):
-            near = np.clip(t + np.linspace(-half_width, half_width, 2 * _FINE + 1), start, end)
-            sampled = self._each_at(single, near)
-            best = np.abs(sampled).argmax(axis=1)[:, None]
-            t, found = (np.take_along_axis(each, best, axis=1) for each in (near, sampled))
-            half_width /= _FINE
+        t = times.ravel()[:, None]
+        window = np.maximum(t - self._longest_gap, start), np.minimum(t + self._longest_gap, end)
+        found, t = self._refine(single, np.abs, t, *window, _REFINEMENTS)
         return found.reshape(values.shape), t.reshape(values.shape)
+
+    def _refine(
+        self,
+        single: LoadRows,
+        size: Callable[[np.ndarray], np.ndarray],
+        t: np.ndarray,
+        first: np.ndarray,
+        last: np.ndarray,
+        refinements: int,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Values of largest size from `first` to `last`, about times t [s], and their times: (O, 1)."""
+        found, half_width = np.empty(0), np.maximum(last - t, t - first)
+        for _ in range(refinements):
+            near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)
+            sampled = self._each_at(single, near)
+            best = size(sampled).argmax(axis=1)[:, None]
+            t, found = (np.take_along_axis(each, best, axis=1) for each in (near, sampled))
+            half_width = half_width / _FINE
+        return found, t
 
     @property
     def _longest_gap(self) -> float:

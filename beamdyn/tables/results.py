@@ -307,7 +307,7 @@ def _peak_cells(run: Transient, start: float, end: float, direction: int | None)
     """Largest tip deflection in a window, over the length, and its time [s]."""
     size, length = run.peak(start, end, direction), run.scene.beam.length
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
-    error += run.mode_error if math.isfinite(run.mode_error) else 0.0
+    error += run.mode_error * run.largest if math.isfinite(run.mode_error) else 0.0
     beyond = float(run.model_error) * size
     deflection, ratio = (
         set_apart(supported(size * f, error * f, _MODEL_DIGITS), beyond * f)
@@ -319,7 +319,7 @@ def _peak_cells(run: Transient, start: float, end: float, direction: int | None)
 def _describe_errors(run: Transient) -> str:
     """Describe the time-integration error and the modal truncation error in words."""
     known, unit = math.isfinite(run.mode_error), _length_unit(run)
-    size = unit.say(run.mode_error, 1) if known else "unknown"
+    size = unit.say(run.mode_error * run.largest, 1) if known else "unknown"
     modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         return (

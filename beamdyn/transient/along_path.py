@@ -5,8 +5,8 @@ known along the path.  The difference e of the two motions obeys e'' + C e' + K(
 modes that the larger model has in each stretch of the run: the slow ones as oscillators whose frequency
 follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
 (Liouville and Green); those too fast for the samples of the run follow the residual, and ring by as much as
-that jumps.  So no step has to be solved again.  What couples the modes of a stretch is left out, which
-changes the difference by little where a run lasts long enough to need this.
+that jumps.  So no step has to be solved again.  What couples the modes of a stretch, as its stiffness departs
+from the mean, is a force on each by the motion of the others: it is found by passes that use the last ones'.
 
 References
 ----------
@@ -29,7 +29,8 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import size_per_coordinate
 from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
 
-_THIN = 2  # every second sample of a path is taken
+_MOST_PASSES = 4  # over the modes of a stretch, after the first, which leaves their coupling out
+_SETTLED = 0.1  # change of the difference by a pass, over its size, at which the passes end
 _STRETCHES, _OF_RECORD = 8, 32  # stretches of a segment in which the speed changes, and of a record
 _RESOLVED = 1.9  # phase from sample to sample [rad] up to which a mode is followed in time
 _INSIDE = 1e-9  # distance of the first and last sample from the ends, over a segment: loads may jump there
@@ -139,8 +140,9 @@ def distance_along_path(
     -------
     float or None
         None where it takes more than the oscillators: gyroscopic coupling, coordinates that the larger
-        model does not contain, a mode that diverges or is heavily damped, a motion that grows, and where
-        ringing counts most: after an abrupt start, or in a record that is rough from sample to sample.
+        model does not contain, a mode that diverges or is heavily damped, coupling of modes that does not
+        settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
+        in a record that is rough from sample to sample.
     """
     residual = _Residual.of(system, larger)
     if residual is None or _grows(path, system):
@@ -152,7 +154,7 @@ def distance_along_path(
         if isinstance(segment, RecordSegment):
             ringing += _ringing_at_samples(residual, segment.steps)
         last = first + SAMPLES * len(segment.acceleration)
-        t, q, v = (each[first : last + 1 : _THIN] for each in path.samples)
+        t, q, v = (each[first : last + 1] for each in path.samples)
         root = larger.root(np.clip(t, *_within(segment)))
         R, values, jump = residual.at(root, q, v), residual.values(root), True
         for here in _stretches(segment, residual, larger.motion.steady_start):
@@ -187,7 +189,7 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     bends = np.linalg.norm(np.diff(slope, axis=0) @ modes, axis=0)
     w = np.sqrt(np.abs(squares))
     amplitude = bends / w**3 * np.maximum(1.0, w * steps.piece_width.max())
-    fast = w * steps.h.max() * _THIN / SAMPLES > _RESOLVED
+    fast = w * steps.h.max() / SAMPLES > _RESOLVED
     return _BY_CHANCE * float(size_per_coordinate(residual.larger.tips @ modes) @ (amplitude * fast))
 
 
@@ -206,7 +208,7 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
     parts = (_OF_RECORD if isinstance(segment, RecordSegment) else _STRETCHES) if changing else 1
     decay = np.abs(residual.damping).sum(axis=0).max() / 2 * (segment.end - segment.start)
     count = min(steps, max(parts, int(np.ceil(decay / _MOST_DECAY))))
-    for a, b in pairwise(np.arange(count + 1) * steps // count * (SAMPLES // _THIN)):
+    for a, b in pairwise(np.arange(count + 1) * steps // count * SAMPLES):
         yield slice(int(a), int(b) + 1)
 
 
@@ -233,36 +235,97 @@ class _Followed:
 def _follow(
     residual: _Residual, t: np.ndarray, R: np.ndarray, values: np.ndarray, e: np.ndarray, rate: np.ndarray
 ) -> _Followed | None:
-    """Follow the difference through a stretch, in the modes of its mean stiffness; None if one diverges."""
-    squares, modes = np.linalg.eigh((values.mean(axis=0) @ residual.flat_stiffness).reshape(len(e), len(e)))
-    stiff = values @ ((residual.stiffness @ modes) * modes).sum(axis=1)
-    decay = ((residual.damping @ modes) * modes).sum(axis=0) / 2
-    w2 = stiff - decay**2
-    if squares[0] <= 0 or (w2.min(axis=0) <= decay**2).any():
+    """Follow the difference through a stretch, in the modes of its mean stiffness; None if that fails."""
+    oscillators = _Oscillators.of(residual, t, values)
+    if oscillators is None:
         return None
-    force, tips = R @ modes, residual.larger.tips @ modes
-    y, y0, v0 = force / stiff, modes.T @ e, modes.T @ rate
-    end = (y[-1] - y[-2]) / (t[-1] - t[-2])
-    slow = np.sqrt(w2.max(axis=0)) * np.diff(t).max() <= _RESOLVED
-    ringing = size_per_coordinate(tips) @ np.abs(np.where(slow, 0.0, y0 - y[0]))
-    y[:, slow], end[slow] = _oscillate(
-        t, np.sqrt(w2[:, slow]), decay[slow], force[:, slow], y0[slow], v0[slow]
-    )
-    return _Followed(float(magnitude(y, tips).max()), modes @ y[-1], modes @ end, float(ringing))
+    modes, tips, force = oscillators.modes, residual.larger.tips @ oscillators.modes, R @ oscillators.modes
+    start = modes.T @ e, modes.T @ rate
+    y, _, _ = oscillators.respond(force, *start)
+    for _ in range(_MOST_PASSES):
+        before = y
+        y, end, jump = oscillators.respond(force - oscillators.coupling(y), *start)
+        largest = float(magnitude(y, tips).max())
+        if magnitude(y - before, tips).max() <= _SETTLED * largest:
+            ringing = size_per_coordinate(tips) @ jump
+            return _Followed(largest, modes @ y[-1], modes @ end, float(ringing))
+    return None
 
 
-def _oscillate(
-    t: np.ndarray, w: np.ndarray, decay: np.ndarray, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Oscillators with frequencies w (N, j) under forces (N, j): values (N, j), and rates at the end (j,)."""
-    dt = np.diff(t)[:, None]
-    phase = _cumulative(w, dt)
-    turn = np.exp(1j * phase - decay * (t - t[0])[:, None])
-    root = np.sqrt(w)
-    start = (v0 + decay * y0) / root[0] + 1j * root[0] * y0
-    a = turn * (start + _cumulative(force / (root * turn), dt))
-    y = a.imag / root
-    return y, a[-1].real * root[-1] - decay * y[-1]
+@dataclass(frozen=True)
+class _Oscillators:
+    """The modes of the mean stiffness in a stretch as oscillators.
+
+    Parameters
+    ----------
+    t : ndarray, shape (N,)
+        Times [s].
+    values : ndarray, shape (N, k)
+        Values of the quantities that multiply the matrices of stiffness.
+    modes : ndarray, shape (n, n)
+        The modes, in columns.
+    coupled : ndarray, shape (k, n, n)
+        The matrices of stiffness in these modes, without their diagonals.
+    stiff : ndarray, shape (N, n)
+        Stiffness of each mode.
+    decay : ndarray, shape (n,)
+        Rate of decay of each [1/s].
+    slow : ndarray of bool, shape (n,)
+        Which modes the times resolve.
+    root, turn : ndarray, shape (N, j)
+        Roots of the frequencies of these, and their free motion as complex numbers.
+    """
+
+    t: np.ndarray
+    values: np.ndarray
+    modes: np.ndarray
+    coupled: np.ndarray
+    stiff: np.ndarray
+    decay: np.ndarray
+    slow: np.ndarray
+    root: np.ndarray
+    turn: np.ndarray
+
+    @classmethod
+    def of(cls, residual: _Residual, t: np.ndarray, values: np.ndarray) -> _Oscillators | None:
+        """The oscillators; None if one diverges or is heavily damped."""
+        n = residual.larger.size
+        squares, modes = np.linalg.eigh((values.mean(axis=0) @ residual.flat_stiffness).reshape(n, n))
+        matrices = modes.T @ residual.stiffness @ modes
+        diagonals = np.diagonal(matrices, axis1=1, axis2=2)
+        stiff, decay = values @ diagonals, ((residual.damping @ modes) * modes).sum(axis=0) / 2
+        w2 = stiff - decay**2
+        if squares[0] <= 0 or (w2.min(axis=0) <= decay**2).any():
+            return None
+        slow = np.sqrt(w2.max(axis=0)) * np.diff(t).max() <= _RESOLVED
+        w = np.sqrt(w2[:, slow])
+        phase = _cumulative(w, np.diff(t)[:, None])
+        turn = np.exp(1j * phase - decay[slow] * (t - t[0])[:, None])
+        coupled = matrices - diagonals[:, None] * np.eye(n)
+        return cls(t, values, modes, coupled, stiff, decay, slow, np.sqrt(w), turn)
+
+    def coupling(self, y: np.ndarray) -> np.ndarray:
+        """Force on each mode by the motion y of the others: shape (N, n)."""
+        each = (k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
+        return sum(each, np.zeros_like(y))
+
+    def respond(
+        self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Motion (N, n) under forces (N, n), rates at the end, and jumps of the fast modes at the start."""
+        y, slow = force / self.stiff, self.slow
+        end = (y[-1] - y[-2]) / (self.t[-1] - self.t[-2])
+        jump = np.abs(np.where(slow, 0.0, y0 - y[0]))
+        y[:, slow], end[slow] = self._oscillate(force[:, slow], y0[slow], v0[slow])
+        return y, end, jump
+
+    def _oscillate(self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motion (N, j) of the slow modes under forces (N, j), and rates at the end (j,)."""
+        root, turn, decay = self.root, self.turn, self.decay[self.slow]
+        start = (v0 + decay * y0) / root[0] + 1j * root[0] * y0
+        a = turn * (start + _cumulative(force / (root * turn), np.diff(self.t)[:, None]))
+        y = a.imag / root
+        return y, a[-1].real * root[-1] - decay * y[-1]
 
 
 def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:

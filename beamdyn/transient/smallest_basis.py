@@ -25,30 +25,47 @@ def run_smallest_basis(request: TransientRequest) -> Transient:
     """
     tolerance = request.tolerance
     run = _search(replace(request, method="auto", t_eval=None))
-    if run.relative_mode_error > tolerance and tolerance < _TIGHT:
+    if run.mode_error > tolerance and tolerance < _TIGHT:
         # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
         coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
-        run = min(run, coarse, key=lambda run: run.time_error + run.mode_error)
-    missed = tuple(warn_of_missed_modes(run.relative_mode_error, tolerance, str(run.request.basis)))
+        run = min(run, coarse, key=_whole_error)
+    missed = tuple(warn_of_missed_modes(run.mode_error, tolerance, str(run.request.basis)))
     as_requested = request.method == "auto" and request.t_eval is None
     run = run if as_requested else replace(request, basis=run.request.basis).run()
     return run.with_warnings(missed) if missed else run
 
 
+def _whole_error(run: Transient) -> float:
+    """Errors of time integration and modal truncation together [m]."""
+    return run.time_error + run.mode_error * run.largest
+
+
 def _search(request: TransientRequest) -> Transient:
     """Add modes until the truncation error meets the tolerance, or takes too much work."""
-    run = request.run()
-    if run.mode_error > request.tolerance * run.largest and (finer := run.with_more_modes) is not None:
+    run, tolerance = request.run(), request.tolerance
+    if run.mode_error > tolerance and (finer := run.with_more_modes) is not None:
         # A sudden motion excites many modes: as many modes at rest may then be the better basis.
         at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
-        run = min(run, at_rest, key=lambda each: each.distance_from_path(*finer))
-    return _add_modes(run, request.tolerance)
+        if at_rest.distance_from_path(*finer) < run.distance_from_path(*finer):
+            run = _refine_better(at_rest, run, tolerance)
+    return _add_modes(run, tolerance)
+
+
+def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
+    """Refine modes at rest; where they are far from the tolerance, those at speeds if these converge faster.
+
+    Few modes tell little of that: those at rest may be closer, and then fall behind for good.
+    """
+    if at_rest.mode_error <= _NEARLY * tolerance:
+        return at_rest
+    refined = [run for run in (at_rest.refined, at_speeds.refined) if run is not None]
+    return min(refined, key=lambda run: run.mode_error, default=at_rest)
 
 
 def _add_modes(run: Transient, tolerance: float) -> Transient:
     """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
     before = np.inf
-    while run.mode_error > tolerance * run.largest and (finer := _enlarge(run, tolerance)) is not None:
+    while run.mode_error > tolerance and (finer := _enlarge(run, tolerance)) is not None:
         most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
         if _work(finer) > most or finer.with_more_modes is None:
             break
@@ -59,7 +76,7 @@ def _add_modes(run: Transient, tolerance: float) -> Transient:
 def _enlarge(run: Transient, tolerance: float) -> Transient | None:
     """The next larger run to try: by one of few modes where these nearly suffice, else as `refined`."""
     few = (run.request.basis.modes or np.inf) <= _FEW_MODES
-    if few and run.mode_error <= _NEARLY * tolerance * run.largest:
+    if few and run.mode_error <= _NEARLY * tolerance:
         return run.request.run_with_one_more()
     return run.refined
 

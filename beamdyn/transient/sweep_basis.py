@@ -84,4 +84,4 @@ def _most_modes(runs: Sequence[Transient]) -> int:
 
 def largest_mode_error(runs: Iterable[Transient]) -> float:
     """Largest modal truncation error of the runs, relative to the largest deflection of each."""
-    return max((run.relative_mode_error for run in runs), default=0.0)
+    return max((run.mode_error for run in runs), default=0.0)

@@ -68,7 +68,7 @@ class Transient(StatesModelError):
     time_error : float
         Largest estimated time-integration error of the tip deflection [m]; nan for the methods
         of `solve_ivp`, which only bound the error of each step.  Where two planes are modelled, this is the
-        magnitude of the error of a vector, as `largest`, `peak` and `mode_error` are magnitudes.
+        magnitude of the error of a vector, as `largest` and `peak` are magnitudes.
     largest : float
         Largest |tip deflection| of the run [m].
     warnings : tuple of str
@@ -78,7 +78,8 @@ class Transient(StatesModelError):
 
     Notes
     -----
-    The modal truncation error is `mode_error`, which takes a second motion at its first use.
+    The modal truncation error is `mode_error`, relative to `largest` as on `Sweep`; it takes a second motion
+    at its first use.
 
     Examples
     --------
@@ -138,7 +139,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def mode_error(self) -> float:
-        """Estimated modal truncation error of the tip deflection [m]: twice its distance from `refined`.
+        """Estimated modal truncation error, over the largest deflection: twice the distance from `refined`.
 
         Unless `refined` has been computed, the distance is found along the path of this run, or else its
         modes are integrated in the steps of this run, where these ways do.
@@ -152,7 +153,9 @@ class Transient(StatesModelError):
             if self.with_more_modes is None:
                 return np.inf
             difference = self.distance_from_path(*self.with_more_modes)
-        return np.inf if difference > _LIMIT_DIFFERENCE * self.largest else 2 * difference
+        if difference > _LIMIT_DIFFERENCE * self.largest:
+            return np.inf
+        return 2 * difference / self.largest if self.largest else 0.0
 
     def _distance_along_path(self) -> float | None:
         """Distance from `refined` [m], found along the path; None where that takes a motion of its own."""
@@ -170,8 +173,8 @@ class Transient(StatesModelError):
 
     @property
     def relative_mode_error(self) -> float:
-        """`mode_error` over the largest deflection; 0 for a beam that does not move."""
-        return self.mode_error / self.largest if self.largest else 0.0
+        """The same as `mode_error`."""
+        return self.mode_error
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
         """Copy with further warnings, which keeps the refined run if it has been computed."""

@@ -9,6 +9,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
+from benchmarks.stated_transient_errors import random_wave_run
 
 TILTED = replace(HARVESTER, mount=bd.Mount(0.215, 0.3), motion=bd.SpinUp(90.0, duration=0.2))
 OUTWARD = replace(HARVESTER, mount=bd.Mount(0.0, math.pi), gravity=9.81)
@@ -24,9 +25,6 @@ RUNS = {
 }
 
 
-SUDDEN = ("gravity", False)  # sets in at once: modes at rest that are too fast for the steps ring by it
-
-
 def run_of(name, at_speeds):
     """A run in modes at rest, or at the slowest and the fastest speed."""
     scene, modes = RUNS[name]
@@ -38,22 +36,22 @@ def run_of(name, at_speeds):
 @pytest.mark.parametrize("at_speeds", [False, True])
 @pytest.mark.parametrize("name", RUNS)
 def test_distance_is_that_from_a_run_with_more_modes(name, at_speeds):
-    """Within 15 %, by what couples the modes of a stretch and by maxima between samples; never much below.
+    """Within 15 %, by maxima between samples and by what the passes leave of the coupling; never much below.
 
-    No motion with more modes is integrated for it, unless they ring.
+    No motion with more modes is integrated for it.
     """
     run = run_of(name, at_speeds)
     distance = run.distance_from(run.request.run_refined())
-    assert run.mode_error / 2 == pytest.approx(distance, rel=0.15)
-    assert ("with_more_modes" in vars(run)) == ((name, at_speeds) == SUDDEN)
+    assert run.mode_error * run.largest / 2 == pytest.approx(distance, rel=0.15)
+    assert "with_more_modes" not in vars(run)
     assert "refined" not in vars(run)
 
 
 def test_after_an_abrupt_start_more_modes_are_integrated():
     """It makes fast modes ring, of which the path tells no more than the sum of their amplitudes."""
-    run = bd.simulate(replace(TILTED, motion=bd.SpinUp(90.0, 0.2, law="linear")), 0.5, 3, tolerance=1e-6)
+    run = bd.simulate(replace(TILTED, motion=bd.SpinUp(90.0, 0.2, law="linear")), 0.5, 4, tolerance=1e-3)
     distance = run.distance_from(run.request.run_refined())
-    assert run.mode_error / 2 == pytest.approx(distance, rel=0.15)
+    assert run.mode_error * run.largest / 2 == pytest.approx(distance, rel=0.15)
     assert "with_more_modes" in vars(run)
 
 
@@ -65,5 +63,29 @@ def test_a_motion_that_grows_is_integrated_again(height, grows):
     road = bd.RoadWave(wavelength=2 * np.pi * radius / (2 * first / speed - 1), height=height)
     run = bd.simulate(replace(HARVESTER, motion=bd.RollingWheel(radius, speed, road)), 3.0, 1, tolerance=1e-5)
     assert (run.peak(2.25, 3.0) > 2 * run.peak(0.0, 1.5)) == grows
-    assert run.mode_error / 2 == pytest.approx(run.distance_from(run.request.run_refined()), rel=0.15)
+    assert run.mode_error * run.largest / 2 == pytest.approx(
+        run.distance_from(run.request.run_refined()), rel=0.15
+    )
     assert ("with_more_modes" in vars(run)) == grows
+
+
+def test_a_mode_that_the_steps_do_not_resolve_is_followed():
+    """The third mode of a beam with a tip body has three samples a period; the wave ends near the second."""
+    tip = bd.TipMass(4.2547, -0.0021, 0.0431, 0.0208, 0.0482)
+    beam = bd.Beam.rectangular(1.0, lambda x: 0.1 * (1 - 0.584 * x), 0.01, 3e9, 7850.0, tip=tip)
+    wheel = bd.RollingWheel(2.704, bd.SpinUp(4.154, 7.599), bd.RoadWave(2.992, height=0.003))
+    scene = bd.Scene(beam, bd.Mount(0.0, 0.0, -1.37), wheel)
+    run = bd.simulate(scene, 13.17)
+    assert run.mode_error < 1e-5  # with 3 modes; two miss it by seven times
+    few = replace(run.request, basis=ModalBasis(2, (0.0, 4.154))).run()
+    assert few.mode_error * few.largest / 2 == pytest.approx(few.distance_from(run), rel=0.15)
+
+
+@pytest.mark.parametrize(("number", "modes"), [(1058, 5), (1058, 7)])
+def test_coupling_of_modes_that_the_mean_of_a_stretch_lacks_is_found(number, modes):
+    """A wavy road changes the stiffness: without this coupling the distance is six times too small."""
+    given = random_wave_run(np.random.default_rng([7, number]))
+    run = bd.simulate(**given | {"modes": modes, "tolerance": 1e-5})
+    assert run.mode_error * run.largest / 2 == pytest.approx(
+        run.distance_from(run.request.run_refined()), rel=0.15
+    )

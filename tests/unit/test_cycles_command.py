@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,7 @@ def loads() -> bd.TransientLoads:
 @pytest.fixture
 def standard(loads, monkeypatch) -> bd.LoadCycles:
     """Cycles of the standard's history in place of a moment's."""
-    monkeypatch.setattr(LoadPath, "series_of", lambda *_: np.array(HISTORY))
+    monkeypatch.setattr(LoadPath, "turning_values", lambda *_: np.array(HISTORY))
     return bd.count_cycles(loads, "moment")
 
 
@@ -82,11 +83,30 @@ def test_equivalent_ranges_of_several_exponents_are_printed(run, loads):
     assert printed == pytest.approx(wanted, rel=5e-3)
 
 
-def test_no_digit_of_an_equivalent_range_is_beyond_its_error(run):
-    """Turning points are within 1e-3: of a number that begins with 4 there are no more than three digits."""
+def test_no_digit_of_an_equivalent_range_is_beyond_its_error(run, loads):
+    cycles = bd.count_cycles(loads, "strain", start=0.1, end=0.3)
+    error = loads.largest("strain", 0, 0.1, 0.3).error
+    (found,) = cycles.equivalents([5.0], 1.0, error)
     _, out, _ = run("--cycles", "strain", "--woehler", "5")
     (value,) = (line.split()[1] for line in out.splitlines() if line.split()[:1] == ["5"])
-    assert 1 <= len(value.replace(".", "").lstrip("0")) <= 3
+    assert 1e-6 * 10.0 ** -len(value.partition(".")[2]) > found.error / 2
+
+
+@pytest.mark.parametrize("exponent", [3.0, 10.0])
+def test_turning_points_are_found_between_the_samples_of_a_run(exponent):
+    """A run in few steps, against cycles that are counted from 200 001 samples of it."""
+    from rainflow import extract_cycles
+
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip=bd.TipMass(0.001))
+    wheel = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.3), bd.RoadWave(0.1, height=0.001))
+    loads = bd.transient_loads(bd.simulate(bd.Scene(strip, bd.Mount(0.215), wheel), 0.5, 3), at=[0.0])
+    cycles = bd.count_cycles(loads, "moment")
+    values = loads.at("moment", np.linspace(0, 0.5, 200_001))[:, 0, 0]
+    counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).T
+    exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
+    (found,) = cycles.equivalents([exponent], 1.0, 0.0)
+    assert found.error == pytest.approx(1e-6 * found.range)
+    assert abs(found.range - exact.equivalent_range(exponent)) <= found.error
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def test_modes_at_rest_are_taken_where_they_suffice_for_all_cases(angle, fastest
     slow, fast = (bd.simulate(scene, WINDOW[1], tolerance=tolerance) for scene in scenes)
     assert slow.request.basis.is_at_rest and not fast.request.basis.is_at_rest
     at_rest = bd.simulate(scenes[1], WINDOW[1], slow.request.basis.modes, tolerance)
-    suffices = at_rest.relative_mode_error <= tolerance
+    suffices = at_rest.mode_error <= tolerance
     found = bd.sweep(abrupt, (1.0, fastest), WINDOW, tolerance=tolerance)
     assert found.mode_error <= tolerance
     assert ("rad/s" in found.provenance.method) != suffices
