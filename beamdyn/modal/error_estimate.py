@@ -14,11 +14,11 @@ from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
-# Ratios of the distances of meshes: of order 2, the least taken; where it is not known; the largest taken.
-_OF_ORDER_2, _UNKNOWN, _FALLING = 0.25, 0.5, 0.8
+# Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
+_LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # size of a mesh over that of the finer one, of which it has half the elements
 _OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
-_OF_ORDER_4 = 48.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
+_OF_ORDER_4 = 64.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
@@ -140,7 +140,7 @@ def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndar
         inf where the differences do not fall.
     """
     size = np.abs(distance)
-    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), _OF_ORDER_2)
+    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), _LEAST_RATIO)
     left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
     return np.maximum(size * left, np.nan_to_num(np.abs(before)) / _OF_ORDER_4)
 
@@ -150,7 +150,8 @@ def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
 
     `size` are the squares over the lowest at rest: a small one has a larger relative error.
     """
-    return np.maximum(error, np.maximum.accumulate(error * np.minimum(size, 1.0), axis=1))
+    of_lower = np.where(size > 0, error * np.minimum(size, 1.0), 0.0)
+    return np.maximum(error, np.maximum.accumulate(of_lower, axis=1))
 
 
 def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
