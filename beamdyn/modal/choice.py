@@ -30,6 +30,7 @@ _MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more func
 # sections bend under the forces in both directions.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
 _ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of half as many resolves it, too
+_OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
 _MANY = 10_000  # modes, more than any discretization gives
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
@@ -127,7 +128,9 @@ def _choose(
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = max(target, least_target(discretization))
     speed = float(np.abs(speeds).max(initial=0.0))
-    split = split_layers(scene, speed, target) if isinstance(discretization, str) else scene
+    split = scene
+    if isinstance(discretization, str):
+        split = split_layers(scene, speed, target if discretization == "ritz" else _OF_ELEMENTS)
     found: tuple[Model, EstimatedModes | None] | None = None
     for finer in list_models(split, discretization, modes, target, cheapest, split is not scene):
         if not isinstance(discretization, str):

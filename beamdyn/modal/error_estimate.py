@@ -23,7 +23,7 @@ _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have th
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 _SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
 # Parts of a mode's distance, and of the largest, elsewhere; several segments converge at several rates.
-REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01), (3.0, 0.05), (2.0, 0.3)
+REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01), (5.0, 0.1), (2.0, 0.3)
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
