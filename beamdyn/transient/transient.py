@@ -48,6 +48,7 @@ _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, th
 _STRAIN_MARGIN = 3.0  # error of the root strain over its distance from the refined run
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
+_OF_TIME_ERROR = 0.1  # of the path, that is part of a distance found along it
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"  # what a copy with further warnings keeps
 
 
@@ -149,7 +150,9 @@ class Transient(StatesModelError):
         into memory, or if the distance is so large that the error of `refined` is unknown.
         """
         difference = self._distance_along_path()
-        if difference is None:
+        if difference is not None:
+            difference += _OF_TIME_ERROR * self.time_error
+        else:
             if self.with_more_modes is None:
                 return np.inf
             difference = self.distance_from_path(*self.with_more_modes)
