@@ -7,13 +7,12 @@ from dataclasses import replace
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 _SPRINGS = "root_stiffness", "second_root_stiffness"
 _QUARTER = math.pi / 2
-_ROUNDING = 1e-15  # of the number of quarter turns of a twist
 
 
 def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
@@ -93,7 +92,7 @@ def _quarter_turns(beam: Beam) -> int | None:
     if any(any(row[1:]) for row in beam.twist.coefficients):
         return None
     turned = {row[0] / _QUARTER for row in beam.twist.coefficients}
-    whole = {round(c) for c in turned if abs(c - round(c)) <= _ROUNDING * max(1.0, abs(c))}
+    whole = {round(c) for c in turned if abs(c - round(c)) <= RIGHT_ANGLE / _QUARTER * max(1.0, abs(c))}
     return whole.pop() if len(whole) == len(turned) == 1 else None
 
 

@@ -32,7 +32,7 @@ from beamdyn.modal.error_estimate import parts_of_distances
 from beamdyn.modal.many_designs import Estimate, PencilStack
 from beamdyn.modal.model import Model
 from beamdyn.scene.beam import TipMass
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import RIGHT_ANGLE, Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import SCALE
@@ -76,7 +76,6 @@ _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # between which trigonometric
 _MOST_NODES = 512  # scenes that are assembled: some seconds
 _NODES_EACH = 8  # the same for each answer: beyond it single calls are as fast
 _ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0  # over that of one clamped plane, as of single scenes
-_RIGHT_ANGLE = 2e-16  # cosine of a rounded right angle, as in `beamdyn.scene.mount.exact_cos_sin`
 _PLACES = np.linspace(0, 1, 101)  # x/L at which the axial strain is computed
 
 Nodes = tuple[tuple[str, tuple[float, ...]], ...]
@@ -377,7 +376,7 @@ def _axial_force(scene: Scene) -> np.ndarray:
 
 def _cos(angle: np.ndarray) -> np.ndarray:
     c = np.cos(angle)
-    return np.where(np.abs(c) < _RIGHT_ANGLE, 0.0, c)
+    return np.where(np.abs(c) < RIGHT_ANGLE, 0.0, c)
 
 
 def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
