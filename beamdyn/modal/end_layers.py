@@ -7,14 +7,18 @@ each other, and both lack that mode.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.root_motion import root_motion
+from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 
 _LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
@@ -24,34 +28,42 @@ _TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at a
 
 
 def split_layers(scene: Scene, speed: float, target: float) -> Scene:
-    """Add breakpoints where the layers at a speed [rad/s] end; the scene itself where they are not short."""
-    root, tip = _layers(scene, speed, target) if speed else (np.inf, np.inf)
+    """Add breakpoints where the layers at a speed [rad/s] end; the scene itself where they are not short.
+
+    Beyond them a layer's share of an eigenvalue is below the target.
+    """
+    if not speed:
+        return scene
+    lengths = (_LENGTHS - math.log(target) / 2) / speed
+    root, tip = (lengths * unit for unit in _lengths_at_unit_speed(scene.modelled_beam, scene.mount))
     places = [max(root, _SHORTEST)] if root < _SHORT_AT_ROOT else []
     if scene.beam.tip is not None and tip < _SHORT_AT_TIP:
         places.append(1 - max(tip, _SHORTEST))
     return _split(scene, places) if places else scene
 
 
-def _layers(scene: Scene, speed: float, target: float) -> np.ndarray:
-    """Parts of the beam that layers at the root and at the tip take, shape (2,); inf without tension."""
-    beam, ends = scene.modelled_beam, np.array([0.0, 1.0])
+@lru_cache(maxsize=64)
+def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
+    """Lengths (EI/N)^(1/2) over L at the root and at the tip, at 1 rad/s; inf where nothing pulls."""
+    ends = np.array([0.0, 1.0])
     profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
     stiffness = np.min([each(ends) for each in profiles if each is not None], axis=0)
-    tension = speed**2 * _tension(scene, ends)
     with np.errstate(divide="ignore"):
-        return (_LENGTHS - np.log(target) / 2) * np.sqrt(stiffness / np.maximum(tension, 0.0)) / beam.length
+        root, tip = np.sqrt(stiffness / np.maximum(_tension(beam, mount, ends), 0.0)) / beam.length
+    return float(root), float(tip)
 
 
 def split_tip(scene: Scene) -> Scene:
     """Add breakpoints that resolve a layer at the tip at any speed, where tension makes one."""
-    has_layer = scene.beam.tip is not None and _tension(scene, np.ones(1))[0] > 0
+    beam = scene.beam
+    has_layer = beam.tip is not None and _tension(beam, scene.mount, np.ones(1))[0] > 0
     return _split(scene, _TOWARD_TIP) if has_layer else scene
 
 
-def _tension(scene: Scene, xi: np.ndarray) -> np.ndarray:
+def _tension(beam: Beam, mount: Mount, xi: np.ndarray) -> np.ndarray:
     """Axial force at x/L over the squared speed [kg m]; negative where the beam is pressed."""
-    n_a, n_b = axial_tension(scene.beam)
-    return n_b(xi) - root_motion(scene.mount, MotionSample.steady(1.0)).root_axial * n_a(xi)
+    n_a, n_b = axial_tension(beam)
+    return n_b(xi) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(xi)
 
 
 def _split(scene: Scene, places: Sequence[float]) -> Scene:
