@@ -24,7 +24,7 @@ from brakes import planar
 SEED = 29
 _GRID = 0.25  # m
 _TRAVEL = 0.2  # m, along the curve of positions
-_POINTS = ("at", "to", "at_other", "on")
+_POINTS = ("at", "to", "at_other", "on", "centre")
 _DIRECTIONS = ("direction", "normal", "along")
 _NUMBERS = ("radius", "length", "free_length", "stiffness", "magnitude")
 
@@ -60,7 +60,7 @@ def transform(
                 changes[name] = placed(value)
             elif name == "points" and value is not None:
                 changes[name] = tuple(map(placed, value))
-            elif name in _DIRECTIONS:
+            elif value is not None and name in _DIRECTIONS:
                 changes[name] = turned(value)
             elif value is not None and name in _NUMBERS:
                 changes[name] = value * scale ** _power(part, name)

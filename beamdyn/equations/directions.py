@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 
 _OUTWARD = -1.0, 0.0  # cosine and sine of the setting angle
@@ -30,12 +30,12 @@ def name_directions(scene: Scene) -> tuple[tuple[str, str], tuple[str, str]]:
     They are edge and flap where the bending angle is a whole number of quarter turns.  Of a beam that points
     outward they are so at any angle, a blade's pitch: flap is the direction nearer to the axis of rotation.
     """
-    c, s = exact_cos_sin(scene.mount.bending_angle)
+    c, s = aligned_cos_sin(scene.mount.bending_angle)
     if s == 0:
         return _EDGE, _FLAP
     if c == 0:
         return _FLAP, _EDGE
-    if exact_cos_sin(scene.mount.setting_angle) != _OUTWARD:
+    if aligned_cos_sin(scene.mount.setting_angle) != _OUTWARD:
         return _BENDING, _ACROSS
     return (_OWN_FLAP, _OWN_EDGE) if abs(s) >= abs(c) else (_OWN_EDGE, _OWN_FLAP)
 

@@ -30,7 +30,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.beam import TipMass
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 
 _BENDING = "bending"
@@ -153,7 +153,7 @@ class Elastica(FieldsOnly):
     @cached_property
     def in_plane(self) -> float:
         """Component c of the direction of bending in the plane of rotation: 1, -1 or 0."""
-        return exact_cos_sin(self.linear.mount.bending_angle)[0]
+        return aligned_cos_sin(self.linear.mount.bending_angle)[0]
 
     @cached_property
     def angles(self) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.equations.root_motion import RootMotion, root_motion
 from beamdyn.scene.motion import Motion, MotionSample, SteadyRotation
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
@@ -189,14 +189,14 @@ def _has_different_inertias(scene: SampledScene) -> bool:
     inertia = centrifugal_inertia(tip, scene.scene.modelled_beam.tip_twist)
     if scene.scene.mount.precone:
         return bool(inertia[:planes, :planes].any())
-    c, s = exact_cos_sin(scene.scene.mount.bending_angle)
+    c, s = aligned_cos_sin(scene.scene.mount.bending_angle)
     out_of_plane = np.array([s, c]) if planes == 2 else np.array([s or 1.0, 0.0])
     return bool((inertia @ out_of_plane)[:planes].any())
 
 
 def _has_oblique_inertia(scene: SampledScene) -> bool:
     """Whether sections or tip body have a product of inertia about the axis of rotation and the beam."""
-    (c, s), beam = exact_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
+    (c, s), beam = aligned_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
     d, n, xi = np.array([c, -s]), np.array([s, c]), np.linspace(0, 1, 101)
     sections = (d[p] * n[q] * R(xi) for (p, q), R in section_tensor(beam, "rotary_inertia").items())
     tip = beam.tip and d @ centrifugal_inertia(beam.tip, beam.tip_twist) @ n
@@ -222,11 +222,11 @@ def _say_root(scene: SampledScene) -> str:
 TURNS = Condition(lambda s: s.is_nonzero("speed"), "the carrier does not turn")
 ACCELERATES = Condition(lambda s: s.is_nonzero("acceleration"), "constant speed: no angular acceleration")
 IN_PLANE = Condition(
-    lambda s: s.scene.physics.planes == 2 or exact_cos_sin(s.scene.mount.bending_angle)[0] != 0,
+    lambda s: s.scene.physics.planes == 2 or aligned_cos_sin(s.scene.mount.bending_angle)[0] != 0,
     "the bending angle is 90 deg: the beam bends out of the plane of rotation",
 )
 OUT_OF_PLANE = Condition(
-    lambda s: s.scene.physics.planes == 2 or exact_cos_sin(s.scene.mount.bending_angle)[1] != 0,
+    lambda s: s.scene.physics.planes == 2 or aligned_cos_sin(s.scene.mount.bending_angle)[1] != 0,
     "the bending angle is 0: the beam bends in the plane of rotation",
 )
 PRECONED = Condition(lambda s: s.scene.mount.precone != 0, "no precone: the beam is in the plane of rotation")

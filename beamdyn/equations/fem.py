@@ -136,8 +136,9 @@ def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
     Short segments are refined with the others: none has less than half of an equal share, but in elements ten
     times as short as equal ones, beyond which rounding costs more than it gains.
     """
-    share = total * np.minimum(np.maximum(lengths, 0.5 / len(lengths)), 10 * lengths)
-    counts = np.maximum(least, np.floor(share / lengths.sum()).astype(int))
+    part = lengths / lengths.sum()
+    share = np.minimum(np.maximum(part, 0.5 / len(part)), 10 * part)
+    counts = np.maximum(least, np.floor(total * share / share.sum()).astype(int))
     while counts.sum() < total:
         counts[np.argmax(lengths / counts)] += 1
     return counts

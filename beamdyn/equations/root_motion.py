@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.mount import Mount, exact_cos_sin
+from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
@@ -62,7 +62,7 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     RootMotion
     """
     cphi, sphi = exact_cos_sin(mount.setting_angle)
-    cpsi, spsi = exact_cos_sin(mount.bending_angle)
+    cpsi, spsi = aligned_cos_sin(mount.bending_angle)
     r, omega = mount.radius, sample.speed
     v1, v2, v3 = (sample.carrier_acceleration[..., k] for k in range(3))
     v2 = v2 + gravity

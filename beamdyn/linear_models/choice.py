@@ -64,7 +64,7 @@ def model_at_speed(
         check_discretization(discretization)
         return ModelAtSpeed(Model(scene, discretization), speed, None)
     chosen = choose_model(scene.undamped, discretization, np.array([speed]), modes or _MODES)
-    return ModelAtSpeed(Model(scene, chosen.discretization), speed, modes)
+    return ModelAtSpeed(chosen.of(scene), speed, modes)
 
 
 def model_of_few_modes(

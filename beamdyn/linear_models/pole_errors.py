@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 
 _MARGIN = 2.0  # error over the distance from a coarser discretization
-_UNRESOLVED = (
-    0.01  # relative error beyond which the nearest pole of another model may be that of another mode
-)
+_UNRESOLVED = 0.01  # relative error beyond which the partner of a pole may be that of another mode
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
 
 
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:
     """Estimated relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
 
-    What the modes left out change by damping and gyroscopic terms is the distance from the nearest pole of
-    all functions; these are compared with those of a coarser discretization.  An infinite pole, of a
+    What the modes left out change by damping and gyroscopic terms is the distance from its partner among
+    the poles of all functions; these are compared with those of a coarser discretization.  An infinite pole, of a
     coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
     """
     kept, whole = model.free_motion, ModelAtSpeed(model.model, model.speed, None)
@@ -36,7 +35,10 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance of each pole from the nearest of others, and that one."""
+    """Distance of each pole from a partner of its own among others, and that; inf where these are too few."""
     apart = np.abs(poles[:, None] - others)
-    nearest = apart.argmin(axis=1)
-    return apart.min(axis=1), others[nearest]
+    scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
+    rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))
+    distance, found = np.full(len(poles), np.inf), poles.copy()
+    distance[rows], found[rows] = apart[rows, partners], others[partners]
+    return distance, found

@@ -75,11 +75,12 @@ class LoadPath(FieldsOnly):
         single = self.rows.chosen(np.array([station]), np.array([output]))
         t = self._dense_times(start, end)
         values = np.concatenate([self._each_at(single, some[None])[0] for some in _batches(t)])
-        slopes = np.diff(values)
-        turns = 1 + np.flatnonzero(slopes[:-1] * slopes[1:] < 0)
+        signs = np.sign(np.diff(values))
+        rising = np.flatnonzero(signs)  # not on a plateau, of which the first sample is the turning point
+        turns = 1 + rising[:-1][signs[rising[:-1]] != signs[rising[1:]]]
         found = [values[:2], values[-1:]]  # the second: counters take no history of two values
         for k in _batches(turns):
-            sign = np.sign(slopes[k - 1])[:, None]
+            sign = signs[k - 1, None]
             near = t[k, None], t[k - 1, None], t[k + 1, None]
             best, _ = self._refine(single, lambda y, sign=sign: sign * y, *near, _OF_TURNING_POINTS)
             found.insert(-1, best[:, 0])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modal.eigensolver import Eigen
+from beamdyn.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modal.model import Model
 from beamdyn.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 from beamdyn.scene.scene import Scene
@@ -16,17 +17,21 @@ from beamdyn.scene.scene import Scene
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 # Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
 _LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
-_HALVED = 0.7  # size of a mesh over that of the finer one, of which it has half the elements
+_HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
 _OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
-_OF_ORDER_4 = 64.0  # distance of the coarser meshes over what is left at order 4, where the finer's is small
+_LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
+_OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
-_SLOW = 1e-10  # relative distance of two bases above which slow convergence may make the error larger
-# Parts of a mode's distance, and of the largest, elsewhere; several segments converge at several rates.
-REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01), (5.0, 0.1), (2.0, 0.3)
+# Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
+# which slow convergence may make it larger; functions of several segments converge at several rates.
+REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
 _MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
+
+
+Parts: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -142,7 +147,8 @@ def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndar
     size = np.abs(distance)
     ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), _LEAST_RATIO)
     left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
-    return np.maximum(size * left, np.nan_to_num(np.abs(before)) / _OF_ORDER_4)
+    left = np.where(size <= _OF_NOISE * noise, size, size * np.where(size > 0, left, 0.0))
+    return np.maximum(left, np.nan_to_num(np.abs(before)) / _LEAST_OF_BEFORE)
 
 
 def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
@@ -150,7 +156,7 @@ def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
 
     `size` are the squares over the lowest at rest: a small one has a larger relative error.
     """
-    of_lower = np.where(size > 0, error * np.minimum(size, 1.0), 0.0)
+    of_lower = np.where((size > 0) & np.isfinite(error), error * np.minimum(size, 1.0), 0.0)
     return np.maximum(error, np.maximum.accumulate(of_lower, axis=1))
 
 
@@ -160,10 +166,15 @@ def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
     return _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", size**2, K**2, size**2, optimize=True))
 
 
+def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
+    """Whether a mesh has about half the functions of a finer one, but for short segments."""
+    return mesh.size <= _HALVED * finer.size
+
+
 def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
     """Squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan where it has none."""
     coarsest = model.coarser.coarser
-    if coarsest.solver.size > _HALVED * model.coarser.solver.size:  # it has as many on short segments
+    if not is_halved(coarsest.solver, model.coarser.solver):
         return np.full((len(speeds), count), np.nan)
     found = eigenvalues_over_speeds(coarsest.solver, speeds, min(count, coarsest.solver.size)) ** 2
     lacking = np.full((len(speeds), count - found.shape[1]), np.nan)
@@ -176,7 +187,7 @@ def error_of_assumed_modes(
     rounding: np.ndarray,
     lowest_at_rest: np.ndarray,
     is_slender: bool = True,
-    parts: tuple[float, float] = REGULAR,
+    parts: Parts = REGULAR,
 ) -> np.ndarray:
     """Errors that `solve_with_error` states of assumed modes that stand on no hinge.
 
@@ -209,8 +220,8 @@ def error_of_assumed_modes(
     return np.where(resolved, error, np.inf)
 
 
-def parts_of_distances(scene: Scene, discretization: Discretization) -> tuple[float, float]:
-    """Parts of a mode's own distance between two bases, and of the largest distance, that are its error."""
+def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
+    """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
@@ -267,7 +278,7 @@ def _are_above_rest(model: Model, fine: Eigen, squared: np.ndarray) -> bool:
 
 
 def _ritz_error(
-    distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: tuple[float, float]
+    distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: Parts
 ) -> np.ndarray:
     """Relative truncation error of Ritz eigenvalues, by the distance of their squares from a smaller basis's.
 
@@ -284,7 +295,7 @@ def _ritz_error(
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
     margin = np.where(largest > _FEW, of_few, _MARGIN)
-    own, others = parts
-    is_slow = largest > _SLOW
+    own, others, limit = parts
+    is_slow = largest > limit
     of_largest = np.where(is_slow, margin / 10, others) * largest
     return np.maximum(np.where(is_slow, own * margin, own) * relative, of_largest)

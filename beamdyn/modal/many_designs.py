@@ -30,7 +30,7 @@ from beamdyn.modal.eigen import (
     select_lowest,
     solve_diagonal,
 )
-from beamdyn.modal.error_estimate import REGULAR, error_of_assumed_modes
+from beamdyn.modal.error_estimate import REGULAR, Parts, error_of_assumed_modes
 
 _EPS = float(np.finfo(float).eps)
 _MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
@@ -197,7 +197,7 @@ class Estimate:
     """
 
     is_slender: bool = True
-    parts: tuple[float, float] = REGULAR
+    parts: Parts = REGULAR
     rounding: float = 1.0
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -35,6 +35,10 @@ class Model(FieldsOnly):
 
     scene: Scene
     discretization: Discretization
+
+    def of(self, scene: Scene) -> Model:
+        """The same beam and discretization with the physics, motion and damping of another scene."""
+        return Model(replace(scene, beam=self.scene.beam), self.discretization)
 
     @cached_property
     def equations(self) -> Equations:

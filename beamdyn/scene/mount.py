@@ -132,7 +132,7 @@ def _check_precone(mount: Mount) -> None:
     """Refuse a precone of a beam that does not point outward, or of a quarter turn or more."""
     bound = "it must be less than 90 deg: such a beam would stand along the axis of rotation"
     refuse(abs(mount.precone) >= math.pi / 2, "precone", mount.precone, "rad", bound, _PRECONE["remedy"])
-    if mount.precone and exact_cos_sin(mount.setting_angle) != (-1.0, 0.0):
+    if mount.precone and aligned_cos_sin(mount.setting_angle) != (-1.0, 0.0):
         bound = "only a beam that points outward has a precone"
         remedy = "give {other} = 180 deg (pi), or leave the precone out"
         raise InvalidValue("precone", mount.precone, bound, remedy, "rad", other="setting_angle")
@@ -149,10 +149,19 @@ def _spring(name: str, value: object) -> float:
 
 
 def exact_cos_sin(angle: float) -> tuple[float, float]:
+    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
+    return _cos_sin(angle, 2e-16)
+
+
+def aligned_cos_sin(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
 
-    No beam is mounted more exactly.  Frequencies change by the square of that, and no verdict hangs on the
-    last digits of an angle.
+    For bending angles, by which frequencies change by the square of that, and for verdicts: no beam is
+    mounted more exactly, and whether directions are coupled, or loaded across, hangs on no last digit.
     """
+    return _cos_sin(angle, RIGHT_ANGLE)
+
+
+def _cos_sin(angle: float, least: float) -> tuple[float, float]:
     c, s = cos(angle), sin(angle)
-    return (0.0 if abs(c) < RIGHT_ANGLE else c), (0.0 if abs(s) < RIGHT_ANGLE else s)
+    return (0.0 if abs(c) < least else c), (0.0 if abs(s) < least else s)

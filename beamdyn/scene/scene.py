@@ -15,7 +15,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.motion import Motion
-from beamdyn.scene.mount import Mount, exact_cos_sin
+from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
 from beamdyn.scene.physics_choice import PhysicsChoice
 from beamdyn.scene.profile import mean
@@ -197,7 +197,7 @@ def _check_large_deflection(scene: Scene) -> None:
         )
         remedy = "give 0, or leave large_deflection out"
         raise InvalidValue("mount.precone", scene.mount.precone, bound, remedy, "rad")
-    if min(map(abs, exact_cos_sin(scene.mount.bending_angle))) != 0:
+    if min(map(abs, aligned_cos_sin(scene.mount.bending_angle))) != 0:
         bound = "with physics.large_deflection it must be a multiple of 90 deg"
         remedy = "bend in the plane of rotation (0) or out of it (90 deg), or leave large_deflection out"
         raise InvalidValue("mount.bending_angle", scene.mount.bending_angle, bound, remedy, "rad")

@@ -62,7 +62,7 @@ from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.mass import gram_by_mass, moments_about_root
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
@@ -183,7 +183,7 @@ class _SpinForm:
         slope2 = (sine / cosine) ** 2  # 0 without precone
         B = centrifugal_inertia(tip, beam.tip_twist)
         if scene.physics.planes == 1:
-            cos2, sin2 = (v**2 for v in exact_cos_sin(scene.mount.bending_angle))
+            cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
             tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
             yield cls.of(beam, a / cosine, cos2 + slope2, sin2 - slope2, tilt)
             return

@@ -26,12 +26,17 @@ from beamdyn.modal.choice import (
 )
 from beamdyn.modal.eigen import Solver
 from beamdyn.modal.end_layers import split_tip
-from beamdyn.modal.error_estimate import UNRESOLVED, extrapolation_error, integration_error
+from beamdyn.modal.error_estimate import (
+    UNRESOLVED,
+    extrapolation_error,
+    integration_error,
+    is_halved,
+)
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import static_load
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import left_out_of_critical_speed, nothing_known
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_STRAIN
 from beamdyn.spectrum.bounds import bound_critical_speed
@@ -228,8 +233,8 @@ def _bends_from_rest(scene: Scene) -> bool:
 
 def _is_loaded_across(scene: Scene) -> bool:
     """Whether rotation bends the beam at every speed, in a direction that is modelled."""
-    in_plane = 1.0 if scene.physics.planes == 2 else exact_cos_sin(scene.mount.bending_angle)[0]
-    return bool(scene.mount.radius * exact_cos_sin(scene.mount.setting_angle)[1] * in_plane)
+    in_plane = 1.0 if scene.physics.planes == 2 else aligned_cos_sin(scene.mount.bending_angle)[0]
+    return bool(scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[1] * in_plane)
 
 
 def _about_straight_beam(scene: Scene) -> Scene:
@@ -341,12 +346,18 @@ def _compare(model: Model) -> _Found:
     noise = rounding + model.discretization.rounding + by_springs
     left = abs(distance)
     if order is not None:
-        before = coarse_softening - coarse.coarser.solver.softening
+        before = coarse_softening - _softening_of_half(coarse)
         left = float(extrapolation_error(*np.array([distance, before, noise * softening])))
     error = left / (2 * softening) + noise
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
     return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)
+
+
+def _softening_of_half(model: Model) -> float:
+    """Softening of a mesh of half the elements; nan where short segments keep it from being that."""
+    half = model.coarser.solver
+    return half.softening if is_halved(half, model.solver) else np.nan
 
 
 def _rounding_on_springs(model: Model) -> float:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
+from beamdyn.scene.mount import RIGHT_ANGLE, aligned_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
@@ -37,7 +37,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     clamped = min(scene.mount.root_stiffnesses[: scene.physics.planes]) == math.inf
     if not (slender and clamped) or (quarters := _quarter_turns(scene.beam)) is None:
         return ()
-    if spinning and (scene.mount.precone or 0.0 not in exact_cos_sin(scene.mount.bending_angle)):
+    if spinning and (scene.mount.precone or 0.0 not in aligned_cos_sin(scene.mount.bending_angle)):
         return ()
     angle = scene.mount.bending_angle
     across = angle - math.copysign(_QUARTER, angle)

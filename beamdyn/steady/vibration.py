@@ -198,6 +198,6 @@ def choose_vibrating(
         pass
     from_rest = replace(scene, physics=replace(scene.physics, branch="straight"))
     at_rest = choose_model(from_rest, discretization, np.zeros(1), modes)
-    rough = Model(scene, at_rest.discretization)
+    rough = at_rest.of(scene)
     found = speeds[np.isfinite(find_equilibria(rough, speeds)).all(axis=1)]
     return choose_model(scene, discretization, found, modes) if found.size else rough

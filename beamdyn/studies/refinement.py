@@ -12,6 +12,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.choice import DEFAULT_TARGET, MOMENTS_TARGET, DiscretizationChoice, list_models
 from beamdyn.scene.scene import Scene
 
+_WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
 _ENTRIES = 300_000  # of matrices of one size at once, which fit into the processor's cache
 
 
@@ -57,13 +58,15 @@ class Refinement:
 
     def bases(self) -> Iterator[Discretization]:
         """Bases to try in turn."""
-        cheapest = self.tolerance is not None
+        cheapest = self.tolerance is not None and self.reference.beam.tip is None
         models = list_models(self.reference, self.discretization, self.modes, self._target, cheapest)
         return (model.discretization for model in models)
 
     @property
     def _target(self) -> float:
-        return DEFAULT_TARGET if self.tolerance is None else self.tolerance
+        """Relative error to aim at; with a body at the tip small enough to resolve a layer there."""
+        target = DEFAULT_TARGET if self.tolerance is None else self.tolerance
+        return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
     def target_of(self, basis: Discretization) -> float:
         """Relative error to be met in a basis."""

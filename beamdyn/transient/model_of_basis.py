@@ -35,9 +35,8 @@ def choose_for_basis(
     speeds, modes = np.array(basis.speeds), basis.modes or 1
     if scene.physics.large_deflection:  # the modes are those of the straight beam
         straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
-        return Model(scene, choose_for_basis(straight, discretization, basis, target).discretization)
+        return choose_for_basis(straight, discretization, basis, target).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
         return choose_model(scene, discretization, speeds, modes, target)
-    undamped = choose_model(scene.undamped, discretization, speeds, modes, target)
-    return Model(scene, undamped.discretization)
+    return choose_model(scene.undamped, discretization, speeds, modes, target).of(scene)

@@ -391,7 +391,10 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:
     together(slope=slope, truck=front)
     remedy = "less slope, or a lower centre of gravity"
     tilt = sense * np.asarray(slope)
-    for axle, limit, bad in (("rear", rear, tilt >= rear), ("front", front, tilt <= front)):
+    for axle, limit, bad in (
+        ("rear", rear, tilt >= rear - LEAST_MARGIN),
+        ("front", front, tilt <= front + LEAST_MARGIN),
+    ):
         bound = f"the truck overturns on it at rest, over the {axle} axle, past {{limit}}"
         refuse(bad, "slope", slope, "rad", bound, remedy, limit=sense * limit)
     (a, y), mu = truck.cg, np.asarray(conditions.friction)

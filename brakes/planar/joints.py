@@ -19,7 +19,7 @@ from brakes.planar.part import Joint, OneWay, Shape
 from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
 from brakes.planar.rows import FrictionLaw, Line, Path, Round, Row, Turn
 
-_NORMAL = 0.99  # least cosine of the angle between the normal of a round face and the line to its centre
+_NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
 _TURNS = 0.1  # turn of a straight face over a stroke that is worth a warning [deg]
 SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 

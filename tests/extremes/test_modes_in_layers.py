@@ -93,3 +93,19 @@ def test_random_tables_have_one_answer_by_both_discretizations() -> None:
     for number in range(380, 390):
         (case,) = measure_tables(number, SEED_OF_TABLES)
         assert (np.array(case.distance) <= case.stated).all(), number
+
+
+def test_matrices_and_studies_know_modes_in_layers() -> None:
+    """Both choose functions for modes, and then take these for the beam: with the breakpoints of the layers."""
+    speed, true = 123.6449028464993, 1063.43879184
+    poles = bd.matrices(FIFTH, speed, 5)
+    rank = np.argsort(np.abs(poles.poles.imag))[8:]
+    np.testing.assert_allclose(np.abs(poles.poles[rank]), true, rtol=1e-6)
+    study = bd.study(
+        FIFTH,
+        {"beam.tip.mass": FIFTH.beam.tip.mass * np.linspace(1, 1.01, 12)},
+        speed=speed,
+        modes=5,
+        tolerance=0.1,
+    )
+    assert abs(2 * np.pi * study.value[0, 4] / true - 1) <= study.error[0, 4] < 0.1

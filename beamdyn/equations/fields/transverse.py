@@ -37,7 +37,7 @@ from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Lo
 from beamdyn.equations.mass import first_moment_by_mass, load_by_mass, product_at_lumps
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.mount import Mount, exact_cos_sin
+from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
@@ -347,7 +347,7 @@ def _spin(pair: Pair) -> Iterator[Term]:
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
     """Components d on b2 and n on b3 of the directions e1, e2."""
-    c, s = exact_cos_sin(scene.mount.bending_angle)
+    c, s = aligned_cos_sin(scene.mount.bending_angle)
     return (c, -s), (s, c)
 
 
