@@ -16,8 +16,8 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
     """Estimated relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
 
     What the modes left out change by damping and gyroscopic terms is the distance from its partner among
-    the poles of all functions; these are compared with those of a coarser discretization.  An infinite pole, of a
-    coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
+    the poles of all functions; these are compared with those of a coarser discretization.  An infinite pole,
+    of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
     """
     kept, whole = model.free_motion, ModelAtSpeed(model.model, model.speed, None)
     coarse = ModelAtSpeed(model.model.coarser, model.speed, None)

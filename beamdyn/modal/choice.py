@@ -138,15 +138,24 @@ def _choose(
         if finer.solver.size < modes and found is None and _refine(finer) is not None:
             continue  # some of its functions depend on others
         try:
-            found = finer, (at_ends := solve_with_error(finer, ends, modes))
+            at_ends = solve_with_error(finer, ends, modes)
         except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
             if found is None:
                 raise
             break
+        if found is not None and _loses_digits(found[1], at_ends):
+            break
+        found = finer, at_ends
         if at_ends.meet(target if finer.discretization.converges_regularly else max(target, MOMENTS_TARGET)):
             break
     assert found is not None
     return found
+
+
+def _loses_digits(before: EstimatedModes | None, finer: EstimatedModes) -> bool:
+    """Whether elements are so many that the rounding of their integrals exceeds a root spring's stiffness."""
+    of_elements = finer.model.discretization.rounding > 0 and finer.model.solver.pencil.shift > 0
+    return of_elements and before is not None and before.error.max() < finer.error.max()
 
 
 def least_target(discretization: DiscretizationChoice) -> float:
@@ -232,7 +241,8 @@ def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each:
     )  # here, because scikit-fem is slow to import
 
     segments = _count_segments(scene)
-    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    on_springs = min(scene.mount.root_stiffnesses) < np.inf  # beside soft ones, few elements keep more digits
+    least = min(16 * segments, MOST_REFINED) if cheapest or on_springs else 80
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 

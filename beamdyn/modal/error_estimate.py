@@ -16,7 +16,7 @@ from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
 # Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
-_LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
+LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
 _OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
 _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
@@ -104,13 +104,15 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
             before = coarse**2 - _coarsest_squares(model, speeds, compared)
             noise = (fine.rounding[:, :compared] + integration_error(model, squared)) * np.abs(squared)
             noise += _rounding_of_elements(model, fine.vector[:, :, :compared])
-            truncation = (extrapolation_error(distance, before, noise) + noise) / (2 * np.abs(squared))
+            least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
+            left = extrapolation_error(distance, before, noise, least)
+            truncation = (left + noise) / (2 * np.abs(squared))
             truncation = _not_below_lower_modes(truncation, np.abs(squared) / model.solver.lowest_at_rest)
         else:
             truncation = _ritz_error_of(model, fine, distance, squared)
     error = truncation + _ROUNDING * fine.rounding[:, :compared] + integration_error(model, squared)
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
-    neutral = (s == 0) & _is_hinged(model)
+    neutral = (s == 0) & _is_free_to_turn(model, speeds)[:, None]
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
@@ -126,7 +128,9 @@ def _check_size(model: Model, modes: int) -> None:
         raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
-def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndarray) -> np.ndarray:
+def extrapolation_error(
+    distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
+) -> np.ndarray:
     """What extrapolation leaves of the error of a number, by its distances over three meshes.
 
     Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
@@ -138,6 +142,8 @@ def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndar
         Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
     noise : ndarray
         Rounding error of these differences.
+    least : float
+        Least ratio of the two that is taken; larger where segments converge each at a rate of its own.
 
     Returns
     -------
@@ -145,7 +151,7 @@ def extrapolation_error(distance: np.ndarray, before: np.ndarray, noise: np.ndar
         inf where the differences do not fall.
     """
     size = np.abs(distance)
-    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), _LEAST_RATIO)
+    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), least)
     left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
     left = np.where(size <= _OF_NOISE * noise, size, size * np.where(size > 0, left, 0.0))
     return np.maximum(left, np.nan_to_num(np.abs(before)) / _LEAST_OF_BEFORE)
@@ -239,10 +245,13 @@ def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
     return rounding * (shift + size) / np.where(size == 0, 1.0, size)
 
 
-def _is_hinged(model: Model) -> bool:
-    """Whether the root turns without a spring: then a frequency within rounding of 0 is 0."""
-    planes = model.scene.physics.planes
-    return 0.0 in model.scene.mount.root_stiffnesses[:planes]
+def _is_free_to_turn(model: Model, speeds: np.ndarray) -> np.ndarray:
+    """Whether nothing holds a root that turns without a spring: then a frequency within rounding of 0 is 0.
+
+    At speed, shape (S,), rotation holds it, or turns it over, unless the root is on the axis.
+    """
+    mount, planes = model.scene.mount, model.scene.physics.planes
+    return (0.0 in mount.root_stiffnesses[:planes]) & ((speeds == 0) | (mount.radius == 0))
 
 
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:

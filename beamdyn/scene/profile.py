@@ -317,11 +317,22 @@ def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
 
 def _from_table(name: str, table: Table) -> Profile:
     x, y = real_array(f"{name}.stations", table.stations), real_array(f"{name}.values", table.values)
+    x = _without_rounding(x)
     _check_stations(f"{name}.stations", x, len(y))
     _check_sizes(f"{name}.values", y)
     segments = [(x[i + 1], y[i], y[i + 1]) for i in range(len(x) - 1) if x[i + 1] > x[i]]
     rows = tuple(((p + q) / 2, (q - p) / 2) for _, p, q in segments)
     return Profile((0.0, *(float(b) for b, _, _ in segments)), rows)
+
+
+def _without_rounding(x: np.ndarray) -> np.ndarray:
+    """Stations x/L of which those that differ by rounding are one, and the first and last the ends."""
+    x = x.copy()
+    for k in np.flatnonzero(np.abs(np.diff(x)) < _SHORTEST_SEGMENT):
+        x[k + 1] = x[k]
+    for end in (0.0, 1.0):
+        x[np.abs(x - end) < _SHORTEST_SEGMENT] = end
+    return x
 
 
 def _check_stations(name: str, x: np.ndarray, values: int) -> None:

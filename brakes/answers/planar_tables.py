@@ -61,19 +61,27 @@ def _joint_row(joint: Joint, equilibrium: Equilibrium) -> Sequence[str]:
     force = np.ravel(equilibrium.reactions.get(joint.name, (np.nan, np.nan)))
     size = equilibrium.magnitudes[joint.name]
     xy = ("", "") if joint.is_couple else (format_force(force[0]), format_force(force[1]))
-    sense = _sense(joint, float(np.ravel(size)[0]))
+    sense = _sense(joint, float(np.ravel(size)[0]), _least_force(equilibrium))
     ends = f"on {joint.acts_on[0]} from {joint.acts_on[-1]}"
     return (joint.name, ends, *xy, format_force(size), joint.unit, sense)
 
 
-def _sense(joint: Joint, size: float) -> str:
-    return "" if not np.isfinite(size) else joint.signs[0] if size > 0 else joint.signs[1]
+def _sense(joint: Joint, size: float, least: float) -> str:
+    return "" if not abs(size) > least else joint.signs[0] if size > 0 else joint.signs[1]
+
+
+def _least_force(equilibrium: Equilibrium) -> float:
+    """The error of the forces [N]: a smaller one neither pulls nor pushes."""
+    sizes = np.concatenate([np.ravel(size) for size in equilibrium.magnitudes.values()])
+    error = float(np.nan_to_num(np.fmax.reduce(equilibrium.error, axis=None)))
+    return max(1e-9, error * float(np.nan_to_num(np.abs(sizes)).max(initial=0.0)))
 
 
 def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:
     for member in members(equilibrium.position, equilibrium):
         if member.name in equilibrium.position.mechanism.bodies and np.isfinite(member.force):
-            kind = "tension" if member.force > 0 else "compression"
+            pulls = abs(member.force) > _least_force(equilibrium)
+            kind = "" if not pulls else "tension" if member.force > 0 else "compression"
             yield member.name, "two-force body", "", "", format_force(abs(member.force)), "N", kind
 
 

@@ -96,7 +96,7 @@ def test_random_tables_have_one_answer_by_both_discretizations() -> None:
 
 
 def test_matrices_and_studies_know_modes_in_layers() -> None:
-    """Both choose functions for modes, and then take these for the beam: with the breakpoints of the layers."""
+    """Both choose functions for modes, and take these for the beam: with the breakpoints of its layers."""
     speed, true = 123.6449028464993, 1063.43879184
     poles = bd.matrices(FIFTH, speed, 5)
     rank = np.argsort(np.abs(poles.poles.imag))[8:]
