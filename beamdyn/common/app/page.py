@@ -28,6 +28,7 @@ from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.config import ConfigError
 
 _LARGEST = 200_000  # bytes of a file that is opened
+_CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 # NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
@@ -37,6 +38,19 @@ notice.setAttribute("role", "alert");
 notice.textContent = `The program has stopped. Start "{name} app --port ${{location.port}}" again: `
   + "this page goes on by itself.";
 </script>"""
+
+
+def add_style_and_scripts(program: Program) -> None:
+    """Add to every page of the process the style and scripts of a program."""
+    ui.add_css(STYLE, shared=True)
+    scripts = _STOPPED.format(name=program.name) + BrowserMemory(program.name).script + page_writer.SCRIPT
+    ui.add_body_html(scripts, shared=True)
+
+
+async def open_page(program: Program, solver: TaskTaker) -> None:
+    """Make the page of a client when it connects: one that never does costs next to nothing."""
+    await ui.context.client.connected(timeout=_CONNECTS)
+    await Page(program, solver).recall()
 
 
 class Page:
@@ -59,10 +73,7 @@ class Page:
         }
         self._memory = BrowserMemory(program.name)
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
-        ui.add_css(STYLE)
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
-        ui.add_body_html(_STOPPED.format(name=program.name) + self._memory.script + page_writer.SCRIPT)
-        ui.page_title(program.title)
         self.header = Header(program.title, [*self.places], self._turned, self._files(), self)
         self._bar = self.header.tabs
         self._body()
@@ -330,7 +341,6 @@ class Page:
 
     async def recall(self) -> None:
         """Restore what the browser stored, and store every change from now on."""
-        await ui.context.client.connected()
         try:
             stored = await ui.run_javascript(self._memory.recall, timeout=_ANSWERS)
         except TimeoutError:
