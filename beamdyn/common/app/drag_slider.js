@@ -6,7 +6,7 @@ export default {
     :aria-valuemin="null" :aria-valuemax="null" :aria-valuenow="null" />`,
   inheritAttrs: false,
   props: { modelValue: Number },
-  emits: ["drag"],
+  emits: ["drag", "update:model-value"], // the latter so that it is none of $attrs: places are told by "drag"
   data() {
     return { at: this.modelValue, held: false, panned: false };
   },
