@@ -174,10 +174,15 @@ def read_aside(tables: Mapping[str, Any], name: str) -> Any:
 
 
 def _check_effort(scene: Scene, speed: float, path: str) -> None:
-    """Refuse a speed that takes minutes: the faster a beam turns, the more functions a mode needs."""
-    first = first_frequency(scene)
+    """Refuse a speed that takes minutes: the faster a beam turns, the more functions a mode needs.
+
+    That depends on the stiffness of the beam, not on that of its root, which may be a hinge.
+    """
+    clamped = dataclasses.replace(scene.mount, root_stiffness=math.inf, second_root_stiffness=math.inf)
+    first = first_frequency(dataclasses.replace(scene, mount=clamped))
     if speed > _FASTEST * first:
-        bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest"
+        of = "" if clamped == scene.mount else ", were the root clamped"
+        bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest{of}"
         raise InvalidValue(path, speed, bound, unit="rad/s", limit=_FASTEST * first)
 
 

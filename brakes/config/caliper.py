@@ -7,7 +7,7 @@ import math
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, create_model
+from pydantic import ConfigDict, Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, validated
 from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
@@ -17,6 +17,8 @@ from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.calipers.stopping import check_wheels
 from brakes.planar.inputs import DescribedDirection, DescribedPoint
 from brakes.planar.points import Point as Coordinates
+
+SHORT_TEXTS = ConfigDict(str_max_length=200)  # of titles and names: they are drawn
 
 # Kinds of values ----------------------------------------------------------------------------------
 
@@ -140,6 +142,8 @@ class DimensionsInput(MadeSection):
 
 class CaliperInput(Section):
     """A named caliper: its name, and where they differ its dimensions."""
+
+    model_config = SHORT_TEXTS
 
     caliper: Annotated[
         Literal["eebrake", "single-pivot", "dual-pivot", "centre-pull", "cantilever", "v-brake"],

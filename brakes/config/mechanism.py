@@ -17,7 +17,16 @@ from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.edge.wording import in_small_units
 from brakes.calipers import NAMED, Caliper
-from brakes.config.caliper import QUANTITIES, Angle, CaliperInput, CaliperStopInput, Point, RunInput, model_of
+from brakes.config.caliper import (
+    QUANTITIES,
+    SHORT_TEXTS,
+    Angle,
+    CaliperInput,
+    CaliperStopInput,
+    Point,
+    RunInput,
+    model_of,
+)
 from brakes.planar import JOINTS, LOADS, Joint, Load, Mechanism, Part
 from brakes.planar.inputs import DescribedPoint, is_list
 
@@ -62,6 +71,8 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
 class PartSection(MadeSection):
     """Table of a joint or load; its refusals say where it is in millimetres, as the file does."""
 
+    model_config = SHORT_TEXTS
+
     @cached_property
     def core(self) -> Part:
         """The joint or load."""
@@ -89,6 +100,8 @@ class MechanismInput(CoreSection):
 
     A list of tables for each kind of joint and load is added by `CompleteMechanismInput`.
     """
+
+    model_config = SHORT_TEXTS
 
     title: Annotated[str, Field(description="title")] = "mechanism"
     bodies: Annotated[list[str], Field(description="names of the bodies; the ground is there by itself")]

@@ -77,6 +77,8 @@ def clients(first):
         made.append(user)
         user.javascript_rules[re.compile(r".*const kept = ")] = lambda _: stored
         await user.open("/")
+        while not any(element.tag == "q-tabs" for element in user.client.elements.values()):
+            await asyncio.sleep(0.005)  # the page is made when its client has connected
         return user
 
     return another

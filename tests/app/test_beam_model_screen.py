@@ -180,7 +180,7 @@ def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_n
         slow.solved.clear()
         for radius in ("0.11 m", "0.12 m", "0.13 m", "0.14 m"):
             page.enter("mount.radius", radius)
-            assert "Computing. Below is the last good result." in page.text()
+            assert "Computing. Stale: for the entries before." in page.text()
         await asyncio.sleep(2 * SOON)
         assert page.greyed() == 1
         slow.go.set()

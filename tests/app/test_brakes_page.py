@@ -46,11 +46,11 @@ def test_wrong_empty_and_extreme_entries_are_marked_at_their_field(simulate, fie
         page.enter(path, given)
         assert sentence in page.field(path).error
         assert path in page.field(path).error
-        assert page.text().count("Below is the last good result.") >= 1
+        assert page.text().count("Refused. Stale: for the entries before.") >= 1
         assert tables(before) == tables(page.text())
         page.enter(path, good)
         assert page.field(path).error is None
-        assert "Below is the last good result." not in page.text()
+        assert "Refused. Stale: for the entries before." not in page.text()
 
     simulate(BRAKES, body)
 

@@ -36,7 +36,7 @@ def test_change_by_keyboard_mistake_and_remedy(opened, program):
     page.keyboard.insert_text(f"{number} x")  # at once: typed slowly, the number alone is an entry too
     expect(shown(page, f'"{number} x": unknown unit')).to_be_visible()
     expect(page.locator(".greyed:visible")).to_have_count(1)
-    expect(shown(page, "Below is the last good result.")).to_be_visible()
+    expect(shown(page, "Refused. Stale: for the entries before.")).to_be_visible()
     assert drawing(page) == before
     page.keyboard.press("Backspace")
     page.keyboard.type(good.removeprefix(number).strip())
@@ -70,7 +70,7 @@ def test_slider_in_the_form_changes_its_field_and_the_drawing(opened, name):
     before, radius = drawing(page), field(page, "radius, r")
     value = radius.input_value()
     slider = page.get_by_role("slider", name="radius, r [mm]").locator("visible=true")
-    slider.locator("[tabindex='0']").focus()
+    slider.focus()
     for _ in range(5):
         page.keyboard.press("ArrowRight")
     expect(radius).not_to_have_value(value)

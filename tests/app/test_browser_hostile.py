@@ -22,7 +22,7 @@ IN_EVERY_RUN = {"Vehicle", "Mechanism", "Transient"}  # of different kinds: plai
 EACH = [pytest.param(*s, marks=() if s[1] in IN_EVERY_RUN else pytest.mark.slow) for s in SCREENS]
 SCRIPT = "<img src=x onerror=alert(1)><script>alert(1)</script>"
 PATH = "../../../etc/passwd"
-NO_OTHER = re.compile("Below is the last good result.|No result yet.")
+NO_OTHER = re.compile("Stale: for the entries before.|No result yet.")
 # Elements that only a text which is taken for HTML can have made.
 MADE = "img[src=x], script:not([src]):text('alert')"
 

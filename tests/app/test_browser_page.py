@@ -42,6 +42,22 @@ def test_everything_that_is_used_has_a_name(pages, program, name):
     found = used(page)
     assert len(found) > 10
     assert [node for node in found if not node["name"].get("value", "").strip()] == []
+    sliders = [node for node in found if node["role"]["value"] == "slider"]
+    assert [node["name"]["value"] for node in sliders if not takes_focus(node)] == []
+
+
+def takes_focus(node):
+    return any(each["name"] == "focusable" and each["value"]["value"] for each in node["properties"])
+
+
+def test_slider_that_has_the_focus_says_its_name_and_value(opened):
+    page = opened("beamdyn")
+    slider = page.get_by_role("slider", name="radius, r [mm]", exact=True).locator("visible=true")
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    expect(field(page, "radius, r")).to_have_value("220 mm")
+    expect(slider).to_be_focused()
+    expect(slider).to_have_attribute("aria-valuenow", "220")
 
 
 def test_everything_in_the_dialog_has_a_name(page):

@@ -8,6 +8,7 @@ import http.client
 import os
 import socket
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -147,3 +148,47 @@ def test_served_to_others_it_answers_to_addresses_and_to_this_computers_name():
         assert ask(chosen, Host=f"evil.example:{chosen}")[0] == 403
     finally:
         stop(process)
+
+
+@pytest.mark.parametrize(("method", "path"), [("GET", "/"), ("GET", "/x.png"), ("POST", "/"), ("HEAD", "/")])
+@pytest.mark.parametrize("site", ["cross-site", "same-site"])
+def test_requests_that_other_sites_cause_are_refused(port, site, method, path):
+    status, _, body = ask(port, path, method, Host=f"127.0.0.1:{port}", Sec_Fetch_Site=site)
+    assert status == 403 and (method == "HEAD" or "press Enter" in body)
+
+
+@pytest.mark.parametrize("site", ["none", "same-origin"])
+def test_the_address_bar_and_the_own_page_are_answered(port, site):
+    assert ask(port, Host=f"127.0.0.1:{port}", Sec_Fetch_Site=site)[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("method", "path"), [("GET", "/x"), ("GET", "/_nicegui"), ("POST", "/"), ("HEAD", "/")]
+)
+def test_what_is_not_the_page_is_not_answered_by_it(port, method, path):
+    status, _, body = ask(port, path, method, Host=f"127.0.0.1:{port}")
+    assert status == 404 and "<" not in body
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="memory is read from /proc")
+def test_pages_that_never_connect_take_no_memory():
+    chosen = free_port()
+    process = start(chosen, "beamdyn")
+    try:
+        own = {"Host": f"127.0.0.1:{chosen}"}
+        ask(chosen, **own)
+        before = resident(process)
+        for _ in range(1000):
+            ask(chosen, **own, Sec_Fetch_Site="cross-site")
+        assert resident(process) - before < 5
+        for _ in range(200):
+            ask(chosen, **own)
+        assert resident(process) - before < 50
+    finally:
+        stop(process)
+
+
+def resident(process):
+    """Memory of a process [MB]."""
+    lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024

@@ -5,6 +5,7 @@ import json
 
 import pytest
 
+from beamdyn.app.program import SCENE
 from beamdyn.common.app.open_document import OpenDocument
 from brakes.app.program import BRAKES
 from tests.app.conftest import InThread
@@ -72,3 +73,29 @@ def test_entry_typed_before_the_stored_design_came_remains():
     assert work.recall(stored)
     assert work.entries == VEHICLE.base_entries | {"stop.speed": "31 km/h", "stop.friction": "0.5"}
     assert not work.recall(stored)
+
+
+def test_text_typed_before_anything_was_stored_is_restored(simulate, storage):
+    async def body(client):
+        user = await client(json.dumps({"typed": {VEHICLE.name: {"stop.speed": "26"}}}))
+        await recalled(storage)
+        made = user.client.elements.values()
+        assert "26 km/h" in [e.value for e in made if e.props.get("data-path") == "stop.speed"]
+
+    simulate(BRAKES, body)
+
+
+def test_file_keeps_the_fields_that_commands_take_as_options():
+    work = OpenDocument(SCENE)
+    options = {"operation.speed": "60 rad/s", "run.window_end": "9 s", "options.modes": "3"}
+    for path, text in options.items():
+        work.put(path, text)
+    saved = work.file()
+    assert SCENE.check(saved, "as a command reads it") == SCENE.check(work.text(), "without them")
+    another = OpenDocument(SCENE)
+    another.put("trade.digits", "5")  # which the file has as well
+    another.open(saved, "saved.toml")
+    assert another.entries == work.entries
+    another.put("operation.speed", "70 rad/s")
+    another.open(SCENE.base, "scene.toml")  # which says nothing of them
+    assert another.entries["operation.speed"] == "70 rad/s"

@@ -11,8 +11,12 @@ import beamdyn.cli
 import brakes.cli
 from beamdyn.app.program import SCENE
 from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.drawing.layout import heading
+from beamdyn.common.edge.config import ConfigError
 from brakes.answers.caliper import CALIPER
 from brakes.answers.drum import BRAKE as DRUM
+from brakes.app.bases import base
+from brakes.config.mechanism import parse_mechanism
 
 ROOT = Path(__file__).parents[2]
 HARVESTER, ROLLING = "examples/tyre_harvester.toml", "examples/rolling_harvester.toml"
@@ -112,3 +116,17 @@ def test_sweep_of_a_command_on_brakes(capsys, monkeypatch):
     options = ["--vary", TWO[0], "--vary", TWO[1]]
     assert brakes.cli.main(["drum", "examples/drum.toml", *options]) == 2
     assert "at most 100000 designs" in capsys.readouterr().err
+
+
+def test_long_word_of_a_title_is_cut_soon():  # not in a time that grows as the square of its length
+    (line,) = heading("x" * 40_000, 400.0, 300.0).lines
+    assert line.endswith("x…")
+
+
+@pytest.mark.parametrize("text", ["toggle clamp (Hibbeler 6-80)", '"handle"', '"A"', "C = ["])
+def test_texts_that_are_drawn_are_short(text):
+    quoted = text.replace(text.strip('" =['), "x" * 201)
+    tables = base("mechanism").replace(text, quoted)
+    with pytest.raises(ConfigError, match="give at most 200 characters"):
+        parse_mechanism(tables)
+    parse_mechanism(base("mechanism").replace("toggle clamp (Hibbeler 6-80)", "x" * 200))

@@ -19,17 +19,32 @@ _MOST = 100  # named designs
 
 # Width of a page below which drawings have narrow paper, as the rules of `look` have it.
 _NARROW = "(max-width: 600px)"
-# The script keeps a key stroke in a field until the program has stored it, follows a link that is put into
-# the address of an open page, passes on the keys of undo and redo after what has been typed, and reports when
-# the page becomes narrow or wide.
+# The script keeps a key stroke in a field until the program has stored it, marks its screen until the program
+# has heard it (a field tells what is typed after 0.1 s, one of a list when it is left), follows a link that
+# is put into the address of an open page, passes on the keys of undo and redo after what has been typed, and
+# reports when the page becomes narrow or wide.
 SCRIPT = """<script type="module">
 const typedKey = %(typed)s;
+let strokes = 0;
+const askAfter = (delay) => {
+  const stroke = ++strokes;
+  setTimeout(() => stroke === strokes && emitEvent("typed", stroke), delay);
+};
+window.heard = (stroke) => {
+  if (stroke === strokes) for (const it of document.querySelectorAll(".typed")) it.classList.remove("typed");
+};
+const askNow = (event) => { if (event.target.closest?.(".typed [data-path]")) askAfter(0); };
+document.addEventListener("focusout", askNow);
+document.addEventListener("keydown", (event) => { if (event.key === "Enter") askNow(event); });
 document.addEventListener("input", (event) => {
   const field = event.target.closest?.("[data-path]"), screen = event.target.closest?.("[data-document]");
   if (!field || !screen || event.target.value === undefined) return;
   const typed = JSON.parse(sessionStorage.getItem(typedKey) || "{}");
   (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
   sessionStorage.setItem(typedKey, JSON.stringify(typed));
+  field.closest(".screen").classList.add("typed");
+  if (field.closest(".lists")) ++strokes;
+  else askAfter(150);
 });
 matchMedia(%(narrow)s).addEventListener("change", (event) => emitEvent("narrow", event.matches));
 window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });

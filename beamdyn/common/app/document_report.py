@@ -42,8 +42,7 @@ def report_of(
     parts = [*_answers(work), *((name, (), "", made) for name, made in sweeps)]
     when = (now or datetime.now().astimezone()).strftime("%Y-%m-%d %H:%M %Z").strip()
     inputs = ("Every input", (), f"<p>{escape(when)}</p>{inputs_html(work)}", "")
-    options = "".join(f"# {path} = {work.entries[path]}\n" for path in work.document.aside)
-    return report_page(title, "\n".join(filter(None, (options, work.text()))), [*parts, inputs])
+    return report_page(title, work.file(), [*parts, inputs])
 
 
 def _answers(work: OpenDocument) -> Iterator[_Part]:

@@ -102,11 +102,19 @@ body {{ font-size: 15px; }}
   color: var(--soft); box-shadow: 0 1px 4px rgb(0 0 0 / 0.35); pointer-events: none; }}
 .status {{ font-size: 0.85rem; color: var(--soft); }}
 .mistake {{ color: var(--wrong); font-weight: 600; border-left: 4px solid var(--wrong);
-  padding-left: 0.5rem; }}
+  padding-left: 0.5rem; overflow-wrap: anywhere; }}
 .mistake:empty {{ display: none; }}
 .warning {{ color: var(--careful); border-left: 4px solid #E69F00; padding-left: 0.5rem; }}
 /* After a while: an answer that comes soon is painted once. */
-.greyed {{ opacity: 0.45; filter: grayscale(1); transition: opacity 0s 0.3s, filter 0s 0.3s; }}
+.greyed, .typed .shown {{ opacity: 0.45; filter: grayscale(1); transition: opacity 0s 0.3s, filter 0s 0.3s; }}
+.greyed.refused, .greyed.refused > * {{ transition: none !important; }}
+/* A number that stands first is grey at once, and says why; ".typed" is set by the page at a key stroke. */
+.typed .headline dd, .stale .headline dd, .typed .warning, .stale .warning {{ opacity: 0.45; }}
+.typed .headline dt::after, .stale .headline dt::after {{ content: " (stale)"; color: var(--careful); }}
+.newer {{ display: none; font-size: 0.85rem; color: var(--careful); }}
+.typed .newer {{ display: block; }}
+.typed .status[role="status"] {{ display: none; }}
+.at-field {{ display: none; }}  /* where the form is in sight */
 .slider {{ padding: 0 4.5rem; }}
 .slider .q-slider__marker-labels {{ white-space: nowrap; }}
 .drawing-frame {{ overflow-x: auto; }}
@@ -126,13 +134,17 @@ _NARROW = """
   .nicegui-header .q-tabs { order: 9; width: 100%; }
   .screen { display: flex; flex-direction: column; gap: 0.75rem; }
   .right, .shown { display: contents; }
-  .shown.greyed > * { opacity: 0.45; filter: grayscale(1); transition: opacity 0s 0.3s, filter 0s 0.3s; }
+  .shown.greyed > *, .typed .shown > * { opacity: 0.45; filter: grayscale(1);
+    transition: opacity 0s 0.3s, filter 0s 0.3s; }
   .screen > *, .right > *, .shown > * { width: 100%; }
   .head { order: 1; }
   .pictures { order: 2; }
   .left { order: 3; position: static; max-height: none; overflow: visible; padding: 0; }
   .numbers { order: 4; }
   .right > .after { order: 5; }
+  .at-field { display: block; }
+  .said:has(.mistake) { position: fixed; z-index: 10; left: 0; right: 0; bottom: 0; padding: 0.5rem;
+    max-height: 30vh; overflow-y: auto; background: var(--note); box-shadow: 0 0 6px rgb(0 0 0 / 0.4); }
 }
 @media (max-width: 600px) {
   .board, .drawing { min-width: 0; }

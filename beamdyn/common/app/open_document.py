@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,9 @@ from beamdyn.common.edge.program import NoAnswer
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+
+_OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)  # in a file, as `OpenDocument.file` writes it
 
 
 @dataclass(frozen=True)
@@ -144,7 +148,8 @@ class OpenDocument:
     def open(self, text: str, source: str) -> None:
         """Replace the design by the text of a file; on `ConfigError` nothing changes."""
         opened = self.document.opened(text, source)
-        options = {path: self.entries[path] for path in self.document.aside}
+        kept = dict(_OPTION.findall(text))
+        options = {path: kept.get(path, self.entries[path]) for path in self.document.aside}
         self.entries, self.mistakes = opened | options, {}
         self.history.part()
 
@@ -166,6 +171,11 @@ class OpenDocument:
         """The design as TOML, including entries with mistakes."""
         tables = tables_of(self.entries, self.inputs)
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
+
+    def file(self) -> str:
+        """The design as a TOML file, below comments with the options of the screens, which `open` reads."""
+        options = "".join(f"# {path} = {self.entries[path]}\n" for path in self.document.aside)
+        return "\n".join(filter(None, (options, self.text())))
 
     def put(self, path: str, text: str) -> None:
         """Change one entry; entries of inputs that no longer exist are dropped."""

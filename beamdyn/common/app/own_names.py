@@ -2,8 +2,9 @@
 
 A web page from elsewhere reaches a server on this computer through the visitor's browser: under a name of
 its own that is made to point to 127.0.0.1 ("DNS rebinding"), which shows in the request's Host; or as itself
-by a websocket or a form, which shows in its Origin.  Both are checked here; starlette's
-`TrustedHostMiddleware` checks no Origins, and in its earlier versions takes no address in brackets.
+by a websocket or a form, which shows in its Origin; or by a picture or a link, which shows in Sec-Fetch-Site.
+All are checked here; starlette's `TrustedHostMiddleware` checks the first alone, and in its earlier versions
+takes no address in brackets.  The toolkit would make a page for every path and method: the others end here.
 
 What a page may load and send, its Content-Security-Policy says: nothing from elsewhere, nothing to there.
 The toolkit needs three exceptions: its page starts by a script within it ('unsafe-inline'), Vue
@@ -65,15 +66,17 @@ class OwnNames:
         self.names = tuple(dict.fromkeys((*_THIS_COMPUTER, own.lower())))
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it with a sentence and status 403."""
+        """Answer a request, or refuse it with a sentence and status 403 or 404."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
-        elif not (refusal := self.refusal(_headers(scope, b"host"), _headers(scope, b"origin"))):
-            await self.app(scope, receive, _guarded(send, _headers(scope, b"host")[0]))
-        elif scope["type"] == "websocket":
-            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
+        elif refusal := self.refusal(_headers(scope, b"host"), _headers(scope, b"origin")) or _foreign(scope):
+            await _refuse(scope, _guarded(send), 403, refusal)
         else:
-            await _refuse(_guarded(send), refusal)
+            send = _guarded(send, _headers(scope, b"host")[0])
+            if _is_known(scope):
+                await self.app(scope, receive, send)
+            else:
+                await _refuse(scope, send, 404, "There is no such page; the program's only one is at /.")
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
         """Why a request with these headers is refused; empty if it is answered."""
@@ -131,7 +134,30 @@ def _guarded(send: Send, host: str = "") -> Send:
     return send_guarded
 
 
-async def _refuse(send: Send, sentence: str) -> None:
+def _foreign(scope: Scope) -> str:
+    """Why a request is refused that another site has made the browser send; empty if none has.
+
+    A websocket says its Origin always, and browsers differ in what site they count it to.
+    """
+    sites = _headers(scope, b"sec-fetch-site") if scope["type"] == "http" else []
+    if all(site in ("same-origin", "none") for site in sites):
+        return ""
+    return (
+        "This program answers to its own page alone, not to links and pictures of other sites. "
+        "To follow a link, put the cursor into the browser's address bar and press Enter."
+    )
+
+
+def _is_known(scope: Scope) -> bool:
+    """Whether a request is for the page or for what belongs to it."""
+    path = scope["path"]
+    page = scope["type"] == "http" and path == "/" and scope["method"] == "GET"
+    return page or path == "/favicon.ico" or path.startswith(("/_nicegui/", "/_nicegui_ws/"))
+
+
+async def _refuse(scope: Scope, send: Send, status: int, sentence: str) -> None:
+    if scope["type"] == "websocket":
+        return await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
     headers = [(b"content-type", b"text/plain; charset=utf-8")]
-    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": f"{sentence}\n".encode()})

@@ -28,6 +28,7 @@ from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.config import ConfigError
 
 _LARGEST = 200_000  # bytes of a file that is opened
+_CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 # NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
@@ -37,6 +38,26 @@ notice.setAttribute("role", "alert");
 notice.textContent = `The program has stopped. Start "{name} app --port ${{location.port}}" again: `
   + "this page goes on by itself.";
 </script>"""
+
+
+def add_style_and_scripts(program: Program) -> None:
+    """Add to every page of the process the style and scripts of a program."""
+    ui.add_css(STYLE, shared=True)
+    scripts = _STOPPED.format(name=program.name) + BrowserMemory(program.name).script + page_writer.SCRIPT
+    ui.add_body_html(scripts, shared=True)
+
+
+async def open_page(program: Program, solver: TaskTaker) -> None:
+    """Make the page of a client when it connects: one that never does costs next to nothing.
+
+    What the browser has stored is asked for first, so that nobody types into a form that is yet to change.
+    """
+    await ui.context.client.connected(timeout=_CONNECTS)
+    try:
+        stored = await ui.run_javascript(BrowserMemory(program.name).recall, timeout=_ANSWERS)
+    except TimeoutError:
+        stored = None
+    Page(program, solver).recall(json.loads(stored or "{}"))
 
 
 class Page:
@@ -59,15 +80,13 @@ class Page:
         }
         self._memory = BrowserMemory(program.name)
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
-        ui.add_css(STYLE)
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
-        ui.add_body_html(_STOPPED.format(name=program.name) + self._memory.script + page_writer.SCRIPT)
-        ui.page_title(program.title)
         self.header = Header(program.title, [*self.places], self._turned, self._files(), self)
         self._bar = self.header.tabs
         self._body()
         ui.on("undo", self.undo)
         ui.on("redo", self.redo)
+        ui.on("typed", lambda event: self._bar.client.run_javascript(f"heard({int(event.args)})"))
         ui.on("narrow", lambda event: self._be_narrow(event.args is True))
         self._bar.client.on_delete(self._close)
 
@@ -222,7 +241,7 @@ class Page:
 
     def save(self) -> None:
         """Download the design in front as TOML."""
-        ui.download.content(self.work.text().encode(), f"{self.work.document.name}.toml")
+        ui.download.content(self.work.file().encode(), f"{self.work.document.name}.toml")
 
     async def report(self) -> None:
         """Download the HTML report on the document in front, when all its screens have been solved."""
@@ -328,28 +347,21 @@ class Page:
         # by the page's own client: the field that has changed may be gone, of a form that was made anew
         self._bar.client.run_javascript(made)
 
-    async def recall(self) -> None:
+    def recall(self, stored: Mapping[str, Any]) -> None:
         """Restore what the browser stored, and store every change from now on."""
-        await ui.context.client.connected()
-        try:
-            stored = await ui.run_javascript(self._memory.recall, timeout=_ANSWERS)
-        except TimeoutError:
-            stored = None
-        found = json.loads(stored or "{}")
-        self._restore(found)
+        self._restore(stored)
         self._recalled = True
-        self._remember(found.get("typed"))
+        self._remember(stored.get("typed"))
 
     def _restore(self, stored: Mapping[str, Any]) -> None:
         """Put stored designs into the forms; a form that shows its design already is left alone."""
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
-        typed = stored.get("typed", {})
-        for name, entries in stored.get("designs", {}).items():
-            if (work := self.works.get(name)) is not None:
-                inputs = work.document.inputs(entries)
-                if work.recall(read_typed(typed.get(name), entries, inputs)):
-                    self._rebuild(work.document)
+        typed, designs = stored.get("typed", {}), stored.get("designs", {})
+        for name, work in self.works.items():  # what is typed first comes before any design is stored
+            entries = designs.get(name, work.document.base_entries)
+            if work.recall(read_typed(typed.get(name), entries, work.document.inputs(entries))):
+                self._rebuild(work.document)
         if stored.get("front") in self.places:
             self._bar.set_value(stored["front"])
         if stored.get("link"):

@@ -11,6 +11,8 @@ from beamdyn.common.app.processes import TakesTooLong
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.app.tasks import Outcome
 
+_FEW = 3  # fields that are changed by hand between two answers; a file that is opened changes more
+
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:
     """The outcome of a computation that is done; if it was ended: why, and what had changed."""
@@ -41,6 +43,26 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
     return [path for path in {**before.entries, **now} if before.entries.get(path) != now.get(path)]
 
 
+def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
+    """What is wrong on a screen, by the path of the field at fault.
+
+    What is about no single field is about all that have changed since the last answer.  So is what is about
+    others than these, if they are few: a top speed is refused since the beam has been made longer.
+    """
+    mistakes = dict(work.mistakes.get(screen.name, {}))
+    since = changed(work, screen)
+    if "" in mistakes:
+        return dict.fromkeys(since, mistakes[""]) | mistakes
+    if not 0 < len(since) <= _FEW or not mistakes or {*since} & {*mistakes}:
+        return mistakes
+    before = work.answered[screen.name].entries
+    sentences = [said for each in mistakes.values() for said in each]
+    return {path: [f"{said}; {_cause(path, before)}" for said in sentences] for path in since}
+
+
 def _since(path: str, before: Mapping[str, str]) -> str:
-    was = f"was {before[path]}" if before.get(path) else "was empty"
-    return f"since the last answer this has changed; it {was}"
+    return f"since the last answer this has changed; it was {before.get(path) or 'empty'}"
+
+
+def _cause(path: str, before: Mapping[str, str]) -> str:
+    return f"that comes from {path}, which was {before.get(path) or 'empty'}: change either"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -31,7 +31,7 @@ from beamdyn.common.app.open_document import Answered, OpenDocument
 from beamdyn.common.app.page_writer import PageWriter
 from beamdyn.common.app.player import Player
 from beamdyn.common.app.processes import Task, TaskTaker
-from beamdyn.common.app.refusals import changed, outcome_of
+from beamdyn.common.app.refusals import at_fault, outcome_of
 from beamdyn.common.app.screens import Handle, Screen
 from beamdyn.common.app.sketch_panel import SketchPanel
 from beamdyn.common.app.sweep_panel import SweepPanel
@@ -41,6 +41,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import html
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
+_STALE = "Stale: for the entries before."
 _CHARTS_APART = 0.1  # pictures of charts beside a drawing that moves: a browser takes 5 to 10 ms for each [s]
 
 
@@ -65,7 +66,7 @@ class ScreenView:
         self.work, self.screen, self._edited, self._solver = work, screen, edited, solver
         self._drawn = ""
         self.narrow = False  # the page, so that drawings have narrow paper
-        self._sentences: tuple[list[str], list[str]] = [], []
+        self._sentences: tuple[list[str], list[str], list[str]] = [], [], []
         self._way = UnderWay(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
         self._charted = 0.0  # when the charts were shown last [s]
@@ -81,17 +82,19 @@ class ScreenView:
         self.state()
 
     def _results(self) -> None:
-        with ui.column().classes("head"):
+        self._head: Any = ui.column().classes("head")
+        with self._head:
             ui.html(escape(self.screen.name), tag="h2", sanitize=False)
             ui.label(self.screen.purpose).classes("text-body2")
             self._headline: Any = ui.html("", sanitize=False).classes("w-full")
             with ui.row().classes("items-center gap-2"):
                 self._status: Any = ui.label().classes("status").props('role="status" aria-live="polite"')
+                ui.label(_STALE).classes("newer")
                 self._busy: Any = ui.row().classes("items-center gap-2")
                 with self._busy:
                     ui.spinner(size="sm").props('aria-hidden="true"')
                     ui.button("Cancel", on_click=self._way.cancel).props("dense outline no-caps size=sm")
-            self._said: Any = ui.column().classes("gap-1 w-full").props('role="alert"')
+            self._said: Any = ui.column().classes("said gap-1 w-full").props('role="alert"')
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
@@ -155,7 +158,7 @@ class ScreenView:
             )  # fmt: skip
         self._shape = [entry.path for entry in self._fielded]
         self._choices = {entry.path for entry in self._fielded if options_of(entry)}
-        self.form.mark(self.work.mistakes.get(self.screen.name, {}))
+        self.form.mark(self._mistakes())
         self.form.hide(self.work.idle)
         self.state()
 
@@ -293,26 +296,21 @@ class ScreenView:
         return replace(outcome, tables=before.tables, notes=before.notes)
 
     def _mistakes(self) -> dict[str, list[str]]:
-        """What is wrong, by field; what is about no single one is about all that have changed."""
-        mistakes = self.work.mistakes[self.screen.name]
-        about = changed(self.work, self.screen) if "" in mistakes else []
-        return dict.fromkeys(about, mistakes.get("", [])) | mistakes
+        return at_fault(self.work, self.screen)
 
     def state(self) -> None:
         """Say whether the answer shown is the present one, and grey it where another one takes its time."""
-        busy, held = self._way.busy, self.dragged
+        busy, slow, held = self._way.busy, self._way.slow, self.dragged
         stale = self.work.stale(self.screen) or (self._partial and not held)
-        grey = stale and (self._way.slow or not busy)
-        self._good.classes(add="greyed" if grey else "", remove="" if grey else "greyed")
-        self._busy.set_visibility(self._way.slow)
-        failed = self.work.mistakes.get(self.screen.name)
-        words = (
-            "Below is the last good result." if self.work.answered.get(self.screen.name) else "No result yet."
-        )
-        later = "An input has changed since: this result is stale."
-        now = (words if failed else later) if stale else "Up to date."
-        now = f"Computing. {words if stale else ''}".strip() if busy else now
-        follows = held and not (failed or self._way.slow)
+        failed = bool(self.work.mistakes.get(self.screen.name))
+        follows = held and not (failed or slow)
+        _toggle(self._head, "stale", stale and not follows)
+        _toggle(self._good, "greyed", stale and (slow or failed or not busy))
+        _toggle(self._good, "refused", stale and failed)
+        self._busy.set_visibility(slow)
+        words = _STALE if self.work.answered.get(self.screen.name) else "No result yet."
+        state = "Computing. " if busy else "Refused. " if failed else ""
+        now = f"{state}{words}" if stale else state.strip() or "Up to date."
         self._status.set_text("The drawing follows; the tables wait." if follows else now)
         if self._sweep is not None:
             self._sweep.state()
@@ -320,16 +318,18 @@ class ScreenView:
     def _say(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""
         answered = self.work.answered.get(self.screen.name)
-        out_of_form = (said for path, said in mistakes.items() if path not in self.form.fields)
-        elsewhere = [*dict.fromkeys(sentence for said in out_of_form for sentence in said)]
+        elsewhere = [*_sentences(mistakes, lambda path: path not in self.form.fields)]
+        at_fields = [*_sentences(mistakes, lambda path: path in self.form.fields)]
         warnings = answered.notes if answered and not mistakes else ()
-        if (elsewhere, [*warnings]) == self._sentences:
+        if (elsewhere, at_fields, [*warnings]) == self._sentences:
             return
-        self._sentences = elsewhere, [*warnings]
+        self._sentences = elsewhere, at_fields, [*warnings]
         self._said.clear()
         with self._said:
             for sentence in elsewhere:
                 ui.label(sentence).classes("mistake")
+            for sentence in at_fields:
+                ui.label(sentence).classes("mistake at-field")
             for sentence in dict.fromkeys(warnings):
                 ui.label(f"Warning: {self._as_on_form(sentence)}").classes("warning")
 
@@ -464,3 +464,13 @@ class ScreenView:
     @property
     def _name(self) -> str:
         return self.screen.name.lower().replace(" ", "-")
+
+
+def _toggle(element: Any, name: str, on: bool) -> None:
+    """Give an element a class, or take it away."""
+    element.classes(add=name if on else "", remove="" if on else name)
+
+
+def _sentences(mistakes: Mapping[str, list[str]], of: Callable[[str], bool]) -> dict[str, None]:
+    """What is said about some paths, each sentence once."""
+    return dict.fromkeys(sentence for path, said in mistakes.items() if of(path) for sentence in said)

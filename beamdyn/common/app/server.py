@@ -61,11 +61,11 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
 
 def root_of(program: Program, solver: TaskTaker) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
-    from beamdyn.common.app.page import Page
+    from beamdyn.common.app.page import open_page
     from beamdyn.common.app.processes import Share
 
     async def root() -> None:
-        await Page(program, Share(solver)).recall()
+        await open_page(program, Share(solver))
 
     return root
 
@@ -97,12 +97,14 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     except ImportError:
         raise ValueError(MISSING) from None
     from beamdyn.common.app.own_names import OwnNames
+    from beamdyn.common.app.page import add_style_and_scripts
     from beamdyn.common.app.processes import Processes
     from beamdyn.common.edge.progress import quiet
 
     _free(host, port)
     made, processes = program(), Processes(program)
     app.add_middleware(OwnNames, host=host)
+    add_style_and_scripts(made)
     app.config.quasar_config["loadingBar"]["skipHijack"] = True  # the bar has no name; "Computing" is said
     app.on_startup(processes.start)
     app.on_shutdown(processes.close)

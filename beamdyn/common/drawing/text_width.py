@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import accumulate, takewhile
 
 FAMILY = "'DejaVu Sans', Verdana, sans-serif"
 LINE_HEIGHT = 1.22  # over the size of the letters
@@ -158,7 +159,6 @@ def shortened(text: str, width: float, size: float) -> str:
     """A text, cut to a width [pt] with dots at its end if it is longer, in letters of a size [pt]."""
     if size * line_width(text) <= width:
         return text
-    kept = text
-    while kept and size * line_width(f"{kept}…") > width:
-        kept = kept[:-1]
-    return f"{kept}…"
+    dots = line_width("…")
+    ends = accumulate(map(line_width, text))
+    return f"{text[: sum(1 for _ in takewhile(lambda end: size * (end + dots) <= width, ends))]}…"

@@ -175,6 +175,9 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
         case "too_long":
             bound = f"give at most {context['max_length']} values"
             return str(InvalidInput(place, error["input"], bound)), path
+        case "string_too_long":
+            bound = f"give at most {context['max_length']} characters"
+            return str(InvalidInput(place, error["input"], bound)), path
         case "too_short":
             least = context["min_length"]
             bound = f"give at least {'one value' if least == 1 else f'{least} values'}"
