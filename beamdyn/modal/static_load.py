@@ -9,7 +9,7 @@ import numpy as np
 from beamdyn.common.announced import OUTSIDE
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.modal.model import Model
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
 from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain
 
 
@@ -70,6 +70,8 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
 
 
 def bends(model: Model) -> bool:
-    """Whether a steady rotation loads the straight beam transversely."""
-    equations = model.equations
-    return bool(equations.steady().f2[equations.places(equations.deflections)].any())
+    """Whether a steady rotation loads the straight beam transversely, but for a misalignment of 1e-8 rad."""
+    equations, scene = model.equations, model.scene
+    load = np.abs(equations.steady().f2[equations.places(equations.deflections)]).max(initial=0.0)
+    along = max(np.abs(equations.P(d)).max() for d in range(scene.physics.planes))
+    return bool(load > RIGHT_ANGLE * along * (scene.mount.radius + scene.beam.length))

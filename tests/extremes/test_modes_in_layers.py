@@ -68,7 +68,7 @@ def test_elements_state_the_error_of_a_steep_stiffness(elements: int) -> None:
     scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, stiffness), bd.Mount(1.0, np.pi))
     modes = bd.natural_modes(scene, 0.0, 1, bd.Fem(elements))
     error = abs(modes.frequency[0] / 3.35730232 - 1)
-    assert error <= modes.error[0] < 5 * error
+    assert error <= modes.error[0] < 10 * error
 
 
 @pytest.mark.parametrize("elements", [50, 100, 200, 400])

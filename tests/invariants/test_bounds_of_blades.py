@@ -60,7 +60,7 @@ def test_bounds_of_random_blades_enclose_the_second_method(seed: int) -> None:
     _check_enclosed(frequency_bounds(scene, speed), squared, 2 * known.uncertainty)
 
 
-@pytest.mark.parametrize("left", [1e-2, 1e-4, 1e-6])  # thickness at the tip over that at the root
+@pytest.mark.parametrize("left", [1e-2, 1e-3, 1e-4])  # thickness at the tip over that at the root
 def test_bounds_of_smooth_tapers_to_almost_nothing_are_narrow(left: float) -> None:
     taper = Polynomial([1.0, left - 1])
     scene = bd.Scene(bd.Beam.from_stiffness(1.0, taper, taper**3), bd.Mount(0.1, np.pi, 0.0))
