@@ -298,7 +298,7 @@ def test_resonances_on_springs_too_soft_for_elements() -> None:
         scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), mount, bd.SteadyRotation(1.0), gravity=9.81)
         return bd.resonance_speeds(scene, 10.0, 2, discretization=discretization)
 
-    by_elements, exact = found(1e-6, "fem"), found(1e-6, "ritz")
+    by_elements, exact = found(1e-9, "fem"), found(1e-9, "ritz")
     assert [c.speed for c in by_elements] == [c.speed for c in exact] and len(exact) == 2
     assert by_elements.warnings[0].startswith("finite elements do not resolve the springs")
     with pytest.raises(ValueError, match="does not resolve so soft a spring"):
