@@ -20,6 +20,7 @@ LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
 _OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
 _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
+_SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
 _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 _MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
@@ -138,20 +139,22 @@ def extrapolation_error(
 
     Parameters
     ----------
-    distance, before : ndarray
+    distance, before : ndarray, shape (..., k)
         Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
-    noise : ndarray
+    noise : ndarray, shape (..., k)
         Rounding error of these differences.
     least : float
         Least ratio of the two that is taken; larger where segments converge each at a rate of its own.
 
     Returns
     -------
-    ndarray
+    ndarray, shape (..., k)
         inf where the differences do not fall.
     """
     size = np.abs(distance)
     ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), least)
+    of_lower = np.where(size <= _OF_NOISE * noise, least, np.minimum(ratio, _SHARED))
+    ratio = np.maximum(ratio, np.maximum.accumulate(of_lower, axis=-1))
     left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
     left = np.where(size <= _OF_NOISE * noise, size, size * np.where(size > 0, left, 0.0))
     return np.maximum(left, np.nan_to_num(np.abs(before)) / _LEAST_OF_BEFORE)

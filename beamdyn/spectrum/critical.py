@@ -347,7 +347,7 @@ def _compare(model: Model) -> _Found:
     left = abs(distance)
     if order is not None:
         before = coarse_softening - _softening_of_half(coarse)
-        left = float(extrapolation_error(*np.array([distance, before, noise * softening])))
+        left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
     error = left / (2 * softening) + noise
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
