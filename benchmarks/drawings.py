@@ -217,7 +217,7 @@ def processor_time(ids: Iterable[int]) -> float:
 def _held(page: Any, name: str, point: str) -> list[tuple[str, str]]:
     """What is dragged on a screen: a point, and each slider of its form."""
     go(page, name)
-    sliders = page.locator(".left .q-slider:visible").all()
+    sliders = page.locator(".left .q-slider:visible [role=slider]").all()
     return [(name, label) for label in [point, *(it.get_attribute("aria-label") for it in sliders)] if label]
 
 
@@ -233,7 +233,7 @@ def _drag(page: Any, label: str) -> tuple[float, float]:
     handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
     x, y = _middle(handle)
-    slider = page.locator(f".q-slider[aria-label='{label}']:visible")
+    slider = page.locator(f".q-slider:has([aria-label='{label}']):visible")
     way = _across(slider.bounding_box()) if slider.count() else partial(_around, x, y)
     page.mouse.move(x, y)
     page.mouse.down()

@@ -149,7 +149,8 @@ def test_the_slider_stands_where_it_was_paused_and_is_dragged_from_there(page):
     picture = page.locator(".board svg.machine").locator("visible=true").first
 
     def shown():
-        return float(slider.get_attribute("aria-valuenow")), picture.get_attribute("id")
+        place = slider.locator("[role=slider]").get_attribute("aria-valuenow")
+        return float(place or "nan"), picture.get_attribute("id")
 
     page.get_by_role("button", name="play stage").locator("visible=true").click()
     page.wait_for_timeout(1200)
