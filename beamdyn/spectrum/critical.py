@@ -49,6 +49,8 @@ _BENT = (
     "equilibrium turns back"
 )
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
+_NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
+_OF_SHORTEST = 4 * float(np.finfo(float).eps)  # rounding error times the cube of an element's length over L
 _TO_HALF = 4  # steps from a basis to one of about half its size
 
 
@@ -343,7 +345,7 @@ def _compare(model: Model) -> _Found:
     if not 0 < softening < np.inf:  # False for nan, too
         return _Found(model, coarse, np.inf, np.inf, np.inf)
     rounding, by_springs = solver.critical_rounding, _rounding_on_springs(model)
-    noise = rounding + model.discretization.rounding + by_springs
+    noise = rounding + _rounding_of_integrals(model) + by_springs
     left = abs(distance)
     if order is not None:
         before = coarse_softening - _softening_of_half(coarse)
@@ -352,6 +354,15 @@ def _compare(model: Model) -> _Found:
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
     return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)
+
+
+def _rounding_of_integrals(model: Model) -> float:
+    """Relative rounding error of the integrals: of elements as the cube of the shortest near the tip."""
+    if model.discretization.order is None:
+        return model.discretization.rounding
+    ends = model.discretization.cells(model.scene.modelled_beam).ends
+    shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
+    return max(model.discretization.rounding, _OF_SHORTEST * shortest**-3)
 
 
 def _softening_of_half(model: Model) -> float:
