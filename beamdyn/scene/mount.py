@@ -15,6 +15,7 @@ from beamdyn.scene.doubts import warn_of_degrees
 
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
 _PRECONE: Any = {"above": -math.pi / 2, "below": math.pi / 2, "remedy": "0 is in the plane of rotation"}
+ROUNDED_ANGLE = 2e-16  # largest cosine of a rounded right angle
 RIGHT_ANGLE = 1e-8  # distance from a multiple of a right angle [rad] up to which an angle counts as that
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
@@ -150,7 +151,7 @@ def _spring(name: str, value: object) -> float:
 
 def exact_cos_sin(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
-    return _cos_sin(angle, 2e-16)
+    return _cos_sin(angle, ROUNDED_ANGLE)
 
 
 def aligned_cos_sin(angle: float) -> tuple[float, float]:

@@ -32,7 +32,7 @@ from beamdyn.modal.error_estimate import parts_of_distances
 from beamdyn.modal.many_designs import Estimate, PencilStack
 from beamdyn.modal.model import Model
 from beamdyn.scene.beam import TipMass
-from beamdyn.scene.mount import RIGHT_ANGLE, Mount
+from beamdyn.scene.mount import RIGHT_ANGLE, ROUNDED_ANGLE, Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.inputs import SCALE
@@ -177,7 +177,7 @@ class SimilarDesigns(FieldsOnly):
     @property
     def axial(self) -> np.ndarray:
         """Distance of the root from the axis of rotation against the direction of the beam [m], (N,)."""
-        return self._radius * _cos(self._of_mount("setting_angle"))
+        return self._radius * _cos(self._of_mount("setting_angle"), ROUNDED_ANGLE)
 
     @cached_property
     def quantities(self) -> dict[str, np.ndarray]:
@@ -217,7 +217,7 @@ class SimilarDesigns(FieldsOnly):
     @cached_property
     def across(self) -> np.ndarray:
         """Acceleration of the root across the beam per squared speed [m] along e1 and e2, (N, planes)."""
-        size = self._radius * _cos(self._of_mount("setting_angle") - math.pi / 2)
+        size = self._radius * _cos(self._of_mount("setting_angle") - math.pi / 2, ROUNDED_ANGLE)
         angle = self._of_mount("bending_angle")
         each = (_cos(angle), -_cos(angle - math.pi / 2))[: self._planes]
         return size[:, None] * np.stack(each, axis=1)
@@ -374,9 +374,10 @@ def _axial_force(scene: Scene) -> np.ndarray:
 # Interpolation --------------------------------------------------------------------------------------
 
 
-def _cos(angle: np.ndarray) -> np.ndarray:
+def _cos(angle: np.ndarray, least: float = RIGHT_ANGLE) -> np.ndarray:
+    """Cosines of angles [rad], 0 where they are smaller than the least."""
     c = np.cos(angle)
-    return np.where(np.abs(c) < RIGHT_ANGLE, 0.0, c)
+    return np.where(np.abs(c) < least, 0.0, c)
 
 
 def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
