@@ -55,7 +55,7 @@ def estimate_record_error(system: ModalSystem, segment: RecordSegment, outputs: 
         local, delta, between = _check(system, segment, chosen, outputs)
         added = total_of_local_errors(local, delta, represented)
         if across:  # what samples inside a step change in its load adds up by chance
-            added = np.maximum(added, np.sqrt(represented) * local)
+            added = np.maximum(added, np.sqrt(represented) * local.mean(axis=0))
         total += added
         unresolved |= delta > UNRESOLVED_PHASE
         interpolation = max(interpolation, between)
@@ -75,12 +75,12 @@ def _find_worst(system: ModalSystem, steps: RecordSteps) -> np.ndarray:
 def _check(
     system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Mean local error and largest phase error of each coordinate, and largest error of the quantity."""
+    """Local errors and largest phase error of each coordinate, and largest error of the quantity."""
     batches = np.array_split(chosen, -(-int(segment.steps.counts[chosen].sum()) // _BATCH))
     local, delta, between = zip(
         *(_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)), strict=True
     )
-    return np.concatenate(local).mean(axis=0), np.max(delta, axis=0), max(between)
+    return np.concatenate(local), np.max(delta, axis=0), max(between)
 
 
 def _check_batch(

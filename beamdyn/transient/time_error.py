@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import Legendre
 
 from beamdyn.transient.gauss import Segment, StepMaps, interpolate, solve_steps, tableau
 from beamdyn.transient.system import ModalSystem
@@ -14,6 +15,7 @@ from beamdyn.transient.trajectory import magnitude
 STAGES = 8  # of the Gauss collocation that is checked
 ERROR_ORDER = 2 * STAGES  # of its error, in the step size
 _MOST_CHECKED = 32  # steps of a segment at which the local error is measured
+_ROUGHEST = 2  # more of them for each coordinate, where the interpolation error is largest
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
@@ -52,7 +54,7 @@ class CheckedSteps:
     def of_segment(cls, segment: Segment) -> CheckedSteps:
         """Select the checked steps of a segment."""
         steps = len(segment.acceleration)
-        chosen = choose_checked_steps(steps)
+        chosen = np.union1d(choose_checked_steps(steps), _find_roughest(segment.acceleration))
         starts = segment.start + segment.h * chosen
         ends = segment.state[chosen + 1, 1:]
         return cls(starts, segment.h, steps, segment.state[chosen], ends, segment.acceleration[chosen])
@@ -63,6 +65,17 @@ def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
     if steps <= most:
         return np.arange(steps)
     return np.unique((steps * (_GOLDEN * np.arange(most) % 1)).astype(int))
+
+
+def _find_roughest(acceleration: np.ndarray) -> np.ndarray:
+    """Indices of the steps in which the polynomial through the accelerations (k, s, n) converges worst.
+
+    The last coefficient of its Legendre series is in proportion to the interpolation error.
+    """
+    stages = acceleration.shape[1]
+    c, b = tableau(stages).c, tableau(stages).b
+    last = np.abs(np.einsum("s,ksn->kn", b * Legendre.basis(stages - 1)(2 * c - 1), acceleration))
+    return np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
 
 
 @dataclass(frozen=True)
@@ -163,20 +176,24 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
-    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.
+    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.  What the
+    stiffness varies within a step, such as on a wavy road, turns the error of one mode into that of another.
     """
     check = CheckedSteps.of_segment(segment)
-    maps, finer = _maps_of(system, check)
-    local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies).mean(axis=0)
+    maps, finer, K = _maps_of(system, check)
+    local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies)
     delta = phase_errors(finer.step - maps.step, frequencies)
     accelerations = check.acceleration, (finer.acceleration @ check.state[:, None, :, None])[..., 0]
     q = [interpolate(check.h, check.state, a, INTERPOLATION_POINTS)[0] for a in accelerations]
     total = total_of_local_errors(local, delta, check.steps)
+    coupling = np.ptp(K, axis=1).max(axis=0) / 2
+    np.fill_diagonal(coupling, 0.0)
+    total = total + coupling @ total / frequencies**2
     return SegmentError(total, (q[0] - q[1]).reshape(-1, system.size), delta > UNRESOLVED_PHASE)
 
 
-def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMaps]:
-    """Maps of the checked steps, and those of two more stages; all nodes are evaluated at once."""
+def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMaps, np.ndarray]:
+    """Maps of the checked steps, those of two more stages, and the stiffness (k, nodes, n, n) at all nodes."""
     tables = tableau(STAGES), tableau(STAGES + 2)
     nodes = np.concatenate([table.c for table in tables])
     C, K, f = system.coefficients(check.starts[:, None] + check.h * nodes)
@@ -185,7 +202,7 @@ def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMa
         solve_steps(None if C is None else C[:, part], K[:, part], f[:, part], check.h, table)
         for part, table in zip((own, more), tables, strict=True)
     )
-    return next(found), next(found)
+    return next(found), next(found), K
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
@@ -194,8 +211,12 @@ def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
 
 
 def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Error of each coordinate after some steps, from the mean local and the largest phase error (n,)."""
-    return np.minimum(steps, 2 / np.maximum(delta, 1e-30)) * local
+    """Error of each coordinate after some steps, from local errors (k, n) and the largest phase error (n,).
+
+    It is at most the sum of all local errors, and at most what the largest add up to until the phase is lost.
+    """
+    until_lost = 2 / np.maximum(delta, 1e-30)  # steps
+    return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))
 
 
 def local_errors(
