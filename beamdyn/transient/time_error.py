@@ -193,7 +193,7 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMaps, np.ndarray]:
-    """Maps of the checked steps, those of two more stages, and the stiffness (k, nodes, n, n) at all nodes."""
+    """Maps of the checked steps, those of two more stages, and stiffness (k, nodes, n, n) at all nodes."""
     tables = tableau(STAGES), tableau(STAGES + 2)
     nodes = np.concatenate([table.c for table in tables])
     C, K, f = system.coefficients(check.starts[:, None] + check.h * nodes)

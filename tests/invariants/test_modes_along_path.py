@@ -9,7 +9,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
-from benchmarks.stated_transient_errors import random_wave_run
+from benchmarks.stated_transient_errors import find_time_error, random_wave_run
 
 TILTED = replace(HARVESTER, mount=bd.Mount(0.215, 0.3), motion=bd.SpinUp(90.0, duration=0.2))
 OUTWARD = replace(HARVESTER, mount=bd.Mount(0.0, math.pi), gravity=9.81)
@@ -89,3 +89,11 @@ def test_coupling_of_modes_that_the_mean_of_a_stretch_lacks_is_found(number, mod
     assert run.mode_error * run.largest / 2 == pytest.approx(
         run.distance_from(run.request.run_refined()), rel=0.15
     )
+
+
+def test_time_error_counts_what_a_road_turns_from_one_mode_into_another():
+    """The road's wave is near the fifth mode, whose error it turns into 30 times the first mode's own."""
+    given = random_wave_run(np.random.default_rng([7, 108])) | {"modes": 5, "tolerance": 1e-4}
+    run = bd.simulate(**given)
+    t = np.linspace(0, given["t_end"], 2000)
+    assert find_time_error(run, t) < run.time_error < 100 * find_time_error(run, t)
