@@ -191,7 +191,7 @@ def find_error_by_twice_the_modes(run: Transient, t: np.ndarray) -> float:
     """The same by a run with twice the modes, at least four, at the slowest and the fastest speed [m]."""
     ends = find_speed_range(run.request.motion, run.path.end)
     modes = max(_MANY // 2, 2 * (run.request.basis.modes or 0))
-    return _distance_with(run, ModalBasis(modes, ends), bd.Ritz(_FUNCTIONS // 2), t)
+    return _distance_with(run, ModalBasis(modes, ends), bd.Ritz(max(_FUNCTIONS // 2, 2 * modes)), t)
 
 
 def _distance_with(run: Transient, basis: ModalBasis, discretization: bd.Ritz, t: np.ndarray) -> float:
