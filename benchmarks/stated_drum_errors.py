@@ -1,7 +1,7 @@
 """Whether the stated errors of drum brakes, duo-servo brakes and stops cover the true ones.
 
 Run: python -m benchmarks.stated_drum_errors [--drums N].  Random brakes down to a margin to self-locking of
-1e-12, and trucks down to as little beside never stopping, against closed forms to 40 digits.
+1e-12, and trucks that drive either way down to 1e-9 beside never stopping, against closed forms to 40 digits.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from brakes import drum, forklift
 
 SEED = 12
 LEAST_MARGIN = 1.001e-12
+LEAST_MARGIN_OF_STOPS = 1.1e-9
 _LEAST = 1e-17  # true error below which it counts as this much: a double holds no less
 
 
@@ -30,8 +31,8 @@ class Errors(NamedTuple):
     true: float
 
 
-def _margin(rng: np.random.Generator) -> float:
-    return 10 ** rng.uniform(np.log10(LEAST_MARGIN), -0.05)
+def _margin(rng: np.random.Generator, least: float = LEAST_MARGIN) -> float:
+    return 10 ** rng.uniform(np.log10(least), -0.05)
 
 
 def _compared(found: object, exact: Mapping[str, Any], scale: mpf | None = None) -> Errors:
@@ -120,7 +121,7 @@ def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
 
 
 def errors_of_stop(rng: np.random.Generator) -> Errors:
-    """Errors of the stop of a truck, on a slope that is nearly too steep for its brakes."""
+    """Errors of the stop of a truck, backwards or forwards, on a slope nearly too steep for its brakes."""
     size = 10 ** rng.uniform(-2, 2)
     truck = forklift.Truck(
         5950,
@@ -130,10 +131,15 @@ def errors_of_stop(rng: np.random.Generator) -> Errors:
         front_wheel_radius=0.2 * size,
         wheelbase=size,
     )
-    mu, steepness = rng.uniform(0.3, 1), 1 - _margin(rng)
     (a, y), L = truck.cg, truck.wheelbase
-    steepest = np.arctan(mu * (L - a) / (L + mu * (y + truck.front_wheel_radius)))
-    conditions = forklift.StopConditions(steepest * steepness, rng.uniform(1, 20), mu, 0.5, rng.uniform(0, 1))
+    h, direction = y + truck.front_wheel_radius, "forward" if rng.random() < 0.5 else "reverse"
+    mu, steepness = rng.uniform(0.3, 1), 1 - _margin(rng, LEAST_MARGIN_OF_STOPS)
+    if direction == "forward":
+        mu, h = min(mu, 0.99 * a / h), -h  # from a / h on, braking overturns it
+    slope = steepness * np.arctan(mu * (L - a) / (L + mu * h))
+    conditions = forklift.StopConditions(
+        slope, rng.uniform(1, 20), mu, 0.5, rng.uniform(0, 1), direction=direction
+    )
     return _compared(forklift.stop(truck, conditions), digits.exact_stop(truck, conditions))
 
 

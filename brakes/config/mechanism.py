@@ -157,7 +157,7 @@ class MechanismInput(CoreSection):
             raise InvalidInput("run.friction", run.friction, bound)
         rubs = made.friction or "friction" in run.model_fields_set  # which may be 0 in a sweep
         if run.driver is not None and run.travel is None and not rubs:
-            raise MissingValue("run.travel", None, "give the travel of the driver")
+            raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
 
     def _with_friction(self, joints: Sequence[Joint]) -> tuple[Joint, ...]:
         """The joints with the friction of [run] in the pins that have none of their own."""

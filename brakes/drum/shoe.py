@@ -249,7 +249,7 @@ class SlidesOrLocks(Result):
 def _say_locked(friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
     return (
         f"locked{where}: friction {_say_range(friction)} is at or past self-locking, {_say_range(locking)}; "
-        "the shoe grips by itself, and no torque follows from the force"
+        "the shoe grips by itself, and its torque does not follow from what presses it"
     )
 
 

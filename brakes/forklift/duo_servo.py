@@ -159,13 +159,13 @@ class DuoServo:
         ValueError
             If the clearance is missing, or as for `move_shoes`.
         """
+        return self.levers_and_error(clearance)[0]
+
+    def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
+        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
-        return self.move_shoes(clearance).levers
-
-    def lever_error(self, clearance: Numbers | None = None) -> Numbers:
-        """Bound of the error of the lever arms over their size, and of their angles [rad]."""
-        return self.move_shoes(np.nan if clearance is None else clearance).lever_error()
+        return self.move_shoes(clearance).levers_and_error()
 
     def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
         """Position [m] of a piston whose face passes through a point of the right side."""
@@ -314,13 +314,15 @@ class ShoeMotion(Result):
         height = brake.face_tilt + np.arctan2(self.right_tip[..., 1], self.right_tip[..., 0])
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
-    def lever_error(self, clearance: None = None) -> Numbers:
-        """Bound of the error of the lever arms over their size, and of their angles [rad]."""
-        return self.error * self.geometry.drum_radius / np.minimum(self.levers.a1, self.levers.a2)
-
     def find_levers(self, clearance: None = None) -> Levers:
         """The lever arms at the end, for `internal_forces`: they belong to one clearance."""
         return self.levers
+
+    def levers_and_error(self, clearance: None = None) -> tuple[Levers, Numbers]:
+        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
+        return self.levers, self.error * self.geometry.drum_radius / np.minimum(
+            self.levers.a1, self.levers.a2
+        )
 
     @property
     def residual(self) -> Numbers:

@@ -39,12 +39,8 @@ _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction tha
 class Geometry(Protocol):
     """A brake with lever arms at a clearance: a `DuoServo`; `ShoeMotion` and `Levers` take no clearance."""
 
-    def find_levers(self, clearance: Any = None) -> Levers:
-        """Find arms and directions at the end of the shoes' motion."""
-        ...
-
-    def lever_error(self, clearance: Any = None) -> Numbers:
-        """Bound of the error of the arms over their size, and of the angles [rad]."""
+    def levers_and_error(self, clearance: Any = None) -> tuple[Levers, Numbers]:
+        """Arms and directions at the end of the shoes' motion; bound of their error, over size or in rad."""
         ...
 
 
@@ -198,15 +194,15 @@ def internal_forces(
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
-    if not hasattr(geometry, "find_levers"):
+    if not hasattr(geometry, "levers_and_error"):
         raise InvalidValue("geometry", geometry, "give a DuoServo or Levers")
-    levers = geometry.find_levers(clearance)
+    levers, lever_error = geometry.levers_and_error(clearance)
     P_T = positive("piston_force", piston_force, "N")
     T = None if torque is None else positive("torque", torque, "N m")
     mu = None if friction is None else positive("friction", friction)
     shapes = {"piston_force": P_T, "torque": T, "friction": mu, "levers": levers.phi1 * levers.a1 * levers.b2}
     together(**{name: value for name, value in shapes.items() if value is not None})
-    rounding = 4 * ROUNDING + geometry.lever_error(clearance)
+    rounding = 4 * ROUNDING + lever_error
     if T is None:
         return _solve_from_friction(levers, P_T, mu, rounding)
     if mu is not None:

@@ -93,10 +93,6 @@ class Levers:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
 
-    def lever_error(self, clearance: None = None) -> float:
-        """Error of arms over their size, and of angles [rad]: none, as they are given."""
-        return 0.0
-
     def find_levers(self, clearance: None = None) -> Levers:
         """These levers: they belong to one position of the brake.
 
@@ -108,3 +104,7 @@ class Levers:
         if clearance is not None:
             raise ValueError("clearance: lever arms belong to one position; give it with a DuoServo geometry")
         return self
+
+    def levers_and_error(self, clearance: None = None) -> tuple[Levers, float]:
+        """These levers, and the error of their arms and angles: none, as they are given."""
+        return self.find_levers(clearance), 0.0

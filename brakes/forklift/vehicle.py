@@ -222,7 +222,8 @@ class Stop(Result):
     stops : ndarray of bool
         Whether the truck comes to rest.
     status : str or ndarray of str
-        ``"stops"``, ``"stops in the rise time"`` or ``"never stops"``.
+        ``"stops"``, ``"stops in the rise time"``, ``"never stops"``, or ``"too near to decide"``: the slope
+        is the steepest that the brakes hold, up to 1e-9 of its pull or rounding.
     acceleration : ndarray
         Down the slope with the full brake force, A [m/s2]; negative when the truck slows down.
     distance, time : ndarray
@@ -291,11 +292,10 @@ class Stop(Result):
 
         The rounding of inputs and sums, over the margin to never stopping.
         """
-        truck, c = self.truck, self.conditions
-        size = (1 + c.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
+        c = self.conditions
         pull = c.gravity * np.abs(np.sin(c.slope))
         slowing = np.where(self.stops, np.abs(self.acceleration), np.inf)
-        return (ROUNDING * (4 + size) * (3 + 2 * pull / slowing))[()]
+        return (_rounding(self.truck, c) * (3 + 2 * pull / slowing))[()]
 
     @property
     def message(self) -> str:
@@ -308,14 +308,18 @@ class Stop(Result):
     def messages_of_cases(self, count: int) -> dict[int, str]:
         """The message of each case that does not stop, of as many cases, by its row."""
         each = np.broadcast_to(self.status, (count,)).tolist()
-        return {i: _SENTENCES[status] for i, status in enumerate(each) if status == "never stops"}
+        return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
+
+_EDGE = 1e-9  # deceleration, over the pull of the slope, that cannot be told from none
 
 _SENTENCES = {
     "stops": "the truck stops",
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
     "less slope, more friction, or another load",
+    "too near to decide": "does not stop: the slope is too near the steepest that the locked front wheels "
+    "hold to decide; less slope, more friction, or another load",
 }
 
 
@@ -361,9 +365,11 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case)
     slide = _slide(truck, beta, mu, g, conditions.sense)
     phases = _brake(V, slide.acceleration, t2)
-    stops = slide.acceleration < -LEAST_MARGIN * g * np.abs(np.sin(beta))
+    undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
+    stops, near = slide.acceleration < -undecided, np.abs(slide.acceleration) <= undecided
     braking = np.where(stops, phases.braking_distance, np.inf)
-    status = np.select([~stops, phases.in_rise], ["never stops", "stops in the rise time"], default="stops")
+    kinds = ["too near to decide", "never stops", "stops in the rise time"]
+    status = np.select([near, ~stops, phases.in_rise], kinds, default="stops")
     return Stop(
         truck=truck,
         conditions=conditions,
@@ -383,6 +389,12 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
         standing_front_load=slide.standing_front_load[()],
         standing_rear_load=slide.standing_rear_load[()],
     )
+
+
+def _rounding(truck: Truck, conditions: StopConditions) -> Numbers:
+    """Bound of the error of the deceleration, over what it is the difference of."""
+    size = (1 + conditions.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
+    return ROUNDING * (4 + size)
 
 
 def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:

@@ -358,8 +358,11 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
             turning = find_zero(system, nodes[-1], node, lambda n: n.rate[k])
             if (target - turning.value[k]) * sense > 0:
                 reached = (turning.value[k] - start.value[k]) * _units(system)[k]
+                beside = (
+                    "just short of it, " if f"{reached:.4g}" == f"{value * _units(system)[k]:.4g}" else ""
+                )
                 raise OutOfReachError(
-                    f"driver {driver!r} cannot reach {wanted}: it turns back at "
+                    f"driver {driver!r} cannot reach {wanted}: it turns back {beside}at "
                     f"{_amount(mechanism, driver, reached)} (toggle position)",
                     "stay below it, drive another load, or follow the motion past it with trace",
                 )

@@ -18,9 +18,9 @@ LEVERS = forklift.Levers(0.15875, 0.1236, 0.0788, 0.12211, 0.12211, 0.344, 0.344
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_stated_errors_cover_those_against_forty_digits(kind: str):
-    """A hundred of the thousand of the benchmark, down to margins of 1e-12."""
+    """A hundred of the thousand of the benchmark, down to margins of 1e-12; of stops to 1e-9."""
     found = measure(kind, 100)
-    assert max(each.true for each in found) > 1e-6
+    assert max(each.true for each in found) > (1e-8 if kind == "stops" else 1e-6)
     assert all(each.true <= each.stated for each in found)
     assert np.median([each.stated / each.true for each in found]) < 100
 
@@ -39,6 +39,32 @@ def test_a_change_in_the_thirteenth_digit_does_not_unlock_a_brake(change: float)
     )
     assert at.status == "locked" and np.isnan(at.error)
     assert beside.status == "equilibrium" and beside.error > 1e-5
+
+
+@pytest.mark.parametrize("direction", ["reverse", "forward"])
+def test_a_change_in_the_thirteenth_digit_does_not_stop_a_truck(direction: str):
+    """On the steepest slope that its brakes hold, rounding would say whether it stops, in 1e12 m."""
+    truck = forklift.Truck(5950.0, (1.049, 0.359), 0.0, (0.0, 0.0), 0.40, 1.89)
+    (a, y), L = truck.cg, truck.wheelbase
+    h = (y + truck.front_wheel_radius) * (1 if direction == "reverse" else -1)
+    limit = np.arctan(0.7 * (L - a) / (L + 0.7 * h))
+    beside = np.array([*np.arange(-3, 4) * 1e-13, -1e-10, 1e-10])
+    rest = {"speed": 5.0, "friction": 0.7, "reaction_time": 0.5, "rise_time": 0.3, "direction": direction}
+    near = forklift.stop(truck, forklift.StopConditions(limit * (1 + beside), **rest))
+    assert set(near.status) == {"too near to decide"} and not near.stops.any()
+    assert np.isinf(near.distance).all() and len(near.messages_of_cases(9)) == 9
+    sides = forklift.stop(truck, forklift.StopConditions(limit * (1 + np.array([-1e-8, 1e-8])), **rest))
+    assert sides.status.tolist() == ["stops", "never stops"] and 0 < sides.error[0] < 1e-4
+
+
+@pytest.mark.parametrize("digit", range(-3, 4))
+def test_command_ends_alike_on_either_side_of_the_steepest_slope(digit: int, capsys, tmp_path):
+    text = Path("examples/forklift.toml").read_text().replace('"3500 kg"', '"0 kg"')
+    limit = np.arctan(0.7 * (1.89 - 1.049) / (1.89 + 0.7 * 0.759)) * (1 + digit * 1e-13)
+    file = tmp_path / "truck.toml"
+    file.write_text(text.replace('"0.3019 rad"', f'"{float(limit)!r} rad"'))
+    assert main(["forklift", str(file)]) == 1
+    assert "too near the steepest" in " ".join(capsys.readouterr().err.split())
 
 
 def test_commands_state_the_error_near_self_locking(capsys, tmp_path):

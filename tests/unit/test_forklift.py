@@ -191,6 +191,13 @@ def test_sweep_gives_each_case():
     assert stop(slope=np.array([0.0, 0.1])).message == "every case stops"
 
 
+def test_shoes_are_moved_once(monkeypatch):
+    moved, move = [], forklift.DuoServo.move_shoes
+    monkeypatch.setattr(forklift.DuoServo, "move_shoes", lambda *given: moved.append(given) or move(*given))
+    forklift.internal_forces(forklift.BENDIX_12_5, torque=11000.0, piston_force=11650.0, clearance=0.0106)
+    assert len(moved) == 1
+
+
 # Forces -----------------------------------------------------------------------------------------------
 
 
