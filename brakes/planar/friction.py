@@ -22,7 +22,8 @@ from brakes.planar.statics import (
 from brakes.planar.system import System
 
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
-_SETTLED = 1e-9  # relative size of Newton's last step; forces past its inverse count as jammed
+_SETTLED = 1e-6  # relative size of Newton's last step, above its rounding where friction nearly jams
+_JAMMED = 1e9  # forces, over those without friction, that count as jammed
 _TINY = np.finfo(float).tiny
 _UNPRESSED = 1e-7  # force, over the largest, up to which a joint counts as pressing with none
 _NOTHING = 1e-12  # force, over the largest, whose direction is rounding
@@ -142,6 +143,9 @@ def _branch(
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
+    jammed |= kept <= rank_tolerance(system.rounding)  # as near as this, rounding would decide
+    reversed_ &= ~jammed
+    multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     name = mechanism.loads[load - system.constraints].name
     jams &= ~jammed
@@ -268,7 +272,7 @@ def _newton(
             if size.max() < 1e-13:
                 break
         jammed |= size > _SETTLED
-    jammed |= np.abs(multiplier).max(axis=1) > np.abs(start).max(axis=1) / _SETTLED
+    jammed |= np.abs(multiplier).max(axis=1) > _JAMMED * np.abs(start).max(axis=1)
     _friction(system, balance, multiplier, full)
     return multiplier, jammed
 

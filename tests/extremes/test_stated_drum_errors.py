@@ -75,3 +75,9 @@ def test_commands_state_the_error_near_self_locking(capsys, tmp_path):
     assert main(["drum", str(file), "--json", str(saved)]) == 0
     assert "bound of the relative error" in capsys.readouterr().out
     assert 1e-7 < json.loads(saved.read_text())["error"] < 1e-4
+
+
+def test_locked_shoe_that_is_given_a_pressure_does_not_speak_of_a_force():
+    limit = drum.shoe_torque(SHOE, friction=0.3, force=1.0).locking_friction
+    locked = drum.shoe_torque(SHOE, friction=2 * limit, peak_pressure=1e6)
+    assert locked.status == "locked" and "from the force" not in locked.message

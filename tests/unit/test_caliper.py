@@ -445,6 +445,7 @@ def test_names_are_listed(capsys):
     ("old", "new", "words"),
     [
         ('travel = "14 mm" ', 'travel = "30 mm" ', "cannot reach 30 mm: it turns back at 14.25 mm"),
+        ('travel = "14 mm" ', 'travel = "14.2502 mm" ', "it turns back just short of it, at 14.25 mm"),
         ('[[bar]]\nname = "CD"\nbody = "handle"\nat = "C"\nto = "D"\n', "", "mobility 2"),
         (
             '[run]\ndriver = "hand"\ntravel = "14 mm"',

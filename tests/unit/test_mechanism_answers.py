@@ -143,7 +143,7 @@ def test_friction_is_swept_and_its_forces_are_results():
         (CLAMP.replace("[run]", "[run]\nfriction = 0.5"), ["run.friction = 0.5", "pin 'A'", "no radius"]),
         (BLOCK_BRAKE.replace("friction = 0.4", "friction = 0").replace('driver = "torque"', "friction = 0.2"),
          ["run.friction", "radius"]),
-        (CLAMP.replace('travel = "14 mm"', "#"), ["run.travel", "give the travel of the driver"]),
+        (CLAMP.replace('travel = "14 mm"', "#"), ["run.travel", "travel of the driver, or leave out driver"]),
         (CLAMP.replace("[run]", "[run]\nfriction = 70"), ["run.friction", "at most 10"]),
     ],
 )  # fmt: skip
