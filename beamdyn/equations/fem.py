@@ -13,7 +13,7 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 from beamdyn.common.checks import count, one_of, set_fields
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import Cells
-from beamdyn.equations.discretization import RootConditions
+from beamdyn.equations.discretization import HINGED, RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
@@ -172,9 +172,7 @@ class FemSpaces(FieldsOnly):
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
-        first, second = self.functions(rows), self.functions(columns)
-        matrix = _PRODUCTS[orders].assemble(second.basis, first.basis, weight=first.weights(weight))
-        return matrix.toarray()[np.ix_(first.free, second.free)]
+        return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
     def shares_functions(self, other: FemSpaces) -> bool:
         """Whether the nodes are the same."""
@@ -184,6 +182,9 @@ class FemSpaces(FieldsOnly):
 @dataclass(frozen=True)
 class FemSpace(FieldsOnly):
     """Finite-element functions without those that the conditions at the root exclude.
+
+    A slope at a hinged root is that of a turn of the whole beam, x/L, in place of a bend of the first element:
+    it has no curvature, not even by rounding, beside which a soft spring would be lost.
 
     Parameters
     ----------
@@ -214,22 +215,38 @@ class FemSpace(FieldsOnly):
         return self.basis.N - self.conditions.held
 
     @property
+    def turns(self) -> bool:
+        """Whether the first function is a turn about the root."""
+        return self.conditions == HINGED
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Quadrature points x/L on each element."""
+        return np.asarray(self.basis.global_coordinates())[0]
+
+    @property
     def coarse(self) -> None:
         """None: each function of a coarser mesh is a sum of several."""
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:
         """Evaluate a property at the quadrature points."""
-        return weight(np.asarray(self.basis.global_coordinates())[0])
+        return weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate the weight times the `order`-th derivatives of functions i and j."""
-        matrix = _PRODUCTS[order, order].assemble(self.basis, weight=self.weights(weight))
-        return matrix.toarray()[np.ix_(self.free, self.free)]
+        return _integrate(self, self, weight, (order, order))
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
         """Integrate the weight times the `order`-th derivative of function i."""
-        return _LOADS[order].assemble(self.basis, weight=self.weights(weight))[self.free]
+        return self.integrate(self.weights(weight), order)
+
+    def integrate(self, values: np.ndarray, order: int) -> np.ndarray:
+        """Integrate values at the quadrature points times the `order`-th derivative of function i."""
+        vector = _LOADS[order].assemble(self.basis, weight=values)[self.free]
+        if self.turns:
+            vector[0] = (self.basis.dx * values * _turn(self.points, order)).sum()
+        return vector
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives at the tip."""
@@ -246,7 +263,27 @@ class FemSpace(FieldsOnly):
             field = element.gbasis(mapping, local, k, tind=cells)[0]
             derivative: Any = field if order == 0 else (field.grad, field.hess)[order - 1]
             values[self.basis.element_dofs[k, cells], np.arange(x.size)] = np.reshape(derivative, x.size)
-        return values[self.free]
+        kept = values[self.free]
+        if self.turns:
+            kept[0] = _turn(x[0], order)
+        return kept
+
+
+def _turn(xi: np.ndarray, order: int) -> np.ndarray:
+    """Evaluate the `order`-th derivative of a turn about the root, x/L."""
+    return (xi, np.ones_like(xi), np.zeros_like(xi))[order]
+
+
+def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
+    """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+    values = rows.weights(weight)
+    assembled = _PRODUCTS[orders].assemble(columns.basis, rows.basis, weight=values)
+    matrix = assembled.toarray()[np.ix_(rows.free, columns.free)]
+    if rows.turns:
+        matrix[0] = columns.integrate(values * _turn(rows.points, orders[0]), orders[1])
+    if columns.turns:
+        matrix[:, 0] = rows.integrate(values * _turn(columns.points, orders[1]), orders[0])
+    return matrix
 
 
 # Weak forms.  Their arguments are scikit-fem's, which has no types for them.
