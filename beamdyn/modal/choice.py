@@ -143,19 +143,11 @@ def _choose(
             if found is None:
                 raise
             break
-        if found is not None and _loses_digits(found[1], at_ends):
-            break
         found = finer, at_ends
         if at_ends.meet(target if finer.discretization.converges_regularly else max(target, MOMENTS_TARGET)):
             break
     assert found is not None
     return found
-
-
-def _loses_digits(before: EstimatedModes | None, finer: EstimatedModes) -> bool:
-    """Whether elements are so many that the rounding of their integrals exceeds a root spring's stiffness."""
-    of_elements = finer.model.discretization.rounding > 0 and finer.model.solver.pencil.shift > 0
-    return of_elements and before is not None and before.error.max() < finer.error.max()
 
 
 def least_target(discretization: DiscretizationChoice) -> float:
@@ -241,8 +233,7 @@ def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each:
     )  # here, because scikit-fem is slow to import
 
     segments = _count_segments(scene)
-    on_springs = min(scene.mount.root_stiffnesses) < np.inf  # beside soft ones, few elements keep more digits
-    least = min(16 * segments, MOST_REFINED) if cheapest or on_springs else 80
+    least = min(16 * segments, MOST_REFINED) if cheapest else 80
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 

@@ -96,14 +96,15 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation: removes the leading term of the error
-        squared = squared + distance / (2**order - 1)
+        within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)  # of one: no distance
+        squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         if order is not None:
             before = coarse**2 - _coarsest_squares(model, speeds, compared)
-            noise = (fine.rounding[:, :compared] + integration_error(model, squared)) * np.abs(squared)
+            noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
             noise += _rounding_of_elements(model, fine.vector[:, :, :compared])
             least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
             left = extrapolation_error(distance, before, noise, least)
@@ -111,7 +112,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
             truncation = _not_below_lower_modes(truncation, np.abs(squared) / model.solver.lowest_at_rest)
         else:
             truncation = _ritz_error_of(model, fine, distance, squared)
-    error = truncation + _ROUNDING * fine.rounding[:, :compared] + integration_error(model, squared)
+    error = truncation + _ROUNDING * fine.rounding[:, :compared] + model.discretization.rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     neutral = (s == 0) & _is_free_to_turn(model, speeds)[:, None]
     resolved |= neutral
@@ -234,18 +235,6 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
     if not discretization.converges_regularly:
         return _IRREGULAR
     return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
-
-
-def integration_error(model: Model, squared: np.ndarray) -> float | np.ndarray:
-    """Relative error of eigenvalues by rounding of the integrals, which is that of a clamped beam's.
-
-    A root that turns on soft springs has lower frequencies of the same absolute error.
-    """
-    rounding, shift = model.discretization.rounding, model.solver.pencil.shift
-    if not (rounding and shift):
-        return rounding
-    size = np.abs(squared)
-    return rounding * (shift + size) / np.where(size == 0, 1.0, size)
 
 
 def _is_free_to_turn(model: Model, speeds: np.ndarray) -> np.ndarray:

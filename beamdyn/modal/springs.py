@@ -16,6 +16,7 @@ from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
 _GRADED = 1e-6  # lowest eigenvalue of a stiffness of unit diagonal, above which it is well-conditioned
+_GRADED_AT_REST = 1e-12  # the same, above which it has digits left
 _UNDAMPED = 1e-6  # damping of a turn over the frequency of a clamped beam: a root of rounding
 _SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
 
@@ -54,12 +55,21 @@ def remove_shift(
     quotient = np.einsum("snk,snk->sk", v, K @ v)
     count = max(1.0, len(K[0]) / ROUNDING_SIZE)
     lost = count * BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
-    lost += pencil.shift * (count * BACKWARD) ** 2  # the quotient has the error of the vector squared
+    # The quotient has the error of the vector squared.
+    lost += pencil.shift * (count * BACKWARD + _EPS * _graded_condition(pencil)) ** 2
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
+
+
+def _graded_condition(pencil: SteadyPencil) -> float:
+    """Condition number of the shifted stiffness at rest with a unit diagonal: large with many elements."""
+    K = pencil.K0 + pencil.shift * pencil.M
+    scale = 1 / np.sqrt(np.diag(K))
+    values = np.linalg.eigvalsh(scale[:, None] * K * scale)
+    return float(values[-1] / max(values[0], _EPS))
 
 
 def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -138,11 +148,13 @@ def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
     K0, K2, size = (
         scale[:, None] * A * scale for A in (pencil.K0, pencil.K2, np.abs(pencil.K2) + np.abs(pencil.M))
     )
-    if np.linalg.eigvalsh(K0)[0] < _GRADED:
+    values = np.linalg.eigvalsh(K0)
+    if values[0] < _GRADED_AT_REST * values[-1]:
         return None
     losses, vectors = scipy.linalg.eigh(-K2, K0)
     loss, v = float(losses[-1]), np.abs(vectors[:, -1])
     lost = 2 * BACKWARD * float(v @ size @ v + np.abs(losses).max())
+    lost += _EPS * float(values[-1] / values[0]) * loss
     return (loss, lost / loss) if loss > lost else (0.0, np.inf)
 
 

@@ -24,12 +24,10 @@ from beamdyn.modal.choice import (
     list_models,
     warn_of_missed_tolerance,
 )
-from beamdyn.modal.eigen import Solver
 from beamdyn.modal.end_layers import split_tip
 from beamdyn.modal.error_estimate import (
     UNRESOLVED,
     extrapolation_error,
-    integration_error,
     is_halved,
 )
 from beamdyn.modal.model import Model
@@ -344,8 +342,8 @@ def _compare(model: Model) -> _Found:
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
     if not 0 < softening < np.inf:  # False for nan, too
         return _Found(model, coarse, np.inf, np.inf, np.inf)
-    rounding, by_springs = solver.critical_rounding, _rounding_on_springs(model)
-    noise = rounding + _rounding_of_integrals(model) + by_springs
+    rounding = solver.critical_rounding
+    noise = rounding + _rounding_of_integrals(model)
     left = abs(distance)
     if order is not None:
         before = coarse_softening - _softening_of_half(coarse)
@@ -353,7 +351,7 @@ def _compare(model: Model) -> _Found:
     error = left / (2 * softening) + noise
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
-    return _Found(model, coarse, float(softening**-0.5), error, rounding + by_springs)
+    return _Found(model, coarse, float(softening**-0.5), error, rounding)
 
 
 def _rounding_of_integrals(model: Model) -> float:
@@ -369,14 +367,6 @@ def _softening_of_half(model: Model) -> float:
     """Softening of a mesh of half the elements; nan where short segments keep it from being that."""
     half = model.coarser.solver
     return half.softening if is_halved(half, model.solver) else np.nan
-
-
-def _rounding_on_springs(model: Model) -> float:
-    """Relative error of the critical speed by the integrals of elements, beside which springs are soft."""
-    if not (model.equations.shift and model.discretization.rounding):
-        return 0.0
-    lowest = Solver(model.equations.steady().undamped()).eigenvalues(np.zeros(1), 1)[0] ** 2
-    return float(np.max(integration_error(model, lowest))) if lowest.all() else np.inf
 
 
 def _halve(model: Model) -> Model:

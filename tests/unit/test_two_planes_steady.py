@@ -292,17 +292,21 @@ def test_the_hinge_in_the_plane_of_rotation_is_named() -> None:
         assert (refusal.value.field, refusal.value.value) == (f"mount.{name}", 0.0)
 
 
-def test_resonances_on_springs_too_soft_for_elements() -> None:
+def test_resonances_by_elements_on_soft_springs() -> None:
     def found(stiffness: float, discretization: Any) -> bd.Crossings:
         mount = bd.Mount(1.0, root_stiffness=stiffness, second_root_stiffness=0.0)
         scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), mount, bd.SteadyRotation(1.0), gravity=9.81)
         return bd.resonance_speeds(scene, 10.0, 2, discretization=discretization)
 
-    by_elements, exact = found(1e-9, "fem"), found(1e-9, "ritz")
+    for stiffness in (1e-9, 1e-13):
+        by_elements, exact = found(stiffness, "fem"), found(stiffness, "ritz")
+        speeds = [c.speed for c in exact]
+        assert [c.speed for c in by_elements] == pytest.approx(speeds, rel=1e-9) and len(exact) == 2
+    by_elements, exact = found(1e-17, "fem"), found(1e-17, "ritz")
     assert [c.speed for c in by_elements] == [c.speed for c in exact] and len(exact) == 2
     assert by_elements.warnings[0].startswith("finite elements do not resolve the springs")
     with pytest.raises(ValueError, match="does not resolve so soft a spring"):
-        found(1e-13, bd.Fem(20))
+        found(1e-24, bd.Fem(20))
 
 
 def test_the_response_of_a_damped_hinge_needs_no_large_basis_at_rest() -> None:
