@@ -183,7 +183,7 @@ class FemSpaces(FieldsOnly):
 class FemSpace(FieldsOnly):
     """Finite-element functions without those that the conditions at the root exclude.
 
-    A slope at a hinged root is that of a turn of the whole beam, x/L, in place of a bend of the first element:
+    A slope at a hinged root is that of a turn of the whole beam, x/L, not of a bend of the first element:
     it has no curvature, not even by rounding, beside which a soft spring would be lost.
 
     Parameters

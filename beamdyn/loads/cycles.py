@@ -21,7 +21,7 @@ from beamdyn.scene.scene import Scene
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TURNING_POINTS = 1e-6  # relative error of an equivalent range by the turning points that are found
+TURNING_POINTS = 1e-6  # error of the values at turning points that are found, over the largest range
 
 
 @dataclass(frozen=True)
@@ -102,16 +102,16 @@ class LoadCycles(Result):
     ) -> tuple[EquivalentRange, ...]:
         """Ranges of equal cycles for several exponents, with their errors by that of the quantity [its unit].
 
-        Each range counted is off by twice the error of the values at most; Minkowski's inequality adds them
-        up.  The turning points add a millionth.
+        Each range counted is off by twice the error of the values at most, which at turning points is larger by
+        a millionth of the largest range; Minkowski's inequality adds them up.
         """
+        at_turn = error + TURNING_POINTS * float(self.ranges.max(initial=0.0))
         found = []
         for m in exponents:
             value = self.equivalent_range(m, cycles)
-            of_values = 2 * error * (float(self.counts.sum()) / cycles) ** (1 / m)
-            of_both = of_values + TURNING_POINTS * value
+            of_range = 2 * at_turn * (float(self.counts.sum()) / cycles) ** (1 / m)
             place = self.quantity, self.component, self.x, self.start, self.end
-            found.append(EquivalentRange(*place, m, cycles, value, of_both))
+            found.append(EquivalentRange(*place, m, cycles, value, of_range))
         return tuple(found)
 
     def plot(self, ax: Axes | None = None) -> Axes:

@@ -145,7 +145,7 @@ class LeftOutEffects:
         where_unknown : callable
             Where the change by an effect of a name is not known; empty if that is where the largest is.
         """
-        limit = LARGE_MODEL_ERROR if tolerance is None else tolerance
+        limit = LARGE_MODEL_ERROR if tolerance is None else max(tolerance, _NEGLIGIBLE)
         at_least = float(self.total_of_known.max(initial=0.0))
         if at_least > limit:
             begin = f"{where and where + ' '}{MODEL_ERROR}, {self._say_total(at_least)}, exceeds"

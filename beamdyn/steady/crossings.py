@@ -151,7 +151,11 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         weaker = f"{sought}; {crossings}, and those of higher order, are weaker and left out"
         if not self.may_peak:
             return f"{weaker}."
-        forced = "it is" if self.unlisted == 1 else f"{self.may_peak} of them are"
+        forced = (
+            "it is"
+            if self.unlisted == 1
+            else f"{self.may_peak} of them {'is' if self.may_peak == 1 else 'are'}"
+        )
         return f"{weaker}: {forced} forced, where the steady response may have a peak."
 
     def plot(self, ax: Axes | None = None) -> Axes:

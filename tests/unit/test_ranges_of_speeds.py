@@ -25,6 +25,12 @@ def test_only_neighbours_make_a_range(selected: list[int], said: str):
     assert list_speeds(SPEEDS, np.isin(SPEEDS, selected)) == said
 
 
+def test_ranges_do_not_depend_on_the_order_of_speeds():
+    shuffled = np.random.default_rng(1).permutation(SPEEDS)
+    for speeds in (SPEEDS[::-1], shuffled):
+        assert list_speeds(speeds, np.isin(speeds, [1, 2, 5])) == "1 to 2 rad/s and 5 rad/s"
+
+
 def test_two_resonances_are_not_a_range_of_speeds():
     """The tip moves far at 53.09 and at 69.80 rad/s, and by 0.1 mm between: undamped, its resonances."""
     scene = bd.load_scene("examples/rolling_harvester.toml")

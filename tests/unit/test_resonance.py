@@ -220,6 +220,15 @@ def test_crossings_that_are_not_listed_are_counted(changes: dict, order: int) ->
     assert f"{found.may_peak} of them are forced, where the steady response may have a peak" in found.extent
 
 
+@pytest.mark.parametrize(
+    ("unlisted", "may_peak", "said"),
+    [(1, 1, "it is forced"), (3, 1, "1 of them is forced"), (3, 2, "2 of them are forced")],
+)
+def test_one_crossing_is_and_several_are_forced(unlisted: int, may_peak: int, said: str) -> None:
+    found = replace(bd.resonance_speeds(ROLLING, 20.0), unlisted=unlisted, may_peak=may_peak)
+    assert f": {said}, where" in found.extent
+
+
 def test_no_crossing_says_what_was_sought() -> None:
     slow = bd.resonance_speeds(ROLLING, 20.0)
     assert len(slow) == slow.unlisted == 0

@@ -305,8 +305,6 @@ def test_resonances_by_elements_on_soft_springs() -> None:
     by_elements, exact = found(1e-17, "fem"), found(1e-17, "ritz")
     assert [c.speed for c in by_elements] == [c.speed for c in exact] and len(exact) == 2
     assert by_elements.warnings[0].startswith("finite elements do not resolve the springs")
-    with pytest.raises(ValueError, match="does not resolve so soft a spring"):
-        found(1e-24, bd.Fem(20))
 
 
 def test_the_response_of_a_damped_hinge_needs_no_large_basis_at_rest() -> None:
