@@ -102,8 +102,8 @@ class LoadCycles(Result):
     ) -> tuple[EquivalentRange, ...]:
         """Ranges of equal cycles for several exponents, with their errors by that of the quantity [its unit].
 
-        Each range counted is off by twice the error of the values at most, which at turning points is larger by
-        a millionth of the largest range; Minkowski's inequality adds them up.
+        Each range counted is off by twice the error of the values at most, which is larger by a millionth
+        of the largest range at turning points; Minkowski's inequality adds them up.
         """
         at_turn = error + TURNING_POINTS * float(self.ranges.max(initial=0.0))
         found = []

@@ -105,7 +105,8 @@ def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
 def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> str:
     """Text of the selected speeds [rad/s], of which there is one: "20 to 35 rad/s and 50 rad/s".
 
-    Neighbours in ascending order make a range; of many ranges the first are named, and how many follow up to which speed.
+    Neighbours in ascending order make a range; of many ranges the first are named, and how many follow up
+    to which speed.
     """
     ascending = np.argsort(speeds, kind="stable")
     speeds, selected = speeds[ascending], selected[ascending]
