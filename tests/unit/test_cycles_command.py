@@ -105,7 +105,8 @@ def test_turning_points_are_found_between_the_samples_of_a_run(exponent):
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).T
     exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
     (found,) = cycles.equivalents([exponent], 1.0, 0.0)
-    assert found.error == pytest.approx(1e-6 * found.range)
+    of_each = 2e-6 * cycles.ranges.max()  # both ends are known to a millionth of the largest range
+    assert found.error == pytest.approx(of_each * cycles.counts.sum() ** (1 / exponent))
     assert abs(found.range - exact.equivalent_range(exponent)) <= found.error
 
 
