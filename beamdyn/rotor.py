@@ -17,7 +17,6 @@ from beamdyn.common.drawing.svg import svg_of
 from beamdyn.common.one_line import number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.rectangle import rectangle_of
 from beamdyn.scene.scene import Scene, check_scene
 
 if TYPE_CHECKING:
@@ -184,10 +183,9 @@ def _places(beam: Beam) -> np.ndarray:
 
 def _sides(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, bool]:
     """Thickness and width (k, 2) [m] of sections, and whether they are known; a strip where they are not."""
-    axial, fibre, edge = beam.axial_stiffness, beam.outer_fibre, beam.second_bending_stiffness
-    if rectangle_of(beam) is None or axial is None or fibre is None or edge is None:
+    if beam.section is None:
         return np.full((len(xi), 2), _UNKNOWN * beam.length), False
-    return np.stack([2 * fibre(xi), np.sqrt(12 * edge(xi) / axial(xi))], axis=1), True
+    return np.stack([beam.section.thickness(xi), beam.section.width(xi)], axis=1), True
 
 
 def _twist(beam: Beam, xi: np.ndarray) -> np.ndarray:

@@ -43,14 +43,14 @@ def answer_spread(
     from beamdyn.common.edge.spread_tables import spread_csv, spread_table
     from beamdyn.common.edge.wording import of_file
     from beamdyn.common.spreading.pictures import spread_figure
-    from beamdyn.spreads.nominal_values import nominal_value
-    from beamdyn.studies.inputs import unit_of
+    from beamdyn.scene.numbers import unit_of
+    from beamdyn.spreads.spread import nominal_value
 
     with at_work("designs") as progress, of_file({"spread": "--spread", "samples": "--samples"}):
         given = parse_spreads(
             inputs,
             spreading.spread,
-            lambda entry: (nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path)),
+            lambda entry: (nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""),
         )
         with in_units_of(given):
             result = spread(

@@ -143,7 +143,7 @@ def study(
 
 def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
     """The speed of the option [rad/s], or that of the scene where one is needed; else None."""
-    from beamdyn.studies.inputs import SPEED
+    from beamdyn.scene.numbers import SPEED
     from beamdyn.studies.questions import KINDS
 
     varied = any(axis.input.path == SPEED for axis in axes)
@@ -207,17 +207,11 @@ def _refusal(result: Study) -> str:
 
 
 def _inputs(scene: Scene) -> list[Input]:
-    """The inputs of scene files that a study varies, each once, those in lists of a scene, and the speed."""
+    """The numbers of a scene that a study varies, as files describe them, and the speed."""
     from beamdyn.common.edge.inputs import Input, Quantity, describe
     from beamdyn.common.edge.varied_inputs import numbers
     from beamdyn.config.scene_inputs import SceneInput
-    from beamdyn.studies.inputs import NAMES, SCALE, SPEED, unit_of
-    from beamdyn.studies.listed_numbers import listed_names
-    from beamdyn.studies.motion_numbers import motion_names
-
-    known = {*NAMES, *motion_names(scene)}
-    by_path = {entry.path: entry for entry in numbers(describe(SceneInput)) if entry.path in known}
-    factors = (name for name in NAMES if name.startswith(SCALE))
+    from beamdyn.scene.numbers import SCALE, paths_of, unit_of
 
     class ByWholeName(Input):
         """An input that the last part of its name alone does not mean: a factor, or one in a list."""
@@ -226,16 +220,12 @@ def _inputs(scene: Scene) -> list[Input]:
         def name(self) -> str:
             return self.path.removeprefix("beam.")
 
-    of_scale = [
-        ByWholeName(name, SceneInput, float, Quantity("", "", _FACTOR), (), False, None) for name in factors
-    ]
-    in_lists = [
-        ByWholeName(name, SceneInput, float, Quantity(unit_of(name), "", name), (), False, None)
-        for name in listed_names(scene)
-    ]
-    of_speed = Quantity("rad/s", "omega", "speed")
-    speed = Input(SPEED, SceneInput, float, of_speed, (), False, None)
-    return [*by_path.values(), *of_scale, *in_lists, speed]
+    def described(path: str) -> Input:
+        quantity = Quantity(unit_of(path) or "", "", _FACTOR if path.startswith(SCALE) else path)
+        return ByWholeName(path, SceneInput, float, quantity, (), False, None)
+
+    known = {entry.path: entry for entry in numbers(describe(SceneInput))}
+    return [known.get(path) or described(path) for path in paths_of(scene)]
 
 
 def _unit_of(axis: Axis) -> tuple[str, float]:

@@ -106,13 +106,14 @@ def _decode_object(content: list[Any]) -> Any:
     """An object with the fields as they were, without the checks and conversions of its construction."""
     name, values = content
     kind = _find_class(name)
-    if {*_fields(kind)} != {*values}:
+    optional = _defaults(kind)
+    if not {*values} <= {*_fields(kind)} <= {*values, *optional}:
         raise ValueError(f"in this version {kind.__name__} has other fields")
     if issubclass(kind, tuple):
         return kind(*(decode(values[name]) for name in _fields(kind)))
     made = object.__new__(kind)
-    for key, item in values.items():
-        object.__setattr__(made, key, decode(item))
+    for key, item in (optional | {key: decode(item) for key, item in values.items()}).items():
+        object.__setattr__(made, key, item)
     return made
 
 
@@ -137,6 +138,12 @@ def _is_known(kind: type) -> bool:
 def _fields(kind: Any) -> tuple[str, ...]:
     named: tuple[str, ...] | None = getattr(kind, "_fields", None)
     return tuple(f.name for f in dataclasses.fields(kind)) if named is None else named
+
+
+def _defaults(kind: Any) -> dict[str, Any]:
+    """Fields of a dataclass that a file of an earlier version may lack, with what stands for them."""
+    every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+    return {f.name: f.default for f in every if f.default is not dataclasses.MISSING and not f.compare}
 
 
 def _name(kind: type) -> str:

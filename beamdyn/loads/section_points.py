@@ -12,7 +12,7 @@ from beamdyn.common.checks import InvalidValue, as_floats, positive, refuse
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
-from beamdyn.scene.rectangle import Rectangle, rectangle_of
+from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
 SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
@@ -74,7 +74,7 @@ def sections_at(
         If the points are not pairs of finite numbers, or lie outside a section, or the modulus is not
         positive.
     """
-    beam, rectangle = scene.modelled_beam, rectangle_of(scene.beam)
+    beam, rectangle = scene.modelled_beam, scene.beam.section
     half = _half_sides(scene.beam, rectangle, stations.beside)
     if points is None:
         corners = scene.physics.planes == 2 and rectangle is not None
@@ -105,8 +105,7 @@ def _half_sides(beam: Beam, rectangle: Rectangle | None, xi: np.ndarray) -> np.n
     if beam.outer_fibre is not None:
         half[:, 0] = beam.outer_fibre(xi)
     if rectangle is not None:
-        width = rectangle.width
-        half[:, 1] = (width(xi) if callable(width) else np.asarray(width)) / 2
+        half[:, 1] = rectangle.width(xi) / 2
     return half
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.left_out import OmittedEffect, list_left_out
-from beamdyn.scene.beam import Beam, shear_stiffness_of_rectangle
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
 
 ASSUMED_POISSONS_RATIO = 0.3

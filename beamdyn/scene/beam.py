@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,7 +13,6 @@ from beamdyn.common.checks import (
     InvalidValue,
     kind,
     positive,
-    real,
     refuse,
     set_fields,
     several,
@@ -32,6 +31,7 @@ from beamdyn.scene.profile import (
     merge_breakpoints,
     to_profile,
 )
+from beamdyn.scene.rectangle import Rectangle
 
 _ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
 
@@ -68,6 +68,8 @@ class Beam(FieldsOnly, OneLine):
         Point masses along the beam; those at one place add up.
     point_springs : sequence of PointSpring
         Springs that hold points of the beam to the carrier; those at one place add up.
+    section : Rectangle, optional
+        The rectangular section that the properties follow from, by `rectangular`; None where they do not.
 
     References
     ----------
@@ -96,6 +98,7 @@ class Beam(FieldsOnly, OneLine):
     second_rotary_inertia: Profile | None = None
     point_masses: Sequence[PointMass] = ()
     point_springs: Sequence[PointSpring] = ()
+    section: Rectangle | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
@@ -117,6 +120,15 @@ class Beam(FieldsOnly, OneLine):
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
         for name, wanted in (("point_masses", PointMass), ("point_springs", PointSpring)):
             set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
+        made = self.section.properties if self.section is not None else {}
+        if any(getattr(self, name) != profile for name, profile in made.items()):
+            set_fields(self, section=None)  # a property was replaced
+
+    def with_section(self, section: Rectangle) -> Beam:
+        """The beam with another rectangular section, and the properties that follow from it."""
+        section.check_thickness(self.length)
+        warn_of_material(section.youngs_modulus, section.density)
+        return replace(self, section=section, **section.properties)
 
     @classmethod
     def rectangular(
@@ -179,33 +191,20 @@ class Beam(FieldsOnly, OneLine):
             or if the twist seems to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
         length = size("length", length, "m")
-        e = size("youngs_modulus", youngs_modulus, "Pa")
-        rho = size("density", density, "kg/m3")
-        b = as_profile("width", width, breakpoints, power=3)  # as in the stiffness of bending
-        h = as_profile("thickness", thickness, breakpoints, power=3)
-        _check_section(length, b, h)
-        warn_of_material(e, rho)
+        b, h = to_profile("width", width, breakpoints), to_profile("thickness", thickness, breakpoints)
+        section = Rectangle(b, h, youngs_modulus, density, poissons_ratio)
+        section.check_thickness(length)
+        warn_of_material(section.youngs_modulus, section.density)
         turned = None if twist is None else to_profile("twist", twist, breakpoints)
         warn_of_twist(turned)
-        area = b * h
-        flat, edge = area * h * h, area * b * b
-        axial = area.scaled(e)
-        shear = None if poissons_ratio is None else shear_stiffness_of_rectangle(axial, poissons_ratio)
         return cls(
             length=length,
-            mass_per_length=area.scaled(rho),
-            bending_stiffness=flat.scaled(e / 12),
-            axial_stiffness=axial,
-            outer_fibre=h.scaled(0.5),
             tip=tip,
-            second_bending_stiffness=edge.scaled(e / 12),
             twist=turned,
-            shear_stiffness=shear,
-            second_shear_stiffness=shear,
-            rotary_inertia=flat.scaled(rho / 12),
-            second_rotary_inertia=edge.scaled(rho / 12),
             point_masses=point_masses,
             point_springs=point_springs,
+            section=section,
+            **section.properties,
         )
 
     @classmethod
@@ -323,7 +322,7 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def _hash(self) -> int:  # of many properties, for each look into a cache
-        return hash(tuple(getattr(self, f.name) for f in fields(self)))
+        return hash(tuple(getattr(self, f.name) for f in fields(self) if f.compare))
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
@@ -388,14 +387,6 @@ OPTIONAL_PROPERTIES = (
 )
 
 
-def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
-    """Shear stiffness kappa G A [N] of rectangular sections of the axial stiffness E A, by Cowper (1966)."""
-    nu = real("poissons_ratio", poissons_ratio)
-    bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
-    refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")
-    return axial_stiffness.scaled(10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu)))
-
-
 _MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
 _BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
 
@@ -408,16 +399,3 @@ def _check_points(name: str, given: object, wanted: type, length: float) -> tupl
         bound = "it must be at most {limit}, the length"
         refuse(beyond, field, point.position, "m", bound, _BEYOND[wanted], limit=length)
     return points
-
-
-def _check_section(length: float, width: Profile, thickness: Profile) -> None:
-    """Refuse a thickness that exceeds the length, or the width anywhere."""
-    ends = np.union1d(width.breakpoints, thickness.breakpoints)
-    xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
-    b, h = width(xi), thickness(xi)
-    bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
-    refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
-    bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
-    advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
-    k = int((h > b).argmax())
-    refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])

@@ -1,27 +1,28 @@
-"""The rectangular section that a beam's properties are those of: what `Beam.rectangular` takes."""
+"""The rectangular section that a beam was made from, and the properties that follow from it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import Profile, Property
+from beamdyn.common.checks import real, refuse, set_fields, size
+from beamdyn.scene.profile import Profile, as_profile
 
-_SAME = 1e-9  # relative difference of a property from the rectangle's: far above rounding
-_KAPPA = 5.0, 12.0, 11.0  # kappa G / E = 5 / (12 + 11 nu), of `beam.shear_stiffness_of_rectangle`
+SIDES = {"width": "m", "thickness": "m"}
+SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
 
 
 @dataclass(frozen=True)
 class Rectangle:
-    """Arguments of `Beam.rectangular` that describe the section.
+    """A rectangular section of one material along a beam; sides that are constant may be given as numbers.
 
     Parameters
     ----------
-    width, thickness : Property
-        Sides of the section [m].
+    width, thickness : Profile
+        Sides of the section [m]; the beam bends in the direction of its thickness.
     youngs_modulus : float
         Young's modulus [Pa].
     density : float
@@ -30,52 +31,54 @@ class Rectangle:
         Poisson's ratio; None without shear stiffness.
     """
 
-    width: Property
-    thickness: Property
+    width: Profile
+    thickness: Profile
     youngs_modulus: float
     density: float
-    poissons_ratio: float | None
+    poissons_ratio: float | None = None
+
+    def __post_init__(self) -> None:
+        modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
+        set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
+        for name in SIDES:  # each stands in the stiffness of bending with this power
+            set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
+
+    @cached_property
+    def properties(self) -> dict[str, Any]:
+        """Stiffness, mass and outer fibre of a `Beam` along x/L, by the names of its fields."""
+        b, h, e, rho = self.width, self.thickness, self.youngs_modulus, self.density
+        area = b * h
+        flat, edge = area * h * h, area * b * b
+        axial, nu = area.scaled(e), self.poissons_ratio
+        shear = None if nu is None else shear_stiffness_of_rectangle(axial, nu)
+        return {
+            "mass_per_length": area.scaled(rho),
+            "bending_stiffness": flat.scaled(e / 12),
+            "axial_stiffness": axial,
+            "outer_fibre": h.scaled(0.5),
+            "second_bending_stiffness": edge.scaled(e / 12),
+            "shear_stiffness": shear,
+            "second_shear_stiffness": shear,
+            "rotary_inertia": flat.scaled(rho / 12),
+            "second_rotary_inertia": edge.scaled(rho / 12),
+        }
+
+    def check_thickness(self, length: float) -> None:
+        """Refuse a thickness that exceeds the length [m] of the beam, or the width anywhere."""
+        ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
+        xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
+        b, h = self.width(xi), self.thickness(xi)
+        bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
+        refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
+        bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
+        advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
+        k = int((h > b).argmax())
+        refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])
 
 
-def rectangle_of(beam: Beam) -> Rectangle | None:
-    """Find the rectangular section of a beam from its properties; None if they are not those of one.
-
-    The thickness is twice the outer fibre, and the squared width 12 times the quotient of the second bending
-    stiffness and the axial stiffness.
-    """
-    axial, fibre, edge = beam.axial_stiffness, beam.outer_fibre, beam.second_bending_stiffness
-    if axial is None or fibre is None or edge is None:
-        return None
-
-    def width(xi: np.ndarray) -> np.ndarray:
-        return np.sqrt(12 * edge(xi) / axial(xi))
-
-    root = np.zeros(1)
-    area = float((width(root) * 2 * fibre(root))[0])
-    e, rho = float(axial(root)[0]) / area, float(beam.mass_per_length(root)[0]) / area
-    constant = all(p.degree == 0 and len({*p.coefficients}) == 1 for p in (edge, axial))
-    side = float(width(root)[0]) if constant else width
-    found = Rectangle(side, fibre.scaled(2.0), e, rho, _poissons_ratio(beam.shear_stiffness, axial))
-    return found if _agrees(found, width, beam) else None
-
-
-def _poissons_ratio(shear: Profile | None, axial: Profile) -> float | None:
-    if shear is None:
-        return None
-    above, constant, slope = _KAPPA
-    return float((above * axial(np.zeros(1)) / shear(np.zeros(1)) - constant)[0] / slope)
-
-
-def _agrees(found: Rectangle, width: Callable[[np.ndarray], np.ndarray], beam: Beam) -> bool:
-    """Whether mass and stiffness along the beam are those of the rectangle, of one material."""
-    ends = np.array(beam.breakpoints)
-    xi = np.unique(np.concatenate([np.linspace(0, 1, 33), (ends[:-1] + ends[1:]) / 2]))
-    assert isinstance(found.thickness, Profile) and beam.axial_stiffness is not None
-    b, h = width(xi), found.thickness(xi)
-    area = b * h
-    pairs = (
-        (beam.mass_per_length, found.density * area),
-        (beam.axial_stiffness, found.youngs_modulus * area),
-        (beam.bending_stiffness, found.youngs_modulus * area * h**2 / 12),
-    )
-    return all(np.allclose(given(xi), value, rtol=_SAME, atol=0.0) for given, value in pairs)
+def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
+    """Shear stiffness kappa G A [N] of rectangular sections of the axial stiffness E A, by Cowper (1966)."""
+    nu = real("poissons_ratio", poissons_ratio)
+    bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
+    refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")
+    return axial_stiffness.scaled(10 * (1 + nu) / (12 + 11 * nu) / (2 * (1 + nu)))

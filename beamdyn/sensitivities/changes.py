@@ -12,10 +12,10 @@ from beamdyn.common.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.model import Model
+from beamdyn.scene.numbers import with_numbers
 from beamdyn.sensitivities.interpolation import Nearby, evaluate_nearby
 from beamdyn.sensitivities.perturbation import PencilChange
 from beamdyn.sensitivities.scene_numbers import SceneNumber
-from beamdyn.studies.inputs import scene_of
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
 _RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
@@ -104,7 +104,7 @@ def _largest(matrix: np.ndarray) -> float:
 
 def _pencils(model: Model, name: str, value: float) -> _Pencils:
     """The equations of both models with another value of a number."""
-    scene = scene_of(model.scene, {name: value})
+    scene = with_numbers(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
         bound = "a point mass or spring at the tip, or where a section jumps, would leave its place"
         raise InvalidValue(name, value, bound, "move both")

@@ -8,15 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.described import descriptions
-from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
-from beamdyn.scene.damping import Damping
-from beamdyn.scene.mount import Mount
-from beamdyn.scene.profile import Profile, as_profile, mean
-from beamdyn.scene.rectangle import Rectangle, rectangle_of
+from beamdyn.scene.beam import PROPERTY_UNITS, Beam
+from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
+from beamdyn.scene.profile import mean
+from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.inputs import SCALE
-from beamdyn.studies.listed_numbers import POINTS
 
 _TOUCHING = 1e-6  # distance over the length at which a point stands beside another
 _STEP = 0.01  # of a value, or of the size of its kind
@@ -90,119 +86,68 @@ def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneN
 
 
 def _all(scene: Scene) -> Iterator[SceneNumber]:
-    yield _relative("beam.length", "m", scene.beam.length)
-    yield from _of_section(scene)
-    yield from _of_twist(scene.modelled_beam)
-    yield from _of_tip(scene.beam)
-    yield from _of_points(scene.beam)
-    yield from _of_mount(scene)
-    yield from _of_damping(scene)
+    """Yield the numbers on which frequencies depend, a factor in place of a property that varies."""
+    for path in paths_of(scene):
+        value = _value_of(scene, path)
+        if value is None or not _matters(scene, path, value):
+            continue
+        varies = math.isnan(value)
+        if path != "beam.twist" or not varies:
+            yield _number(scene, path.replace("beam.", SCALE) if varies else path, 1.0 if varies else value)
 
 
-def _relative(name: str, unit: str, value: float) -> SceneNumber:
-    return SceneNumber(name, unit, value, _STEP * abs(value), 0.0)
+def _value_of(scene: Scene, path: str) -> float | None:
+    """The number of a path among those that the physics models; None if there is none."""
+    name = path.removeprefix("beam.")
+    if name in SECTION_UNITS:
+        return number_at(scene, path) if _has_constant_section(scene) else None
+    if name in PROPERTY_UNITS or name == "twist":
+        unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
+        follows = name != "twist" and _has_constant_section(scene)
+        if follows or name in unused or getattr(scene.modelled_beam, name) is None:
+            return None
+    return number_at(scene, path)
 
 
-def _of_section(scene: Scene) -> Iterator[SceneNumber]:
-    """Sides and material of a rectangular section; else properties, or factors of those that vary."""
-    section = rectangle_of(scene.beam)
-    if section is not None and isinstance(section.width, float):
-        sides = {name: as_profile(name, getattr(section, name)) for name in ("width", "thickness")}
-        if all(map(_is_constant, sides.values())):
-            yield from (_relative(f"beam.{name}", "m", _at_root(side)) for name, side in sides.items())
-            yield from _of_material(scene, section)
-            return
-    yield from _of_properties(scene)
+def _has_constant_section(scene: Scene) -> bool:
+    return not any(math.isnan(number_at(scene, f"beam.{side}") or math.nan) for side in SIDES)
 
 
-def _of_material(scene: Scene, section: Rectangle) -> Iterator[SceneNumber]:
-    yield _relative("beam.youngs_modulus", "Pa", section.youngs_modulus)
-    yield _relative("beam.density", "kg/m3", section.density)
-    if scene.physics.shear and section.poissons_ratio is not None:
-        yield SceneNumber("beam.poissons_ratio", "", section.poissons_ratio, _STEP)
+def _matters(scene: Scene, path: str, value: float) -> bool:
+    """Whether frequencies change with a number: not with one that is infinite, absent or not modelled."""
+    table, _, key = path.partition(".")
+    if table in ("motion", SPEED) or path.startswith(SCALE) or path == "model.gravity" or math.isinf(value):
+        return False
+    if table == "damping" or key in ("damping_ratio", "precone"):
+        return value != 0
+    if key.startswith("tip."):
+        return scene.beam.tip is not None
+    if path.endswith("].position"):
+        return _room_of(scene.beam, path) > 0
+    return (key != "poissons_ratio" or scene.physics.shear) and (
+        key != "second_root_stiffness" or scene.physics.planes == 2
+    )
 
 
-def _of_properties(scene: Scene) -> Iterator[SceneNumber]:
-    """The properties that are modelled: axial stiffness is for stretch alone, outer fibres for strains."""
-    unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
-    for name, unit in PROPERTY_UNITS.items():
-        profile = getattr(scene.modelled_beam, name)
-        if profile is not None and name not in unused:
-            if _is_constant(profile):
-                yield _relative(f"beam.{name}", unit, _at_root(profile))
-            else:
-                yield _relative(f"{SCALE}{name}", "", 1.0)
+def _number(scene: Scene, path: str, value: float) -> SceneNumber:
+    """A number with the step to take of it: a share of its value, or of the beam's size if that is larger."""
+    unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
+    if unit == "rad" or path == "beam.poissons_ratio":
+        return SceneNumber(path, unit, value, _STEP)
+    if path.endswith("].position"):
+        return SceneNumber(path, unit, value, _room_of(beam, path), 0.0)
+    if path.startswith(("mount.", "beam.tip.", "beam.point_")):
+        mass, bending = mean(beam.mass_per_length) * beam.length, mean(beam.bending_stiffness)
+        sizes = {"m": beam.length, "kg": mass, "kg m2": mass * beam.length**2}
+        sizes |= {"N m/rad": bending / beam.length, "N/m": bending / beam.length**3}
+        step = _STEP * max(abs(value), sizes[unit])
+    return SceneNumber(path, unit, value, step, -math.inf if path == "beam.tip.offset" else 0.0)
 
 
-def _of_twist(beam: Beam) -> Iterator[SceneNumber]:
-    if beam.twist is not None and _is_constant(beam.twist):
-        yield SceneNumber("beam.twist", "rad", _at_root(beam.twist), _STEP)
-
-
-def _is_constant(profile: Profile) -> bool:
-    return profile.degree == 0 and len({*map(tuple, profile.coefficients)}) == 1
-
-
-def _at_root(profile: Profile) -> float:
-    return float(profile.end_values()[0][0])
-
-
-def _of_tip(beam: Beam) -> Iterator[SceneNumber]:
-    """Numbers of the tip body; its steps are of the beam's size where they are small."""
-    if beam.tip is None:
-        return
-    L, mass = beam.length, mean(beam.mass_per_length) * beam.length
-    sizes = {"kg": mass, "m": L, "kg m2": mass * L**2}
-    for name, found in descriptions(TipMass).items():
-        if (value := getattr(beam.tip, name)) is not None:
-            least = 0.0 if found.unit != "m" else -math.inf
-            step = _STEP * max(abs(value), sizes[found.unit])
-            yield SceneNumber(f"beam.tip.{name}", found.unit, value, step, least)
-
-
-def _of_mount(scene: Scene) -> Iterator[SceneNumber]:
-    for name, found in descriptions(Mount).items():
-        value = getattr(scene.mount, name)
-        if found.unit == "rad":
-            if name != "precone" or value:
-                yield SceneNumber(f"mount.{name}", "rad", value, _STEP)
-        elif name == "radius":
-            yield SceneNumber("mount.radius", "m", value, _STEP * max(value, scene.beam.length), 0.0)
-        elif math.isfinite(value) and (name == "root_stiffness" or scene.physics.planes == 2):
-            beam = scene.beam
-            bending = mean(beam.bending_stiffness) / beam.length  # the scale of a soft spring, and of a hinge
-            yield SceneNumber(f"mount.{name}", found.unit, value, _STEP * max(value, bending), 0.0)
-
-
-def _of_points(beam: Beam) -> Iterator[SceneNumber]:
-    """Masses and springs along the beam; their places where nothing else changes along the beam there."""
-    sizes = {
-        "mass": mean(beam.mass_per_length) * beam.length,
-        "stiffness": mean(beam.bending_stiffness) / beam.length**3,
-    }
-    for kind, field in POINTS.items():
-        for k, point in enumerate(getattr(beam, field)):
-            name, amount = f"beam.{kind}[{k}]", "mass" if kind == "point_mass" else "stiffness"
-            value, unit = getattr(point, amount), descriptions(type(point))[amount].unit
-            yield SceneNumber(f"{name}.{amount}", unit, value, _STEP * max(value, sizes[amount]), 0.0)
-            if room := _room_of(beam, field, k):
-                yield SceneNumber(f"{name}.position", "m", point.position, room, 0.0)
-
-
-def _room_of(beam: Beam, field: str, k: int) -> float:
+def _room_of(beam: Beam, path: str) -> float:
     """How far a point may move along the beam for a derivative [m]; 0 where it stands beside another."""
-    points = getattr(beam, field)
+    field = "point_masses" if "point_mass" in path else "point_springs"
+    points, k = getattr(beam, field), int(path.partition("[")[2].partition("]")[0])
     others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
     apart = min(abs(points[k].position - xi * beam.length) for xi in others)
     return min(_STEP / 10 * beam.length, apart / 3) if apart > _TOUCHING * beam.length else 0.0
-
-
-def _of_damping(scene: Scene) -> Iterator[SceneNumber]:
-    if scene.damping_ratio:
-        yield _relative("model.damping_ratio", "", scene.damping_ratio)
-    for k, ratio in enumerate(scene.damping.ratios):
-        if ratio:
-            yield _relative(f"damping.ratios[{k}]", "", ratio)
-    for name in ("mass_factor", "stiffness_factor", "tip_damper"):
-        if value := getattr(scene.damping, name):
-            yield _relative(f"damping.{name}", descriptions(Damping)[name].unit, value)

@@ -10,6 +10,7 @@ from beamdyn.common.announced import unannounced
 from beamdyn.common.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.spreading.slopes import KnownDerivatives
 from beamdyn.common.spreading.tolerances import SpreadInput
+from beamdyn.scene.numbers import SPEED
 from beamdyn.sensitivities.result import Sensitivities
 from beamdyn.sensitivities.scene_numbers import numbers_of
 from beamdyn.sensitivities.sensitivities import (
@@ -17,7 +18,6 @@ from beamdyn.sensitivities.sensitivities import (
     crossing_sensitivities,
     frequency_sensitivities,
 )
-from beamdyn.studies.inputs import SPEED
 from beamdyn.studies.questions import StudyQuestion
 
 _NONLINEAR = "physics.large_deflection"  # the argument that is refused as it has no derivatives

@@ -29,10 +29,10 @@ from beamdyn.common.spreading.tolerances import (
     parse_tolerance,
 )
 from beamdyn.modal.choice import DiscretizationChoice
+from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, with_numbers
+from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.spreads.derivatives import known_derivatives
-from beamdyn.spreads.nominal_values import nominal_value
-from beamdyn.studies.inputs import SPEED, check_name, scene_of, unit_of
 from beamdyn.studies.questions import KINDS, OPTIONS
 from beamdyn.studies.result import Study
 from beamdyn.studies.study import speed_of_study, study
@@ -202,8 +202,8 @@ def check_tolerances(
 
 
 def _check_tolerance(scene: Scene, key: object, given: str | Distribution, speed: float) -> SpreadInput:
-    name = check_name("inputs", key)
-    nominal, unit = nominal_value(scene, name, speed), unit_of(name)
+    name = check_path("inputs", key)
+    nominal, unit = nominal_value(scene, name, speed), unit_of(name) or ""
     if name == SPEED and not nominal and isinstance(given, str) and "%" in given:
         bound = "a percentage is of the speed, which is 0"
         raise InvalidValue(f"tolerances[{SPEED!r}]", given, bound, "give spread a speed [rad/s], too")
@@ -214,6 +214,31 @@ def _check_tolerance(scene: Scene, key: object, given: str | Distribution, speed
     check_holds(made)
     check_reach(scene, made)
     return made
+
+
+def nominal_value(scene: Scene, name: str, speed: float) -> float:
+    """The value of an input in a scene, in SI; the speed is given, as it is none of the scene's numbers.
+
+    Raises
+    ------
+    InvalidValue
+        If the scene has no such number, or it varies along the beam, or is infinite.
+    """
+    if name == SPEED:
+        return speed
+    value = number_at(scene, name)
+    key = name.removeprefix("beam.")
+    if key in SECTION_UNITS and scene.beam.section is None:
+        bound = "the properties of the beam are not those of a rectangular section"
+        raise InvalidValue("spread", name, bound, "give a spread of beam.bending_stiffness or the like")
+    if value is None:
+        raise InvalidValue("spread", name, "the scene has no such number", "give it one, or leave it out")
+    if np.isnan(value):
+        remedy = f"give a spread of {SCALE}{key}, which multiplies it"
+        raise InvalidValue("spread", name, "it varies along the beam", remedy)
+    if np.isinf(value):
+        raise InvalidValue("spread", name, f"the scene's value is {value:g}", "give it a finite one first")
+    return value
 
 
 def _in_si(name: str, text: str, unit: str) -> Convert:
@@ -239,7 +264,7 @@ def check_reach(scene: Scene, given: SpreadInput) -> None:
     """Refuse a tolerance of which an end makes no scene, all other inputs being nominal."""
     for end in given.distribution.reach:
         try:
-            scene_of(scene, {given.name: end})
+            with_numbers(scene, {given.name: end})
         except InvalidValue as error:
             said = {"where": f", which {given.text} reaches", "unit": error.unit or given.unit}
             raise replace(error, **said, remedy="give a smaller spread") from None

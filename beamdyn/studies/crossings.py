@@ -17,12 +17,12 @@ from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line
+from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, coarser_stack
-from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
@@ -99,7 +99,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
         probed += [*designs.extremes()]
     found: dict[tuple[str, float], tuple[str, Line]] = {}
     for design in probed:
-        for kind, line in lines_of(scene_of(scene, design), top):
+        for kind, line in lines_of(with_numbers(scene, design), top):
             found.setdefault(line_key(kind, line), (kind, line))
     if not found:
         bound = "nothing varies in time at steady speed in any design, so that none resonates"
@@ -194,7 +194,7 @@ class SimilarCrossings(FieldsOnly):
         return np.array([self._has_line(design) for design in designs])[kind.ravel()]
 
     def _has_line(self, design: Mapping[str, float]) -> np.ndarray:
-        there = {line_key(*each) for each in lines_of(scene_of(self.scene, design), self.top)}
+        there = {line_key(*each) for each in lines_of(with_numbers(self.scene, design), self.top)}
         return np.array([resonance.key[:2] in there for resonance in self.resonances])
 
     def _cautions(self, error: np.ndarray, status: np.ndarray) -> Iterator[Caution]:

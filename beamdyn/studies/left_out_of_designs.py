@@ -11,13 +11,13 @@ import numpy as np
 
 from beamdyn.common.announced import unannounced
 from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.scene.numbers import SPEED
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import critical_point
 from beamdyn.spectrum.modes import natural_modes
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.studies.crossings import crossing_key
-from beamdyn.studies.inputs import SPEED
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.sweep import sweep
 

@@ -11,6 +11,7 @@ import numpy as np
 from beamdyn.common.announced import unannounced
 from beamdyn.common.designs import rows_of
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.scene.numbers import unit_of, with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint, critical_point
 from beamdyn.spectrum.modes import natural_modes
@@ -20,7 +21,6 @@ from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
-from beamdyn.studies.inputs import scene_of, unit_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
 from beamdyn.transient.sweep import sweep
@@ -103,7 +103,7 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
     """The answer of a design at its speeds; of all at once, or where these are refused of each."""
     analysis = _ANALYSES[question.what]
     try:
-        return analysis(question, scene_of(question.scene, design), speeds)
+        return analysis(question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
         if len(speeds) == 1:
             shape = 1, question.numbers

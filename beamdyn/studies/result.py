@@ -13,9 +13,9 @@ from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results import Provenance
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.answers import NO_ANSWERS, REFUSED
-from beamdyn.studies.inputs import scene_of
 from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
 
@@ -110,7 +110,7 @@ class Study(StatesModelError):
 
     def scene_at(self, *place: int) -> Scene:
         """The scene of the design at a place (i1, ..., id), for any other analysis of it."""
-        return scene_of(self.scene, self.design(*place))
+        return with_numbers(self.scene, self.design(*place))
 
     @property
     def answered(self) -> np.ndarray:
@@ -150,7 +150,7 @@ class Study(StatesModelError):
     def left_out_at(self, *place: int) -> LeftOutEffects | None:
         """What the effects left out would change in the answer (m,) at a place; None if it has none."""
         design = self.design(*place)
-        return left_out_of_design(self.question, scene_of(self.scene, design), design)
+        return left_out_of_design(self.question, with_numbers(self.scene, design), design)
 
     @property
     def _numbers(self) -> int:

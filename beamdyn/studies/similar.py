@@ -33,9 +33,9 @@ from beamdyn.modal.many_designs import Estimate, PencilStack
 from beamdyn.modal.model import Model
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import RIGHT_ANGLE, ROUNDED_ANGLE, Mount
+from beamdyn.scene.numbers import SCALE
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.inputs import SCALE
 
 # Powers of an input in mass per length, bending stiffness, axial stiffness and second bending stiffness.
 _POWERS = {

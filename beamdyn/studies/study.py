@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from os import PathLike
 from time import perf_counter
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import scipy
@@ -24,21 +24,21 @@ from beamdyn.common.checks import (
     one_of,
     positive,
     real,
+    real_array,
     within,
 )
-from beamdyn.common.designs import Designs, check_designs, rows_of
+from beamdyn.common.designs import Designs, VariedInput, check_designs, rows_of
 from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
 from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
+from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
 from beamdyn.studies.critical_speeds import SimilarCriticalSpeeds
 from beamdyn.studies.crossings import SimilarCrossings, list_resonances
 from beamdyn.studies.frequencies import SimilarFrequencies
-from beamdyn.studies.inputs import SPEED, check_inputs, scene_of
-from beamdyn.studies.motion_numbers import unit_of_motion_number
 from beamdyn.studies.one_by_one import SingleDesigns
 from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
 from beamdyn.studies.refinement import Refinement
@@ -136,7 +136,7 @@ def study(
     """
     start = perf_counter()
     check_scene(scene)
-    designs = Designs(check_inputs(vary), combine)
+    designs = Designs(_check_inputs(vary), combine)
     check_designs(designs)
     one_of("what", what, tuple(KINDS))
     check_discretization(discretization)
@@ -177,6 +177,21 @@ def study(
 # Arguments ----------------------------------------------------------------------------------------
 
 
+def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
+    """The inputs with their values as arrays; refused where there is none, or a value is no finite number."""
+    if not isinstance(vary, Mapping) or not vary:
+        remedy = 'give a dictionary, such as {"beam.thickness": [1e-4, 2e-4], "speed": [0.0, 50.0]}'
+        raise InvalidValue("vary", vary, "it names no input", remedy)
+    return tuple(_check_input(check_path("vary", name), values) for name, values in vary.items())
+
+
+def _check_input(name: str, values: Any) -> VariedInput:
+    array = real_array(name, values)
+    if not array.size:
+        raise InvalidValue(name, values, "it is empty; give at least one value")
+    return VariedInput(name, unit_of(name) or "", array)
+
+
 def _check_tolerance(tolerance: float | None) -> float | None:
     return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
 
@@ -210,7 +225,7 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
 
 def _check_motion_matters(what: str, designs: Designs) -> None:
     """Refuse numbers of the motion where the answer is not that of one motion."""
-    varied = (each.name for each in designs.inputs if unit_of_motion_number(each.name) is not None)
+    varied = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(varied, None)):
         bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
         raise InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
@@ -229,7 +244,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():
-            scene_of(scene, design)
+            with_numbers(scene, design)
         if few:
             return
     except InvalidValue:
@@ -237,7 +252,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
             raise
     for rows in designs.chunks(_AT_ONCE):
         for design in rows_of(designs.columns(rows)):
-            scene_of(scene, design)
+            with_numbers(scene, design)
 
 
 # The request --------------------------------------------------------------------------------------
@@ -411,7 +426,7 @@ class _Request:
     @cached_property
     def _reference(self) -> Scene:
         """The scene of the first design, without what matters only to its answer."""
-        return replace(scene_of(self.question.scene, self._first).undamped, motion=None)
+        return replace(with_numbers(self.question.scene, self._first).undamped, motion=None)
 
     @cached_property
     def _nodes(self) -> Nodes:

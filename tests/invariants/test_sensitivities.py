@@ -7,7 +7,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.announced import unannounced
-from beamdyn.studies.inputs import scene_of
+from beamdyn.scene.numbers import with_numbers
 from benchmarks.cases.reference.many_digits.differences import frequency_derivatives
 from benchmarks.cases.reference.of_scene import exact_critical_speed
 from benchmarks.cases.reference.of_two_planes import derivatives_by_collocation
@@ -66,7 +66,7 @@ def test_derivatives_in_two_planes_are_those_of_collocation(name):
 def differences(scene, number, solve):
     """Of fourth order, over a tenth of the steps at which the equations are evaluated."""
     h = number.step / 10
-    rows = [solve(scene_of(scene, {number.name: number.value + k * h})) for k in (-2, -1, 1, 2)]
+    rows = [solve(with_numbers(scene, {number.name: number.value + k * h})) for k in (-2, -1, 1, 2)]
     return (rows[0] - 8 * rows[1] + 8 * rows[2] - rows[3]) / (12 * h)
 
 
@@ -183,7 +183,7 @@ def test_a_hinge_may_become_a_spring():
     scene = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2, math.pi, root_stiffness=0.0))
     found = bd.frequency_sensitivities(scene, 20.0, 3, ["mount.root_stiffness"])
     size = 1e-3 * found.inputs[0].step
-    softest = bd.natural_modes(scene_of(scene, {"mount.root_stiffness": size}), 20.0, 3)
+    softest = bd.natural_modes(with_numbers(scene, {"mount.root_stiffness": size}), 20.0, 3)
     change = (softest.frequency - found.value) / size
     np.testing.assert_allclose(found.derivative[0], change, rtol=1e-4)  # a difference to one side
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.profile import Profile
 from beamdyn.sensitivities.interpolation import evaluate_nearby
 from beamdyn.sensitivities.scene_numbers import SceneNumber
-from beamdyn.studies.inputs import scene_of
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
 from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies, solve_coned
@@ -74,7 +74,7 @@ def derivatives_by_collocation(
     for number in numbers:
 
         def squares(value: float, name: str = number.name) -> np.ndarray:
-            beside = scene_of(scene, {name: value})
+            beside = with_numbers(scene, {name: value})
             return np.stack([squares_on_mesh(beside, speed, count, n) for n in (pieces, 2 * pieces)])
 
         widest = next(evaluate_nearby(number, squares))

@@ -1,0 +1,253 @@
+"""Numbers of a scene by their paths in scene files, such as "mount.radius" or "beam.point_mass[0].mass".
+
+Studies, spreads, sensitivities, commands and screens get, set, list and describe them here.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from typing import Any, get_type_hints
+
+from beamdyn.common.checks import InvalidValue, positive
+from beamdyn.common.described import description, kinds_of
+from beamdyn.common.paths import part_at, with_parts
+from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
+from beamdyn.scene.damping import Damping
+from beamdyn.scene.motion import KINDS, Motion
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.points import PointMass, PointSpring
+from beamdyn.scene.profile import Profile, as_profile, to_profile
+from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
+from beamdyn.scene.scene import Scene
+
+SPEED = "speed"  # at which the scene is analysed: no number of the scene itself
+SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
+_POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
+# Powers of the sides of a section in its properties, whatever its form.
+_LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
+_OF_FIRST = ("bending_stiffness", "rotary_inertia")
+_OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
+_SIDE_POWERS = {
+    "thickness": {"outer_fibre": 1} | dict.fromkeys((*_LINEAR, *_OF_SECOND), 1) | dict.fromkeys(_OF_FIRST, 3),
+    "width": dict.fromkeys((*_LINEAR, *_OF_FIRST), 1) | dict.fromkeys(_OF_SECOND, 3),
+}
+
+
+# What there is ------------------------------------------------------------------------------------
+
+
+@cache
+def units() -> dict[str, str]:
+    """SI units of the numbers that scenes may have by their paths, of those in lists without an index."""
+    of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | {"twist": "rad"}
+    found = {f"beam.{name}": unit for name, unit in of_beam.items()}
+    found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
+    for name, kind in _POINTS.items():
+        found |= dict(reversed([*_numbers(kind, f"beam.{name}[]")]))  # its place stands last
+    found |= dict(_numbers(Mount, "mount"))
+    found |= {"model.damping_ratio": "", "model.gravity": "m/s2", "damping.ratios[]": ""}
+    found |= dict(_numbers(Damping, "damping"))
+    found |= {path: unit for kind in KINDS.values() for path, unit in _numbers(kind, "motion")}
+    return found | {SPEED: "rad/s"}
+
+
+def unit_of(path: str) -> str | None:
+    """SI unit of a number; None if no scene has such a one."""
+    return units().get(re.sub(r"\[\d+\]", "[]", path))
+
+
+def is_of_motion(path: str) -> bool:
+    """Whether a path is that of a number of the motion."""
+    return path.startswith("motion.")
+
+
+def paths_of(scene: Scene) -> list[str]:
+    """Paths of the numbers that a scene has or could have, in lists and of its motion those that it has."""
+    return [path for each in units() for path in _in_lists_of(scene, each) if _is_there(scene, path)]
+
+
+def check_path(argument: str, path: object) -> str:
+    """The path of a number, that of an argument; refused if no scene has such a number."""
+    if not isinstance(path, str):
+        bound = "the name of an input is a string"
+        raise InvalidValue(argument, path, bound, 'give one such as "beam.thickness"')
+    if unit_of(path) is None:
+        near = difflib.get_close_matches(path, units(), n=1)
+        raise InvalidValue(argument, path, "unknown input", f"give {near[0] if near else ', '.join(units())}")
+    return path
+
+
+def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
+    """Yield paths and units of the numbers of a class and of its parts, but for speeds."""
+    if not is_dataclass(made):
+        return
+    hints = get_type_hints(made, include_extras=True)
+    for each in fields(made):
+        found, parts = description(hints[each.name]), [*_parts(hints[each.name])]
+        key = (found and found.key) or each.name
+        for part in parts:
+            yield from _numbers(part, f"{path}.{key}")
+        if not parts and found is not None and float in kinds_of(hints[each.name]) and key != SPEED:
+            yield f"{path}.{key}", found.unit
+
+
+def _parts(hint: Any) -> Iterator[type]:
+    """Yield the classes that a field may have which have numbers of their own."""
+    for kind in kinds_of(hint):
+        if isinstance(kind, type) and issubclass(kind, Motion):
+            yield from (each for each in KINDS.values() if issubclass(each, kind))
+        elif isinstance(kind, type) and is_dataclass(kind):
+            yield kind
+
+
+def _in_lists_of(scene: Scene, path: str) -> list[str]:
+    """A path, or those of each member of a list of the scene."""
+    table, is_listed, _ = path.partition("[]")
+    many = len(part_at(scene, _in_scene(table))) if is_listed else 1
+    return [path.replace("[]", f"[{k}]") for k in range(many)]
+
+
+def _is_there(scene: Scene, path: str) -> bool:
+    return not is_of_motion(path) or number_at(scene, path) is not None
+
+
+# Getting and setting ------------------------------------------------------------------------------
+
+
+def _in_scene(path: str) -> str:
+    """Where the number of a path stands in a scene."""
+    table, _, key = path.partition(".")
+    if table == "model":
+        return key
+    if table == "beam" and key in SECTION_UNITS:
+        return f"beam.section.{key}"
+    return re.sub(r"^beam\.point_(mass|spring)\b", lambda found: _POINT_LISTS[found[1]], path)
+
+
+_POINT_LISTS = {"mass": "beam.point_masses", "spring": "beam.point_springs"}
+
+
+def number_at(scene: Scene, path: str) -> float | None:
+    """The number of a path in a scene: None if it has none, nan if it varies along the beam."""
+    if path.startswith(SCALE):
+        return 1.0
+    if path.startswith("beam.tip.") and scene.beam.tip is None:
+        return part_at(TipMass(0.0), path.removeprefix("beam.tip."))
+    value = part_at(scene, _in_scene(path))
+    if isinstance(value, Profile):
+        is_constant = value.degree == 0 and len({*map(tuple, value.coefficients)}) == 1
+        return float(value.end_values()[0][0]) if is_constant else math.nan
+    return value if isinstance(value, float) else None
+
+
+def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
+    """The scene with some of its numbers replaced, by the constructors that made the scene itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    values : mapping of str to float
+        Numbers by path, in SI; that of the speed is not used.
+
+    Raises
+    ------
+    InvalidValue
+        If a value is out of its range, or the scene has no such number: no such member of a list, another
+        motion, or a beam of no rectangular section where a side or the material of one is given.
+    """
+    of_beam = {path.removeprefix("beam."): float(v) for path, v in values.items() if path.startswith("beam.")}
+    others = {
+        _in_scene(path): float(value)
+        for path, value in values.items()
+        if path != SPEED and not path.startswith("beam.")
+    }
+    _check_there(scene, values)
+    with _naming_paths(values):
+        return with_parts(scene, others | ({"beam": _beam_with(scene.beam, of_beam)} if of_beam else {}))
+
+
+def _check_there(scene: Scene, values: Mapping[str, float]) -> None:
+    """Refuse numbers in lists, or of the motion, that the scene does not have."""
+    for path in values:
+        if ("[" not in path and not is_of_motion(path)) or number_at(scene, path) is not None:
+            continue
+        alike = [
+            each
+            for each in paths_of(scene)
+            if ("[" in each, is_of_motion(each)) == ("[" in path, is_of_motion(path))
+        ]
+        whose, otherwise = "scene", "give the scene one"
+        if is_of_motion(path):
+            whose, otherwise = "scene's motion", "give the scene a motion that has it"
+        remedy = f"give one of {', '.join(alike)}" if alike else otherwise
+        raise InvalidValue("vary", path, f"the {whose} has no such number", remedy)
+
+
+@contextmanager
+def _naming_paths(values: Mapping[str, float]) -> Iterator[None]:
+    """Within it, a refusal of an argument of a constructor names the path."""
+    try:
+        yield
+    except InvalidValue as error:
+        path = next((path for path in values if path.endswith(f".{error.field}")), error.field)
+        raise replace(error, field=path) from None
+
+
+def _beam_with(beam: Beam, values: Mapping[str, float]) -> Beam:
+    """The beam with numbers replaced, and then with what is multiplied."""
+    section = {name: value for name, value in values.items() if name in SECTION_UNITS}
+    own: dict[str, Any] = {
+        _in_scene(f"beam.{name}").removeprefix("beam."): _as_property(name, value)
+        for name, value in values.items()
+        if name not in section and not name.startswith("scale.")
+    }
+    _check_section(beam, section, values)
+    if beam.tip is None and any(name.startswith("tip.") for name in own):
+        beam = replace(beam, tip=TipMass(0.0))
+    beam = with_parts(beam, own)
+    if section and beam.section is not None:
+        beam = beam.with_section(replace(beam.section, **section))
+    for name, value in values.items():
+        if name.startswith("scale."):
+            beam = _scaled(beam, name.removeprefix("scale."), value)
+    return beam
+
+
+def _as_property(name: str, value: float) -> float | Profile:
+    if name == "twist":
+        return to_profile(name, value)
+    return as_profile(name, value) if name in PROPERTY_UNITS else value
+
+
+def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str, float]) -> None:
+    """Refuse sides or the material of a section beside what follows from them, or where there are none."""
+    if not section:
+        return
+    name, value = next(iter(section.items()))
+    if other := next((name for name in values if name in PROPERTY_UNITS), None):
+        bound = f"beam.{other} does not go together with it, as it follows from the section"
+        remedy = f"leave one of them out, or give {SCALE}{other}, which multiplies it"
+        raise InvalidValue(f"beam.{name}", value, bound, remedy)
+    if beam.section is None:
+        bound = "the properties of the beam are not those of a rectangular section"
+        raise InvalidValue(f"beam.{name}", value, bound, "vary beam.bending_stiffness or the like")
+
+
+def _scaled(beam: Beam, name: str, factor: float) -> Beam:
+    """The beam with a property multiplied, or with its sections stretched in the direction of a side."""
+    if name in PROPERTY_UNITS and getattr(beam, name) is None:
+        raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
+    factor = positive(SCALE + name, factor)
+    if name in SIDES and beam.section is not None:
+        section = replace(beam.section, **{name: getattr(beam.section, name).scaled(factor)})
+        return replace(beam, section=section, **section.properties)
+    powers = _SIDE_POWERS.get(name, {name: 1})
+    there = {each: getattr(beam, each) for each in powers if getattr(beam, each) is not None}
+    return replace(beam, **{each: profile.scaled(factor ** powers[each]) for each, profile in there.items()})
