@@ -13,7 +13,7 @@ from typing import Any, get_type_hints
 
 from beamdyn.common.described import description
 
-_STEP = re.compile(r"(\w+)|\[(\d+)\]")
+_STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
 _AXES = "xy"  # of points
 
 
@@ -44,7 +44,7 @@ class _Tree(dict[Any, Any]):
 
 
 def _steps(path: str) -> list[str | int]:
-    return [int(place) if place else name for name, place in _STEP.findall(path)]
+    return [int(place) if place else name for place, name in _STEP.findall(path)]
 
 
 def _place(step: str | int) -> int:

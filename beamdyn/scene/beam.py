@@ -68,8 +68,9 @@ class Beam(FieldsOnly, OneLine):
         Point masses along the beam; those at one place add up.
     point_springs : sequence of PointSpring
         Springs that hold points of the beam to the carrier; those at one place add up.
-    section : Rectangle, optional
+    section : rectangle, optional
         The rectangular section that the properties follow from, by `rectangular`; None where they do not.
+        Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
 
     References
     ----------
@@ -120,9 +121,10 @@ class Beam(FieldsOnly, OneLine):
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
         for name, wanted in (("point_masses", PointMass), ("point_springs", PointSpring)):
             set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
-        made = self.section.properties if self.section is not None else {}
-        if any(getattr(self, name) != profile for name, profile in made.items()):
-            set_fields(self, section=None)  # a property was replaced
+        if self.section is not None:
+            kind("section", self.section, Rectangle, "Beam.rectangular makes one")
+            if any(getattr(self, name) != made for name, made in self.section.properties.items()):
+                set_fields(self, section=None)  # a property was replaced
 
     def with_section(self, section: Rectangle) -> Beam:
         """The beam with another rectangular section, and the properties that follow from it."""

@@ -29,9 +29,9 @@ from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.one_line import counted, error_at_most
 from beamdyn.common.parallel.tasks import TaskRunner
+from beamdyn.common.paths import with_parts
 from beamdyn.common.results import Provenance, Result, plain
 from brakes.answers.tables import format_number
-from brakes.config.sweeps import numeric_inputs, with_arrays
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
@@ -392,8 +392,9 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return describe(self.model)
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers in those tables that the design has."""
-        return numeric_inputs(design)
+        """Numbers in those tables that the design has; what has neither unit nor symbol is a choice."""
+        there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
+        return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""
@@ -415,7 +416,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         while rows.size:
             try:
                 given = {name: values[rows] for name, values in columns.items()}
-                return self.solve(with_arrays(design, given)), rows, refused
+                return self.solve(with_parts(design, given)), rows, refused
             except InvalidValue as error:
                 bad = error.by_case()
                 if error.cases is None or error.cases.bad.shape != rows.shape:

@@ -14,8 +14,9 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.spread_options import OPTION, in_units_of, parse_spreads
 from beamdyn.common.edge.units import InvalidInput
-from beamdyn.common.edge.varied_inputs import Axis, Coordinate
+from beamdyn.common.edge.varied_inputs import Axis
 from beamdyn.common.parallel.tasks import TaskRunner
+from beamdyn.common.paths import part_at
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.sampling import check_samples, check_seed, count_designs
@@ -91,12 +92,7 @@ def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
     InvalidValue
         If the design has none.
     """
-    path = entry.of.path if isinstance(entry, Coordinate) else entry.path
-    value = design
-    for key in path.split("."):
-        value = value.get(key) if isinstance(value, Mapping) else getattr(value, key, None)
-    if isinstance(entry, Coordinate) and value is not None:
-        value = value[entry.place]
+    value = part_at(design, entry.path)
     if not isinstance(value, int | float):
         raise InvalidValue(OPTION, entry.path, "the file gives it no value", "give it one, or leave it out")
     return float(value), "rad" if isinstance(value, Angle) else entry.quantity.unit

@@ -19,6 +19,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.wording import in_degrees
+from beamdyn.common.paths import with_parts
 from brakes import drum, forklift
 from brakes.answers.drum import BRAKE
 from brakes.answers.forklift import FORKLIFT as TYPE
@@ -27,7 +28,6 @@ from brakes.cli import main
 from brakes.config.drum import DrumInput, drum_from_dict, load_drum
 from brakes.config.forklift import ForkliftInput, forklift_from_dict, load_forklift
 from brakes.config.mechanism import mechanism_from_dict
-from brakes.config.sweeps import numeric_inputs, with_arrays
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -290,7 +290,7 @@ def test_angles_in_messages() -> None:
 
 
 def parse_axis(design: Any, text: str) -> varied_inputs.Axis:
-    return varied_inputs.parse_axis(numeric_inputs(design), text)
+    return varied_inputs.parse_axis(BRAKE.sweep_inputs(design, {}), text)
 
 
 TORQUE = Output("torque", "torque", lambda r: r.torque, "N m")
@@ -352,7 +352,7 @@ def test_a_sweep_is_its_cases_one_by_one() -> None:
     columns = dict(
         zip((axis.input.path for axis in axes), np.meshgrid(*(a.values for a in axes)), strict=True)
     )
-    found = TORQUE.shown(with_arrays(design, {path: grid.ravel() for path, grid in columns.items()}).solve())
+    found = TORQUE.shown(with_parts(design, {path: grid.ravel() for path, grid in columns.items()}).solve())
     assert found.shape == (6,)
     for j, mu in enumerate((0.2, 0.5)):
         for i, end in enumerate((60, 85, 110)):
@@ -363,7 +363,7 @@ def test_a_sweep_is_its_cases_one_by_one() -> None:
 def test_a_sweep_of_a_chain() -> None:
     design = forklift_from_dict(FORKLIFT)
     axes = [parse_axis(design, "load_mass=0:3500:3 kg")]
-    answer = solve_stages(with_arrays(design, {axes[0].input.path: axes[0].values}))
+    answer = solve_stages(with_parts(design, {axes[0].input.path: axes[0].values}))
     found = input_sweep.swept(varied_inputs.designs_of(axes), [DISTANCE], [DISTANCE.shown(answer)])
     assert found.found[0][0] == np.inf and found.found[0][2] == pytest.approx(13.425, abs=5e-4)
     assert answer.refusals == ("1 of 3 cases do not stop",)

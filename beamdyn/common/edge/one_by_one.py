@@ -15,6 +15,7 @@ from beamdyn.common.edge.inputs import Input, Section
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of
 from beamdyn.common.parallel.tasks import Task, TaskRunner
+from beamdyn.common.paths import part_at, with_parts
 
 MOST_ONE_BY_ONE = 2000  # designs, which take minutes
 _CHUNK = 16  # designs of a task
@@ -138,9 +139,7 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
     wanted = {output.name: output for output in outputs}
     values, refused = np.full((len(task.outputs), len(task.given)), np.nan), dict[int, str]()
     for case, given in enumerate(task.given.tolist()):
-        design = task.tables
-        for axis, value in zip(task.axes, given, strict=True):
-            design = placed(design, axis, value)
+        design = placed(task.tables, task.axes, given)
         try:
             answer = solve(design)
             values[:, case] = [float(wanted[name].shown(answer)) for name in task.outputs]
@@ -149,29 +148,22 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
     return SolvedCases(values, tuple(refused), tuple(refused.values()))
 
 
-def placed(tables: Mapping[str, Any], axis: Axis, value: float) -> dict[str, Any]:
-    """The tables of a design with another value [the axis' unit] of an input."""
-    entry = axis.input
-    given: Any = f"{value:.15g} {axis.unit}" if axis.unit else float(value)
-    if not isinstance(entry, Coordinate):
-        return _put(tables, entry.path.split("."), lambda _: given)
+def placed(tables: Mapping[str, Any], axes: Sequence[Axis], values: Sequence[float]) -> dict[str, Any]:
+    """The tables of a design with other values [the axes' units] of some inputs."""
+    given = {
+        axis.input.path: f"{value:.15g} {axis.unit}" if axis.unit else float(value)
+        for axis, value in zip(axes, values, strict=True)
+    }
+    points = [axis.input.of for axis in axes if isinstance(axis.input, Coordinate)]
+    missing = {of.path: _default(of) for of in points if not _is_point(part_at(tables, of.path))}
+    return with_parts(with_parts(tables, missing), given)
 
-    def moved(point: Any) -> Any:
-        whole = point if isinstance(point, list) and len(point) == 2 else _default(entry.of)
-        return [given if i == entry.place else part for i, part in enumerate(whole)]
 
-    return _put(tables, entry.of.path.split("."), moved)
+def _is_point(given: Any) -> bool:
+    return isinstance(given, list) and len(given) == 2
 
 
 def _default(entry: Input) -> list[str]:
     """The default of a point, as a file writes it."""
     default: Any = entry.default
     return [f"{number!r} {entry.quantity.unit}".strip() for number in map(float, default)]
-
-
-def _put(tables: Mapping[str, Any], path: Sequence[str], change: Callable[[Any], Any]) -> dict[str, Any]:
-    """The tables with what stands at a path changed."""
-    head, *rest = path
-    inner = tables.get(head)
-    nested = _put(inner if isinstance(inner, Mapping) else {}, rest, change) if rest else change(inner)
-    return dict(tables) | {head: nested}
