@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,10 +10,8 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, rows_of
-from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.many_designs import speeds_of_meeting
 from beamdyn.modal.model import Model
 from beamdyn.scene.motion import Line
@@ -21,8 +19,8 @@ from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
-from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
-from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, coarser_stack
+from beamdyn.studies.answers import REFUSED, DesignAnswers, caution_where
+from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, stacks_of
 from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
@@ -116,96 +114,75 @@ def _ends_of_columns(designs: Designs) -> list[int]:
     return [int(end(each.values)) for each in designs.inputs for end in (np.argmin, np.argmax)]
 
 
-@dataclass(frozen=True)
-class SimilarCrossings(FieldsOnly):
-    """The resonance speeds of similar designs.
+def crossings_of(
+    designs: SimilarDesigns,
+    refinement: Refinement,
+    scene: Scene,
+    resonances: Sequence[PossibleCrossing],
+    top: float,
+) -> DesignAnswers:
+    """The resonance speeds (N, 1, c) of similar designs, with what limits them.
 
     Parameters
     ----------
     designs : SimilarDesigns
         N designs.
+    refinement : Refinement
+        The bases, and the number of modes.
     scene : Scene
         The scene that is varied: its motion and gravity excite the beam.
-    resonances : tuple of PossibleCrossing
+    resonances : sequence of PossibleCrossing
         Those that are sought, c in all.
     top : float
         Top speed [rad/s].
-    modes : int
-        Number of modes.
-    discretization, tolerance
-        As for `natural_modes`.
+    """
+    multiples, modes = np.unique([each.multiple for each in resonances]), refinement.modes
+
+    def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
+        stack, coarse, *_ = stacks_of(designs, rows, basis)
+        time, estimate = designs.time[rows], designs.estimate(basis)
+        speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, modes, top * time, estimate)
+        critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top * time, estimate)[0]
+        speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
+        met = np.isinf(speed) | (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
+        return BasisAnswers((speed / time[:, None, None], error), np.all(met, axis=(1, 2)))
+
+    found, functions = refinement.solve(designs.count, len(multiples), solve)
+    found = found or [np.full((designs.count, len(multiples), modes), np.nan)] * 2
+    places = [(int(np.searchsorted(multiples, r.multiple)), r.mode - 1) for r in resonances]
+    speed, error = (np.stack([values[:, i, j] for i, j in places], axis=1)[:, None] for values in found)
+    excited = np.broadcast_to(_excited(designs, scene, resonances, top)[:, None], speed.shape)
+    states = [NO_LINE, REFUSED, RESONATES]
+    status = np.select([~excited, np.isnan(speed), np.isfinite(speed)], states, NO_RESONANCE)
+    error = np.select([status == REFUSED, status == RESONATES], [np.inf, error], 0.0)
+    cautions = (
+        *cautions_of_refused(status),
+        *cautions_of_error(error, refinement.tolerance),
+        *caution_where((status == NO_LINE).all(axis=2), "g", 0.0, " nothing excites the beam"),
+    )
+    speed = np.where(status == RESONATES, speed, np.nan)
+    return DesignAnswers(speed, error, status, cautions, f"Ritz, at most {functions} functions, batched")
+
+
+def _excited(
+    designs: SimilarDesigns, scene: Scene, resonances: Sequence[PossibleCrossing], top: float
+) -> np.ndarray:
+    """Which of the resonances (N, c) have a line in each design.
+
+    The lines depend on whether the load has a component in the direction of bending, and on gravity.
     """
 
-    designs: SimilarDesigns
-    scene: Scene
-    resonances: Sequence[PossibleCrossing]
-    top: float
-    modes: int
-    discretization: DiscretizationChoice
-    tolerance: float | None
+    def have_line(design: Mapping[str, float]) -> np.ndarray:
+        there = {line_key(*each) for each in lines_of(with_numbers(scene, design), top)}
+        return np.array([resonance.key[:2] in there for resonance in resonances])
 
-    def answers(self) -> DesignAnswers:
-        """The answers (N, 1, c) of the designs, with what limits them."""
-        refinement = Refinement(self.designs.reference, self.modes, self.discretization, self.tolerance)
-        multiples = np.unique([each.multiple for each in self.resonances])
-
-        def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
-            return self._solve_batch(rows, basis, refinement.target_of(basis), multiples)
-
-        found, functions = refinement.solve(self.designs.count, len(multiples), solve)
-        found = found or [np.full((self.designs.count, len(multiples), self.modes), np.nan)] * 2
-        places = [(int(np.searchsorted(multiples, r.multiple)), r.mode - 1) for r in self.resonances]
-        speed, error = (np.stack([values[:, i, j] for i, j in places], axis=1)[:, None] for values in found)
-        excited = np.broadcast_to(self._excited()[:, None], speed.shape)
-        states = [NO_LINE, REFUSED, RESONATES]
-        status = np.select([~excited, np.isnan(speed), np.isfinite(speed)], states, NO_RESONANCE)
-        error = np.select([status == REFUSED, status == RESONATES], [np.inf, error], 0.0)
-        speed = np.where(status == RESONATES, speed, np.nan)
-        method = f"Ritz, at most {functions} functions, batched"
-        return DesignAnswers(speed, error, status, (*self._cautions(error, status),), method)
-
-    def _solve_batch(
-        self, rows: np.ndarray, basis: Discretization, target: float, multiples: np.ndarray
-    ) -> BasisAnswers:
-        designs = self.designs
-        family, weights, time = designs.family(basis), designs.weights(rows), designs.time[rows]
-        stack = family.stack(weights)
-        coarse, estimate = coarser_stack(designs, basis, family, stack, weights), designs.estimate(basis)
-        top = self.top * time
-        speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, self.modes, top, estimate)
-        critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, estimate)[0]
-        speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
-        met = np.isinf(speed) | (error <= np.maximum(target, 3 * rounding))
-        return BasisAnswers((speed / time[:, None, None], error), _of_each(met))
-
-    def _excited(self) -> np.ndarray:
-        """Which of the resonances (N, c) have a line in each design.
-
-        The lines depend on whether the load has a component in the direction of bending, and on gravity.
-        """
-        columns = {
-            n: v for n, v in self.designs.columns.items() if n in ("mount.bending_angle", "model.gravity")
-        }
-        if not columns:
-            return np.broadcast_to(self._has_line({}), (self.designs.count, len(self.resonances)))
-        kinds = np.stack([_kind_of(name, values) for name, values in columns.items()], axis=1)
-        _, first, kind = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
-        designs = [{name: float(values[i]) for name, values in columns.items()} for i in first]
-        return np.array([self._has_line(design) for design in designs])[kind.ravel()]
-
-    def _has_line(self, design: Mapping[str, float]) -> np.ndarray:
-        there = {line_key(*each) for each in lines_of(with_numbers(self.scene, design), self.top)}
-        return np.array([resonance.key[:2] in there for resonance in self.resonances])
-
-    def _cautions(self, error: np.ndarray, status: np.ndarray) -> Iterator[Caution]:
-        yield from cautions_of_refused(status)
-        yield from cautions_of_error(error, self.tolerance)
-        yield from caution_where((status == NO_LINE).all(axis=2), "g", 0.0, " nothing excites the beam")
-
-
-def _of_each(met: np.ndarray) -> np.ndarray:
-    """Whether all of a design (N, L, k) are met, (N,)."""
-    return np.asarray(np.all(met, axis=(1, 2)))
+    columns = {n: v for n, v in designs.columns.items() if n in ("mount.bending_angle", "model.gravity")}
+    if not columns:
+        return np.broadcast_to(have_line({}), (designs.count, len(resonances)))
+    kinds = np.stack([_kind_of(name, values) for name, values in columns.items()], axis=1)
+    _, first, kind = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
+    each = rows_of({name: values[first] for name, values in columns.items()})
+    return np.array([have_line(design) for design in each])[kind.ravel()]
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:

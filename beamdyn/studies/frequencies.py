@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.pickling import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modal.choice import DiscretizationChoice, warn_of_missed_tolerance
+from beamdyn.modal.choice import warn_of_missed_tolerance
 from beamdyn.modal.many_designs import PencilStack, solve_many
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,
@@ -47,95 +45,75 @@ class SolvedDesigns:
     functions: int
 
 
-@dataclass(frozen=True)
-class SimilarFrequencies(FieldsOnly):
-    """The frequencies of similar designs: each in the smallest basis that a single call would choose.
+def solve_frequencies(
+    designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None = None
+) -> SolvedDesigns:
+    """Solve similar designs, each in the smallest basis that a single call would choose.
 
     Parameters
     ----------
     designs : SimilarDesigns
         N designs.
+    refinement : Refinement
+        The bases, and the number of modes.
     speeds : ndarray, shape (N, S)
         Speeds of each [rad/s].
-    modes : int
-        Number k of modes.
-    discretization : {"ritz"} or Ritz
-        As for `natural_modes`.
-    tolerance : float, optional
-        As for `natural_modes`.
     ratio : ndarray, shape (N,), optional
         Damping ratio of each; undamped if not given.
     """
 
-    designs: SimilarDesigns
-    speeds: np.ndarray
-    modes: int
-    discretization: DiscretizationChoice
-    tolerance: float | None
-    ratio: np.ndarray | None = None
-
-    @cached_property
-    def _refinement(self) -> Refinement:
-        return Refinement(self.designs.reference, self.modes, self.discretization, self.tolerance)
-
-    def solve(self) -> SolvedDesigns:
-        """Solve the designs, in finer and finer bases until all errors meet the target."""
-        count, speeds = self.speeds.shape
-        found, functions = self._refinement.solve(count, speeds, self._solve_batch)
-        if not found:
-            shape = (*self.speeds.shape, self.modes)
-            found = [
-                np.full(shape, np.nan, dtype=complex),
-                np.full(shape, np.inf),
-                np.full(self.speeds.shape, np.nan),
-            ]
-        eigenvalue, error, deflection = found
-        error = np.where(np.isnan(eigenvalue), np.inf, error)
-        return SolvedDesigns(eigenvalue / self.designs.time[:, None, None], error, deflection, functions)
-
-    def _solve_batch(self, rows: np.ndarray, basis: Discretization) -> BasisAnswers:
-        designs = self.designs
-        family, weights = designs.family(basis), designs.weights(rows)
-        stack, speeds = family.stack(weights), self.speeds[rows] * designs.time[rows, None]
-        ratio = None if self.ratio is None else self.ratio[rows]
-        coarse = coarser_stack(designs, basis, family, stack, weights)
+    def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
+        stack, coarse, family, weights = stacks_of(designs, rows, basis)
+        damped = None if ratio is None else ratio[rows]
         load = np.einsum("rt,tdn,rd->rn", weights, family.loads, designs.across[rows], optimize=True)
-        found = solve_many(
-            stack, coarse, speeds, self.modes, load, family.tips, ratio, designs.estimate(basis)
-        )
-        target = np.maximum(self._refinement.target_of(basis), 3 * found.rounding)
+        at, estimate = speeds[rows] * designs.time[rows, None], designs.estimate(basis)
+        found = solve_many(stack, coarse, at, refinement.modes, load, family.tips, damped, estimate)
+        target = np.maximum(refinement.target_of(basis), 3 * found.rounding)
         met = np.all(found.error <= target, axis=(1, 2))
         deflection = found.static / designs.reference.beam.length
         return BasisAnswers((found.eigenvalue, found.error, deflection), met)
 
-    def answers(self) -> DesignAnswers:
-        """The answers of the designs, with what limits them."""
-        found = self.solve()
-        s = found.eigenvalue
-        growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
-        words = [REFUSED, "flutter", "divergence", "stable", "neutral"]
-        status = np.select([none, growing & oscillating, growing, oscillating, s == 0], words, "overdamped")
-        frequency = np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
-        method = f"Ritz, at most {found.functions} functions, batched"
-        return DesignAnswers(frequency, found.error, status, (*self._cautions(found, status),), method)
+    found, functions = refinement.solve(len(speeds), speeds.shape[1], solve)
+    shape = (*speeds.shape, refinement.modes)
+    nothing = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan), np.full(speeds.shape, np.nan)
+    eigenvalue, error, deflection = found or nothing
+    error = np.where(np.isnan(eigenvalue), np.inf, error)
+    return SolvedDesigns(eigenvalue / designs.time[:, None, None], error, deflection, functions)
 
-    def _cautions(self, found: SolvedDesigns, status: np.ndarray) -> Iterator[Caution]:
-        """Yield what `natural_modes` warns of."""
-        unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
-        yield from caution_where(unstable, "a", 0.0, ": the beam diverges; see status")
-        strain = self.designs.strains(self.speeds)
-        large = strain > LARGE_STRAIN
-        if large.any():
-            yield from caution_where(
-                large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}"
-            )
-        bent = found.deflection > LARGE_DEFLECTION
-        if bent.any():
-            at = np.unravel_index(np.nanargmax(found.deflection), bent.shape)
-            said = next(warn_of_static_deflection(found.deflection[at][None], 1.0, self.speeds[at][None]))
-            yield from caution_where(bent, "c", found.deflection, f": {said}")
-        yield from cautions_of_refused(status)
-        yield from cautions_of_error(found.error, self.tolerance)
+
+def frequencies_of(
+    designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None
+) -> DesignAnswers:
+    """The frequencies of similar designs, with what limits them; arguments as of `solve_frequencies`."""
+    found = solve_frequencies(designs, refinement, speeds, ratio)
+    s = found.eigenvalue
+    growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
+    words = [REFUSED, "flutter", "divergence", "stable", "neutral"]
+    status = np.select([none, growing & oscillating, growing, oscillating, s == 0], words, "overdamped")
+    frequency = np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
+    method = f"Ritz, at most {found.functions} functions, batched"
+    cautions = (
+        *_cautions_of_theory(designs, speeds, found.deflection, status),
+        *cautions_of_refused(status),
+        *cautions_of_error(found.error, refinement.tolerance),
+    )
+    return DesignAnswers(frequency, found.error, status, cautions, method)
+
+
+def _cautions_of_theory(
+    designs: SimilarDesigns, speeds: np.ndarray, deflection: np.ndarray, status: np.ndarray
+) -> Iterator[Caution]:
+    """Yield where linear theory ends, as `natural_modes` warns of it."""
+    unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
+    yield from caution_where(unstable, "a", 0.0, ": the beam diverges; see status")
+    strain = designs.strains(speeds)
+    large, bent = strain > LARGE_STRAIN, deflection > LARGE_DEFLECTION
+    if large.any():
+        yield from caution_where(large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}")
+    if bent.any():
+        at = np.unravel_index(np.nanargmax(deflection), bent.shape)
+        said = next(warn_of_static_deflection(deflection[at][None], 1.0, speeds[at][None]))
+        yield from caution_where(bent, "c", deflection, f": {said}")
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
@@ -153,14 +131,12 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
     yield from caution_where(worst > limit, "e", worst, said)
 
 
-def coarser_stack(
-    designs: SimilarDesigns,
-    basis: Discretization,
-    family: PencilFamily,
-    stack: PencilStack,
-    weights: np.ndarray,
-) -> PencilStack:
-    """The matrices of designs of some weights in the coarser basis."""
+def stacks_of(
+    designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
+) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
+    """Matrices of some designs in a basis and in the coarser one, of which family, and with which weights."""
+    family, weights = designs.family(basis), designs.weights(rows)
+    stack = family.stack(weights)
     if family.coarse is not None:
-        return stack.part(family.coarse)
-    return designs.family(basis.coarser()).stack(weights)
+        return stack, stack.part(family.coarse), family, weights
+    return stack, designs.family(basis.coarser()).stack(weights), family, weights

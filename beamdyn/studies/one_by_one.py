@@ -1,9 +1,12 @@
-"""Answers of designs one by one, by the analysis of a single scene; of a response, for all speeds at once."""
+"""Answers of designs one by one, by the analysis of a single scene, and what effects left out would change.
+
+Of a response, all speeds of a design are solved at once.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,19 +14,20 @@ import numpy as np
 from beamdyn.common.announced import unannounced
 from beamdyn.common.designs import rows_of
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.scene.numbers import unit_of, with_numbers
+from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.spectrum.critical import CriticalPoint, critical_point
-from beamdyn.spectrum.modes import natural_modes
-from beamdyn.steady.crossings import label_crossing
+from beamdyn.spectrum.modes import Modes, natural_modes
+from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
-from beamdyn.steady.response import steady_response
+from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
-from beamdyn.transient.sweep import sweep
+from beamdyn.transient.sweep import Sweep, sweep
 
 SINGLE_CALLS = "single calls"
 _FAILURES = (ValueError, ArithmeticError)
@@ -103,7 +107,8 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
     """The answer of a design at its speeds; of all at once, or where these are refused of each."""
     analysis = _ANALYSES[question.what]
     try:
-        return analysis(question, with_numbers(question.scene, design), speeds)
+        asked = _Asked(question, with_numbers(question.scene, design), speeds)
+        return analysis.read(asked, analysis.solve(asked))
     except _FAILURES as error:
         if len(speeds) == 1:
             shape = 1, question.numbers
@@ -125,33 +130,73 @@ def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
     )
 
 
-def _frequencies(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    def at(speed: float) -> SpeedAnswer:
-        found = natural_modes(scene, speed, question.modes, question.discretization, question.tolerance)
-        return SpeedAnswer(found.frequency[None], found.error[None], found.status[None], found.warnings)
-
-    return _together([at(speed) for speed in speeds.tolist()])
+# Analyses -----------------------------------------------------------------------------------------
 
 
-def _critical_speed(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    found = critical_point(scene, question.discretization, question.tolerance)
-    answer = (np.array([[each]]) for each in (found.speed, found.error, _state_of(found)))
+class _Asked(NamedTuple):
+    """A question of one scene at speeds (S,) [rad/s]; a single one that is not used, where it has none."""
+
+    question: StudyQuestion
+    scene: Scene
+    speeds: np.ndarray
+
+
+def _own_effects(_: _Asked, found: Any) -> LeftOutEffects:
+    return found.left_out_effects
+
+
+@dataclass(frozen=True)
+class _Analysis:
+    """How a kind of question is answered: by an analysis, from whose result answer and model error are read.
+
+    Parameters
+    ----------
+    solve : callable
+        Makes the result of what is asked.
+    read : callable
+        The answer that a result has, at each of the speeds.
+    effects : callable
+        What the effects left out would change in the numbers of an answer.
+    """
+
+    solve: Callable[[_Asked], Any]
+    read: Callable[[_Asked, Any], SpeedAnswer]
+    effects: Callable[[_Asked, Any], LeftOutEffects] = _own_effects
+
+
+def _solve_modes(asked: _Asked) -> list[Modes]:
+    how = asked.question.modes, asked.question.discretization, asked.question.tolerance
+    return [natural_modes(asked.scene, speed, *how) for speed in asked.speeds.tolist()]
+
+
+def _read_modes(_: _Asked, found: list[Modes]) -> SpeedAnswer:
+    return _together(
+        [SpeedAnswer(m.frequency[None], m.error[None], m.status[None], m.warnings) for m in found]
+    )
+
+
+def _solve_critical_point(asked: _Asked) -> CriticalPoint:
+    return critical_point(asked.scene, asked.question.discretization, asked.question.tolerance)
+
+
+def _read_critical_point(_: _Asked, found: CriticalPoint) -> SpeedAnswer:
+    state = BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
+    state = NOT_FOUND if np.isinf(found.error) else state
+    answer = (np.array([[each]]) for each in (found.speed, found.error, state))
     return SpeedAnswer(*answer, warnings=found.warnings)
 
 
-def _state_of(found: CriticalPoint) -> str:
-    if np.isinf(found.error):
-        return NOT_FOUND
-    return BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
+def _solve_crossings(asked: _Asked) -> Crossings:
+    question = asked.question
+    return resonance_speeds(asked.scene, question.speed, question.modes, 1, question.discretization)
 
 
-def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+def _read_crossings(asked: _Asked, found: Crossings) -> SpeedAnswer:
     """The lowest crossing of each mode with each line."""
-    found = resonance_speeds(scene, question.speed, question.modes, discretization=question.discretization)
-    lowest: dict[Any, Any] = {}
+    question, lowest = asked.question, dict[Any, Any]()
     for crossing in found:  # they ascend in speed
         lowest.setdefault(crossing_key(crossing), crossing)
-    there = {line_key(*each) for each in lines_of(scene, question.speed)}
+    there = {line_key(*each) for each in lines_of(asked.scene, question.speed)}
     shape = 1, question.numbers
     value, error = np.full(shape, np.nan), np.zeros(shape)
     status = np.full(shape, max(RESONATES, NO_RESONANCE, NO_LINE, key=len))
@@ -167,41 +212,117 @@ def _crossings(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> Spe
     return SpeedAnswer(value, error, status, (*found.warnings, *more))
 
 
-def _amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    tolerance, (ascending, order) = question.tolerance or OF_RESPONSES, _ascending(speeds)
-    found = steady_response(scene, ascending, tolerance=tolerance, discretization=question.discretization)
-    with np.errstate(divide="ignore", invalid="ignore"):  # the errors of a response are relative to its bound
-        error = (found.error + found.mode_error) * found.bound / found.amplitude
-    error = np.where(np.isnan(error), np.inf, error)
-    columns = (values[order, None] for values in (found.amplitude, error, np.asarray(found.status)))
-    warned = found.is_warned[order] if found.warnings else None
-    return SpeedAnswer(*columns, warnings=found.warnings, warned=warned)
+def _effects_of_crossings(asked: _Asked, found: Crossings) -> LeftOutEffects:
+    """Those of the lowest crossing of each mode with each line; nan where there is none."""
+    keys = [crossing_key(each) for each in found]
+    places = [keys.index(each.key) if each.key in keys else -1 for each in asked.question.resonances]
+    effects = found.left_out_effects
+    changes = {name: np.append(change, np.nan)[places] for name, change in effects.changes.items()}
+    return replace(effects, changes=changes, shape=(len(places),))
 
 
-def _peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    tolerance, (ascending, order) = question.tolerance or OF_RESPONSES, _ascending(speeds)
-    options: dict[str, Any] = {"tolerance": tolerance, "discretization": question.discretization}
-    found = sweep(scene, ascending, question.window, **options)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        error = (found.time_error + found.mode_error * found.largest) / found.peaks
-    error = np.where(np.isnan(error), np.inf, error)
+def _solve_response(asked: _Asked) -> SteadyResponse:
+    return steady_response(asked.scene, np.unique(asked.speeds), **_options_of_responses(asked))
+
+
+def _solve_sweep(asked: _Asked) -> Sweep:
+    return sweep(asked.scene, np.unique(asked.speeds), asked.question.window, **_options_of_responses(asked))
+
+
+def _options_of_responses(asked: _Asked) -> dict[str, Any]:
+    question = asked.question
+    return {"tolerance": question.tolerance or OF_RESPONSES, "discretization": question.discretization}
+
+
+def _read_amplitudes(asked: _Asked, found: SteadyResponse) -> SpeedAnswer:
+    error = (found.error + found.mode_error) * found.bound  # both are relative to the bound
+    warned = found.is_warned if found.warnings else None
+    return _read_responses(asked, found, (found.amplitude, error, np.asarray(found.status)), warned)
+
+
+def _read_peaks(asked: _Asked, found: Sweep) -> SpeedAnswer:
+    error = found.time_error + found.mode_error * found.largest
     failed = [status for status in found.status if status != DONE]
     status = np.where(np.isin(found.status, failed), "failed", DONE)
-    columns = (values[order, None] for values in (found.peaks, error, status))
-    warned = found.is_warned(tolerance)[order] if found.warnings else None
-    return SpeedAnswer(*columns, warnings=(*found.warnings, *dict.fromkeys(failed)), warned=warned)
+    warned = found.is_warned(asked.question.tolerance or OF_RESPONSES) if found.warnings else None
+    return _read_responses(asked, found, (found.peaks, error, status), warned, tuple(dict.fromkeys(failed)))
 
 
-def _ascending(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The speeds in ascending order, each once, and the place of each of those given."""
-    ascending, order = np.unique(speeds, return_inverse=True)
-    return ascending, order
+def _read_responses(
+    asked: _Asked,
+    found: Any,
+    answer: tuple[np.ndarray, np.ndarray, np.ndarray],
+    warned: np.ndarray | None,
+    failed: tuple[str, ...] = (),
+) -> SpeedAnswer:
+    """Values, relative errors and states at each speed given, of those at all speeds, each once."""
+    order = np.unique(asked.speeds, return_inverse=True)[1]
+    value, error, status = answer
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = error / value
+    columns = (each[order, None] for each in (value, np.where(np.isnan(error), np.inf, error), status))
+    where = None if warned is None else warned[order]
+    return SpeedAnswer(*columns, warnings=(*found.warnings, *failed), warned=where)
 
 
-_ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] = {
-    "frequencies": _frequencies,
-    "critical_speed": _critical_speed,
-    "crossings": _crossings,
-    "amplitude": _amplitude,
-    "peak": _peak,
+_ANALYSES: dict[str, _Analysis] = {
+    "frequencies": _Analysis(_solve_modes, _read_modes, lambda _, found: found[0].left_out_effects),
+    "critical_speed": _Analysis(
+        _solve_critical_point, _read_critical_point, lambda _, found: found.left_out_effects.at(np.newaxis)
+    ),
+    "crossings": _Analysis(_solve_crossings, _read_crossings, _effects_of_crossings),
+    "amplitude": _Analysis(_solve_response, _read_amplitudes),
+    "peak": _Analysis(_solve_sweep, _read_peaks),
 }
+
+
+# Effects left out ---------------------------------------------------------------------------------
+
+
+def left_out_of_design(
+    question: StudyQuestion, scene: Scene, design: Mapping[str, float]
+) -> LeftOutEffects | None:
+    """What the effects left out would change in the answer of a design.
+
+    Parameters
+    ----------
+    question : StudyQuestion
+        What is asked.
+    scene : Scene
+        The scene of the design.
+    design : mapping of str to float
+        Its inputs.
+
+    Returns
+    -------
+    LeftOutEffects or None
+        Relative changes (m,) of its m numbers; None if it has no answer.
+    """
+    asked = _Asked(question, scene, np.array([design.get(SPEED, question.speed)]))
+    analysis = _ANALYSES[question.what]
+    try:
+        with unannounced():  # the study has warned
+            return analysis.effects(asked, analysis.solve(asked))
+    except _FAILURES:
+        return None
+
+
+def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOutEffects:
+    """The effects of p designs with m numbers each as one, of shape (p, m); nan where one has none."""
+    known = [effects for effects in each if effects is not None]
+    names = dict.fromkeys(name for effects in known for name in effects.changes)
+    nothing = np.full(numbers, np.nan)
+
+    def of(effects: LeftOutEffects | None, name: str) -> np.ndarray:
+        if effects is None:
+            return nothing
+        return np.broadcast_to(effects.changes.get(name, 0.0), (numbers,))
+
+    return LeftOutEffects(
+        changes={name: np.array([of(effects, name) for effects in each]) for name in names},
+        not_known={name: why for effects in reversed(known) for name, why in effects.not_known.items()},
+        assumed={name: why for effects in known for name, why in effects.assumed.items()},
+        not_modelled=known[0].not_modelled if known else (),
+        reasons={name: why for effects in known for name, why in effects.reasons.items()},
+        shape=(len(each), numbers),
+    )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.crossings import PossibleCrossing
+from beamdyn.studies.refinement import Refinement
 
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
 MODES = 3  # of frequencies and crossings by default
@@ -91,6 +92,10 @@ class StudyQuestion:
         if self.what == "crossings":
             return tuple(each.label for each in self.resonances)
         return tuple(f"mode {i + 1}" for i in range(self.modes)) if self.what == "frequencies" else ()
+
+    def refinement(self, reference: Scene) -> Refinement:
+        """The bases in which designs that are similar to a reference are solved."""
+        return Refinement(reference, self.modes, self.discretization, self.tolerance)
 
     @property
     def numbers(self) -> int:

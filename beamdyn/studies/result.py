@@ -16,7 +16,7 @@ from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelErro
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.answers import NO_ANSWERS, REFUSED
-from beamdyn.studies.left_out_of_designs import join_effects, left_out_of_design
+from beamdyn.studies.one_by_one import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
 
 if TYPE_CHECKING:

@@ -36,12 +36,11 @@ from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
-from beamdyn.studies.critical_speeds import SimilarCriticalSpeeds
-from beamdyn.studies.crossings import SimilarCrossings, list_resonances
-from beamdyn.studies.frequencies import SimilarFrequencies
+from beamdyn.studies.critical_speeds import critical_speeds_of
+from beamdyn.studies.crossings import crossings_of, list_resonances
+from beamdyn.studies.frequencies import frequencies_of
 from beamdyn.studies.one_by_one import SingleDesigns
 from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
-from beamdyn.studies.refinement import Refinement
 from beamdyn.studies.result import Study
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
 
@@ -286,14 +285,16 @@ class SimilarTask:
 
     def answers(self) -> DesignAnswers:
         """The answers of the designs."""
-        question, how = self.question, (self.question.discretization, self.question.tolerance)
+        question, designs, refinement = (
+            self.question,
+            self.designs,
+            self.question.refinement(self.designs.reference),
+        )
         if question.what == "frequencies":
-            ratio = self._damping
-            return SimilarFrequencies(self.designs, self.speeds, question.modes, *how, ratio).answers()
+            return frequencies_of(designs, refinement, self.speeds, self._damping)
         if question.what == "critical_speed":
-            return SimilarCriticalSpeeds(self.designs, *how, self._single).answers()
-        sought = question.resonances, question.speed, question.modes
-        return SimilarCrossings(self.designs, question.scene, *sought, *how).answers()
+            return critical_speeds_of(designs, refinement, self._single)
+        return crossings_of(designs, refinement, question.scene, question.resonances, question.speed)
 
     @property
     def _damping(self) -> np.ndarray | None:
@@ -411,9 +412,12 @@ class _Request:
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
             return False  # each plane has lines of its own
-        refinement = Refinement(self._reference, question.modes, question.discretization, question.tolerance)
         parts = (self._similar(rows) for rows in self.others.chunks(_AT_ONCE))
-        return refinement.can_be_batched and all(p.can_be_solved for p in parts) and self._few_nodes
+        return (
+            question.refinement(self._reference).can_be_batched
+            and all(p.can_be_solved for p in parts)
+            and self._few_nodes
+        )
 
     @property
     def _few_nodes(self) -> bool:

@@ -197,7 +197,8 @@ def test_warnings_say_of_how_many_designs():
 
 
 def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
-    from beamdyn.studies.frequencies import SimilarFrequencies
+    from beamdyn.studies.frequencies import solve_frequencies
+    from beamdyn.studies.refinement import Refinement
     from beamdyn.studies.similar import SimilarDesigns
 
     columns = {"beam.thickness": [3e-4, 2e-4], "beam.length": [0.05, 0.04], "mount.setting_angle": [1.0, 2.0]}
@@ -206,13 +207,13 @@ def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
     scenes = [with_numbers(SCENE, {name: v[i] for name, v in columns.items()}) for i in range(2)]
     first = {name: float(values[0]) for name, values in columns.items()}
     designs = SimilarDesigns(scenes[0], first, columns)
-    request = SimilarFrequencies(designs, np.full((2, 1), 20.0), 3, "ritz", None)
-    found = request.solve()
+    speeds = np.full((2, 1), 20.0)
+    found = solve_frequencies(designs, Refinement(scenes[0], 3, "ritz", None), speeds)
     singles = [bd.natural_modes(scene, 20.0) for scene in scenes]
     deflection = [abs(single.static_deflection) / single.scene.beam.length for single in singles]
     np.testing.assert_allclose(found.deflection[:, 0], deflection, rtol=1e-10)  # error of the basis
     strain = [single.axial_strain for single in singles]
-    np.testing.assert_allclose(request.designs.strains(request.speeds)[:, 0], strain, rtol=ROUNDING)
+    np.testing.assert_allclose(designs.strains(speeds)[:, 0], strain, rtol=ROUNDING)
 
 
 def test_a_tolerance_takes_the_basis_of_a_single_call():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from itertools import islice
 from os import PathLike
@@ -181,14 +181,14 @@ class TaskRunner:
         """
         run = _TaskRun(self, solve, keep, sum(task.size for task in tasks))
         if self.executor is not None:
-            run.by(self.executor, _IN_FLIGHT, tasks)
+            run.through(self.executor, _IN_FLIGHT, tasks)
         elif self.workers == 1 or len(tasks) == 1:
             run.here(tasks)
-        elif self._pool is not None:
-            run.beside(self._pool, tasks)
         else:
-            with Workers(min(self.workers, len(tasks)) - 1) as pool:
-                run.beside(pool, tasks)
+            with (
+                nullcontext(self._pool) if self._pool else Workers(min(self.workers, len(tasks)) - 1) as pool
+            ):
+                run.through(pool, _PER_WORKER * pool.count, tasks, helps=True)
 
 
 class _Pending(NamedTuple):
@@ -215,30 +215,18 @@ class _TaskRun:
         for pending in self._missing(tasks):
             self._finish(pending, _solve(self.solve, pending.made))
 
-    def by(self, executor: Executor, most: int, tasks: Sequence[Task]) -> None:
-        """Have an executor solve the tasks, at most so many at a time."""
+    def through(self, executor: Executor, most: int, tasks: Sequence[Task], helps: bool = False) -> None:
+        """Have an executor solve the tasks, at most so many at a time; `helps` solves some here meanwhile."""
         missing = self._missing(tasks)
         try:
             while True:
                 self._submit(executor, islice(missing, most - len(self.flying)))
-                if not self.flying:
-                    return
-                self._collect(wait(self.flying, return_when=FIRST_COMPLETED).done)
-        finally:
-            self._land()
-
-    def beside(self, workers: Workers, tasks: Sequence[Task]) -> None:
-        """Solve the tasks here and in workers, which spares the start of one process."""
-        missing, most = self._missing(tasks), _PER_WORKER * workers.count
-        try:
-            while True:
-                self._submit(workers, islice(missing, most - len(self.flying)))
-                if (own := next(missing, None) or self._take_back()) is not None:
+                own = (next(missing, None) or self._take_back()) if helps else None
+                if own is not None:
                     self._finish(own, _solve(self.solve, own.made))
                 elif not self.flying:
                     return
-                limit = None if own is None else 0.0
-                self._collect(wait(self.flying, limit, FIRST_COMPLETED).done)
+                self._collect(wait(self.flying, None if own is None else 0.0, FIRST_COMPLETED).done)
         finally:
             self._land()
 
