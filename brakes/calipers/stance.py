@@ -18,6 +18,7 @@ from beamdyn.common.described import Described
 from brakes.planar.inputs import check_inputs
 
 GRAVITY = 9.80665  # [m/s2] standard
+EQUAL = 1e-9  # relative difference that is rounding
 TyreFriction = Annotated[float, Described("", "mu_t", "friction of the tyre on the road", above=0, most=2)]
 Wheelbase = Annotated[float, Described("m", "L", "distance of the axles", above=0)]
 Height = Annotated[float, Described("m", "h", "height of the centre of gravity, with rider", above=0)]
@@ -73,7 +74,7 @@ class Stance:
         for name in place:
             self._check_complete(name, place)
         x, length = self.cg_behind_front, self.wheelbase
-        if x is not None and length is not None and x >= length:
+        if x is not None and length is not None and x >= length * (1 - EQUAL):
             bound = "it is behind the rear axle, at {other} = {limit}"
             raise InvalidValue("cg_behind_front", x, bound, unit="m", limit=length, other="wheelbase")
 

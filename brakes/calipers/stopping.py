@@ -11,11 +11,10 @@ import numpy as np
 from beamdyn.common.checks import InvalidValue, kind, not_negative, positive
 from beamdyn.common.one_line import number
 from beamdyn.common.results import Result
-from brakes.calipers.stance import GRAVITY, Stance
+from brakes.calipers.stance import EQUAL, GRAVITY, Stance
 
 _RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
-_EQUAL = 1e-9  # relative difference that is rounding
 _MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
 
@@ -141,11 +140,12 @@ def stop(
     most = float(np.fmin(grip, pitch)) * inertia / factor
     most = math.inf if math.isnan(most) else most
     distance, peak = _distance(energy, factor, pad_force, most)
-    limited_by = "brake" if peak <= most * (1 + _EQUAL) else "grip" if grip < pitch else "pitching over"
+    limit = "grip" if grip < pitch * (1 - EQUAL) else "pitching over"
+    limited_by = "brake" if peak <= most * (1 + EQUAL) else limit
     stops = distance < math.inf
     deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
     held = factor * min(peak, most) / inertia / GRAVITY if math.isnan(grip) else 0.0
-    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP * (1 + _EQUAL) else "beyond grip"
+    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP * (1 + EQUAL) else "beyond grip"
     words = _WORDS[status].format(distance=distance, held=held)
     return StoppingDistance(
         distance,
@@ -220,7 +220,7 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
     if tyre_radius is None:
         raise ValueError("rim_radius needs tyre_radius, the rolling radius of the wheels in m")
     rim = positive("rim_radius", rim_radius, "m")
-    if rim > tyre_radius:
+    if rim > tyre_radius * (1 + EQUAL):
         bound = "it must not exceed {other} = {limit}"
         raise InvalidValue("rim_radius", rim, bound, unit="m", limit=tyre_radius, other="tyre_radius")
     return rim / tyre_radius

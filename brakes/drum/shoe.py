@@ -109,7 +109,7 @@ class Shoe:
         )
         far = np.hypot(b, y)
         name, bound = "distance of the pivot from the centre", "more than two drum radii"
-        refuse(far > 2 * np.asarray(self.drum_radius) + least, name, far, "m", bound, "give {unit}")
+        refuse(far > 2 * (np.asarray(self.drum_radius) + least), name, far, "m", bound, "give {unit}")
         arm = self.force_arm - np.asarray(y)
         refuse(arm <= least, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
 

@@ -133,7 +133,7 @@ class DuoServo:
         bound = "larger than the drum allows: the lining cannot reach it"
         refuse(np.isnan(turn), "clearance", c, "m", bound, advice)
         tip = self._after_seating(turn, *self.tip)
-        outside = np.hypot(*tip) >= self.drum_radius
+        outside = np.hypot(*tip) >= self.drum_radius * (1 - LEAST_MARGIN)
         bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
         refuse(outside, "clearance", c, "m", bound, advice)
         psi = self._drum_turn(*tip)
@@ -345,8 +345,8 @@ class ShoeMotion(Result):
                 f"the lining enters the drum by {1e3 * depth[k]:.3g} mm near {np.degrees(angle[k]):.0f} deg: "
                 "it touches there before it does at the contact point"
             )
-        stroke = self.geometry.piston_stroke
-        if stroke is not None and np.any(self.left_travel > stroke):
+        stroke, least = self.geometry.piston_stroke, LEAST_MARGIN * np.asarray(self.geometry.drum_radius)
+        if stroke is not None and np.any(self.left_travel > stroke + least):
             sentences.append(
                 f"the left piston comes out {1e3 * np.max(self.left_travel):.4g} mm, "
                 f"past its stroke of {1e3 * np.min(stroke):.4g} mm"
@@ -376,6 +376,6 @@ def _error_of_arccos(error: np.ndarray, sine: np.ndarray) -> np.ndarray:
 
 
 def _arccos(value: Numbers) -> np.ndarray:
-    """Arc cosine; nan where there is none."""
+    """Arc cosine; nan where there is none, or rounding decides whether there is."""
     value = np.asarray(value)
-    return np.arccos(np.where(np.abs(value) <= 1, value, np.nan))
+    return np.arccos(np.where(np.abs(value) <= 1 - LEAST_MARGIN, value, np.nan))

@@ -447,7 +447,7 @@ class _Phases(NamedTuple):
 def _brake(V: np.ndarray, A: np.ndarray, t2: np.ndarray) -> _Phases:
     """Phases of a stop whose deceleration rises linearly to -A within t2; for A >= 0 there is no end."""
     v2 = V + A * t2 / 2
-    in_rise = v2 <= 0
+    in_rise = v2 <= LEAST_MARGIN * V
     slowing = np.where(A < 0, A, -1.0)  # the caller replaces what follows from the -1
     tau = np.sqrt(2 * V * t2 / -slowing)
     rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)

@@ -154,9 +154,14 @@ def assemble(mechanism: Mechanism) -> Position:
         else:
             break
         y, rows = y - step, trial
-    if np.abs(rows.value[:, :m]).max(initial=0.0) > max(_CLOSED, 100 * system.rounding):
+    if np.abs(rows.value[:, :m]).max(initial=0.0) > _rounding(system):
         raise AssemblyError(_gaps(system, rows.value[0]))
     return Position(mechanism, y[0])
+
+
+def _rounding(system: System) -> float:
+    """Gap of a joint, over the length of the mechanism, and passing of a toggle position that is rounding."""
+    return max(_CLOSED, 100 * system.rounding)
 
 
 def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarray) -> Stroke:
@@ -211,7 +216,9 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     nodes = [node.reversed() for node in reversed(down[1:])] + up
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
-        y = solve_at_values(system, nodes, k, start.value[k] + np.append(target, ends))
+        wanted = start.value[k] + np.append(target, ends)
+        within = nodes[0].value[k], nodes[-1].value[k]  # a toggle position may be passed by rounding
+        y = solve_at_values(system, nodes, k, np.clip(wanted, *within))
     except np.linalg.LinAlgError:
         raise OutOfReachError(
             f"no position is found at one of the values of {driver!r}: it turns back or motions branch there",
@@ -308,8 +315,9 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
     target, before = float(weight @ start.value) + value, start
     for node in follow(system, start):
         last = _before_turning(system, before, node, (np.eye(len(unit))[k], weight))
-        if weight @ last.value >= target:
-            y = solve_at_sum(system, before, last, weight, target)
+        slack = 0.0 if last is node else _rounding(system) * system.length
+        if weight @ last.value >= target - slack:
+            y = solve_at_sum(system, before, last, weight, min(target, float(weight @ last.value)))
             return float((node_at(system, y, last.tangent).value[k] - start.value[k]) * unit[k])
         if last is not node:
             reached, moved = weight @ (last.value - start.value), (last.value[k] - start.value[k]) * unit[k]
@@ -356,7 +364,7 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
     for node in follow(system, start) if value else ():
         if node.rate[k] * sense <= 0:
             turning = find_zero(system, nodes[-1], node, lambda n: n.rate[k])
-            if (target - turning.value[k]) * sense > 0:
+            if (target - turning.value[k]) * sense > _rounding(system):
                 reached = (turning.value[k] - start.value[k]) * _units(system)[k]
                 beside = (
                     "just short of it, " if f"{reached:.4g}" == f"{value * _units(system)[k]:.4g}" else ""
@@ -366,7 +374,7 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
                     f"{_amount(mechanism, driver, reached)} (toggle position)",
                     "stay below it, drive another load, or follow the motion past it with trace",
                 )
-            node = turning
+            return [*nodes, turning]
         nodes.append(node)
         if (node.value[k] - target) * sense >= 0:
             return nodes
