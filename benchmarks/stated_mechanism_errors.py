@@ -1,8 +1,8 @@
 """Whether the stated errors of mechanisms cover the true ones.
 
 Run: python -m benchmarks.stated_mechanism_errors [--mechanisms N].  Random mechanisms, without friction and
-sliding in either direction, some of them drawn far away or with nearly the friction that jams them, against
-equilibrium to 40 digits.
+sliding in either direction, some of them drawn far away or with nearly the friction that jams them, and
+blocks on round drums that have turned, against equilibrium to 40 digits.
 """
 
 from __future__ import annotations
@@ -26,6 +26,14 @@ _LEAST = 1e-17  # true error below which it counts as this much: a double holds 
 _FAR = 1e4  # largest shift of a mechanism [m]
 
 
+class Case(NamedTuple):
+    """A mechanism, the load that drives it where it has friction, and by how much that has moved [rad, m]."""
+
+    mechanism: planar.Mechanism
+    driver: str | None
+    moved: float = 0.0
+
+
 class Errors(NamedTuple):
     """Stated and true relative error of the forces of a mechanism."""
 
@@ -33,17 +41,48 @@ class Errors(NamedTuple):
     true: float
 
 
-def draw(rng: np.random.Generator) -> tuple[planar.Mechanism, str | None]:
-    """A mechanism, and the load that drives it where it has friction; one in three is drawn far away."""
+def draw(rng: np.random.Generator) -> Case:
+    """A random mechanism; one in three is drawn far away."""
     mechanism, driver = (
         draw_mechanism(rng) if rng.random() < 0.5 else (mechanisms.random_mechanism(rng), None)
     )
     if driver is not None and rng.random() < 0.5:
         mechanism = _near_jamming(mechanism, driver, 1 - 10 ** rng.uniform(-8, -1))
-    if rng.random() < 0.3:
-        away = 10 ** rng.uniform(0, np.log10(_FAR)) * np.exp(2j * np.pi * rng.random())
-        mechanism = transform(mechanism, shift=away, angle=rng.uniform(0, 6))
-    return mechanism, driver
+    return Case(_maybe_far(rng, mechanism), driver)
+
+
+def draw_on_round_face(rng: np.random.Generator) -> Case:
+    """One or two levers that press blocks on a drum, which has turned: nothing else moves by that."""
+    axle, radius = mechanisms.random_point(rng), rng.uniform(0.1, 0.5)
+    joints: list[planar.Joint] = [
+        planar.Pin("axle", "drum", "ground", axle, radius=0.1 * radius, friction=rng.choice([0.0, 0.2]))
+    ]
+    loads: list[planar.Load] = [planar.Moment("torque", "drum")]
+    levers = [f"lever {k}" for k in range(rng.integers(1, 3))]
+    for lever in levers:
+        out = np.exp(2j * np.pi * rng.random())
+        block = complex(*axle) + radius * out
+        fulcrum = block + out * rng.uniform(-0.1, 0.3) + 1j * out * rng.uniform(0.2, 1) * rng.choice([-1, 1])
+        at, pivot = (block.real, block.imag), (fulcrum.real, fulcrum.imag)
+        joints += [
+            planar.Pin(f"fulcrum of {lever}", lever, "ground", pivot),
+            planar.Contact(
+                f"block of {lever}", lever, "drum", at, centre=axle, friction=rng.uniform(0.1, 0.6)
+            ),
+        ]
+        loads.append(mechanisms.random_load(rng, "Force", f"hand of {lever}", [lever], rng.uniform(1, 2)))
+    mechanism = planar.Mechanism(("drum", *levers), tuple(joints), tuple(loads))
+    if rng.random() < 0.5:
+        mechanism = _near_jamming(mechanism, "torque", 1 - 10 ** rng.uniform(-8, -1))
+    return Case(_maybe_far(rng, mechanism), "torque", rng.uniform(-3, 3))
+
+
+def _maybe_far(rng: np.random.Generator, mechanism: planar.Mechanism) -> planar.Mechanism:
+    """The mechanism, one in three turned and shifted by up to 10 km."""
+    if rng.random() >= 0.3:
+        return mechanism
+    away = 10 ** rng.uniform(0, np.log10(_FAR)) * np.exp(2j * np.pi * rng.random())
+    return transform(mechanism, shift=away, angle=rng.uniform(0, 6))
 
 
 def _near_jamming(mechanism: planar.Mechanism, driver: str, part: float) -> planar.Mechanism:
@@ -70,12 +109,13 @@ def _with_friction(mechanism: planar.Mechanism, factor: float) -> planar.Mechani
     return planar.Mechanism(mechanism.bodies, tuple(joints), mechanism.loads)
 
 
-def errors_of(mechanism: planar.Mechanism, driver: str | None) -> Iterator[Errors]:
-    """Errors of the equilibria of a mechanism that have an answer."""
+def errors_of(mechanism: planar.Mechanism, driver: str | None, moved: float = 0.0) -> Iterator[Errors]:
+    """Errors of the equilibria of a mechanism that have an answer, as the drawing's where it has moved."""
     if driver is None:
         yield from _compared(planar.solve(mechanism))
         return
-    found = planar.solve_with_friction(mechanism, driver)
+    position = planar.stroke(mechanism, driver, [moved]).position[0] if moved else None
+    found = planar.solve_with_friction(mechanism, driver, position)
     for way in (found.without, found.squeeze, found.release):
         yield from _compared(way)
 
@@ -104,23 +144,27 @@ def _compared(found: planar.Equilibrium) -> Iterator[Errors]:
         yield Errors(float(found.error), max(wrong) / largest)
 
 
-def measure(number: int, seed: int = SEED) -> list[Errors]:
-    """Errors of so many random mechanisms."""
+KINDS = {"mechanisms": draw, "blocks on drums that have turned": draw_on_round_face}
+
+
+def measure(number: int, kind: str = "mechanisms", seed: int = SEED) -> list[Errors]:
+    """Errors of so many random mechanisms of a kind."""
     rng = np.random.default_rng(seed)
-    return [errors for _ in range(number) for errors in errors_of(*draw(rng))]
+    return [errors for _ in range(number) for errors in errors_of(*KINDS[kind](rng))]
 
 
 def rows(number: int) -> Iterator[Row]:
     """How many stated errors cover the true ones, and by how much they are too large."""
-    stated, true = np.array(measure(number)).T
-    over = stated / np.maximum(true, _LEAST)
-    yield (
-        f"{number} mechanisms, {len(stated)} equilibria: stated errors that cover",
-        f"{(over >= 1).mean():.2%}",
-        "99.9 %",
-    )
-    yield "... true over stated: largest", f"{(1 / over).max():.2g}", ""
-    yield "... stated over true: median", f"{np.median(over):.3g}", "100"
+    for kind in KINDS:
+        stated, true = np.array(measure(number, kind)).T
+        over = stated / np.maximum(true, _LEAST)
+        yield (
+            f"{number} {kind}, {len(stated)} equilibria: stated errors that cover",
+            f"{(over >= 1).mean():.2%}",
+            "99.9 %",
+        )
+        yield "... true over stated: largest", f"{(1 / over).max():.2g}", ""
+        yield "... stated over true: median", f"{np.median(over):.3g}", "100"
 
 
 def main() -> None:

@@ -61,6 +61,13 @@ def _unit(v: Sequence[float]) -> tuple[mpf, mpf]:
     return x / size, y / size
 
 
+def _normal(contact: planar.Contact) -> tuple[mpf, mpf]:
+    """Normal of a straight face, or away from the centre of a round one."""
+    if contact.centre is None:
+        return _unit(contact.normal or (0.0, 1.0))
+    return _unit([mpf(p) - mpf(c) for p, c in zip(contact.at, contact.centre, strict=True)])
+
+
 def _pull(bodies: Sequence[str], points: Sequence[Sequence[float]]) -> Wrench:
     """Unit tension along a polyline through points of bodies."""
     parts = []
@@ -85,8 +92,8 @@ def joint_forces(joint: planar.Joint) -> list[Unknown]:
         case planar.Slot():
             x, y = _unit(joint.along)
             return [Unknown(joint.name, _pair(joint.body, joint.other, joint.at, -y, x))]
-        case planar.Contact() if joint.normal is not None:
-            return [Unknown(joint.name, _pair(joint.body, joint.other, joint.at, *_unit(joint.normal)))]
+        case planar.Contact():
+            return [Unknown(joint.name, _pair(joint.body, joint.other, joint.at, *_normal(joint)))]
         case planar.RotationLock():
             ratio = mpf(joint.ratio)
             return [Unknown(joint.name, _sum(_couple(joint.body, 1), _couple(joint.other, -ratio)))]
@@ -122,7 +129,7 @@ def friction_force(joint: Any) -> tuple[Wrench, mpf]:
         mu = mpf(joint.friction)
         arm = mpf(joint.radius) * mu / mpmath.sqrt(1 + mu * mu)
         return _sum(_couple(joint.body, 1), _couple(joint.other, -1)), arm
-    along = _unit(joint.along) if isinstance(joint, planar.Slot) else _unit(joint.normal)
+    along = _unit(joint.along) if isinstance(joint, planar.Slot) else _normal(joint)
     x, y = along if isinstance(joint, planar.Slot) else (-along[1], along[0])
     return _pair(joint.body, joint.other, joint.at, x, y), mpf(joint.friction)
 
