@@ -67,10 +67,11 @@ READERS = {
     "beamdyn/common/edge/units.py",
     "beamdyn/common/edge/varied_inputs.py",
     "beamdyn/common/parallel/store.py",
+    "beamdyn/common/paths.py",
     "beamdyn/common/spreading/tolerances.py",
     "beamdyn/decks/stations.py",
     "beamdyn/output/campbell.py",
-    "beamdyn/studies/listed_numbers.py",
+    "beamdyn/scene/numbers.py",
 }
 PROBE = "import sys; from benchmarks.house import probe; probe(sys.argv[1:])"
 
