@@ -11,7 +11,7 @@ from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.views import View
 from brakes.answers.base import Answer, BrakeSweep
-from brakes.answers.planar_friction import MechanismFriction
+from brakes.answers.planar import MechanismFriction
 from brakes.answers.tables import sweep_table
 
 

@@ -27,9 +27,8 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
-from brakes.answers.planar import PlanarAnswer
-from brakes.answers.planar_friction import unknown_loads
-from brakes.answers.planar_tables import (
+from brakes.answers.planar import (
+    PlanarAnswer,
     describe_statics,
     format_size,
     joint_outputs,
@@ -37,16 +36,29 @@ from brakes.answers.planar_tables import (
     name_output,
     reactions_table,
     select_rows,
+    unknown_loads,
 )
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
 from brakes.config.caliper import CaliperInput
-from brakes.config.mechanism import MechanismInput, mechanism_from_dict
-from brakes.config.mechanism_inputs import PARTS, idle_inputs, inputs_of_tables, named_text
-from brakes.drawings.caliper import caliper_drawing, caliper_figure, stroke_charts, title_of
-from brakes.drawings.caliper_sketches import caliper_sketch, mechanism_sketch
+from brakes.config.mechanism import (
+    PARTS,
+    MechanismInput,
+    idle_inputs,
+    inputs_of_tables,
+    mechanism_from_dict,
+    named_text,
+)
+from brakes.drawings.caliper import (
+    caliper_drawing,
+    caliper_figure,
+    caliper_sketch,
+    mechanism_sketch,
+    stroke_charts,
+    title_of,
+)
 from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
-from brakes.planar.diagnosis import OppositeTravelError, join_names
+from brakes.planar.system import OppositeTravelError, join_names
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _AT_STOPS = 11  # positions of a stroke at which the slider stops

@@ -19,9 +19,11 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results import plain
-from brakes.answers.planar import PlanarAnswer
-from brakes.answers.planar_friction import BRANCHES, WITHOUT, MechanismFriction, unknown_loads
-from brakes.answers.planar_tables import (
+from brakes.answers.planar import (
+    BRANCHES,
+    WITHOUT,
+    MechanismFriction,
+    PlanarAnswer,
     describe_statics,
     format_force,
     joint_outputs,
@@ -30,13 +32,19 @@ from brakes.answers.planar_tables import (
     reactions_table,
     select_rows,
     units_of,
+    unknown_loads,
 )
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
-from brakes.drawings.mechanism import open_and_closed, with_lock, with_points
-from brakes.drawings.mechanism_stroke import LoadsOverStroke, mechanism_figure
+from brakes.drawings.mechanism import (
+    LoadsOverStroke,
+    mechanism_figure,
+    open_and_closed,
+    with_lock,
+    with_points,
+)
 from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
-from brakes.planar.diagnosis import join_names
+from brakes.planar.system import join_names
 
 _SCALES = {"mm": 1e-3, "deg": pi / 180}
 

@@ -13,8 +13,7 @@ from beamdyn.common.app.form_entries import Entries, entries_of, tables_of, toml
 from beamdyn.common.app.lists import Cell, Item, ListGroup, Lists
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input, describe
-from brakes.config.mechanism import SECTIONS, mechanism_from_dict
-from brakes.config.mechanism_inputs import inputs_of_tables
+from brakes.config.mechanism import SECTIONS, inputs_of_tables, mechanism_from_dict
 from brakes.planar import GROUND, JOINTS, LOADS, Mechanism, Part
 
 _PARTS: dict[str, type[Part]] = {part.key(): part for part in (*JOINTS, *LOADS)}

@@ -12,8 +12,7 @@ from brakes.calipers.designs import (
     VBrake,
 )
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
-from brakes.calipers.stance import Stance
-from brakes.calipers.stopping import StoppingDistance, stop
+from brakes.calipers.stopping import Stance, StoppingDistance, stop
 
 __all__ = [
     "NAMED",

@@ -21,11 +21,10 @@ from brakes.planar import (
     solve_with_friction,
     stroke,
 )
-from brakes.planar.diagnosis import OppositeTravelError
-from brakes.planar.inputs import check_inputs
 from brakes.planar.kinematics import MOST_POSITIONS, driver_at_travel
-from brakes.planar.part import OneWay
+from brakes.planar.part import OneWay, check_inputs
 from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolerance
+from brakes.planar.system import OppositeTravelError
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # N, a firm squeeze

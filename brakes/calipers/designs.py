@@ -22,8 +22,8 @@ from brakes.calipers.caliper import (
     Split,
 )
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
-from brakes.planar.inputs import DescribedPoint, check_inputs
-from brakes.planar.points import Point
+from brakes.planar.part import DescribedPoint, check_inputs
+from brakes.planar.rows import Point
 
 MM = 1e-3
 RIGHT, LEFT = "right arm", "left arm"

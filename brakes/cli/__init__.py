@@ -3,8 +3,7 @@
 from beamdyn.common.edge.completion import add_completion
 from brakes.answers import STANDARD
 from brakes.cli import caliper, forklift, interactive, published  # noqa: F401  (they add their commands)
-from brakes.cli.answering import add_command
-from brakes.cli.program import app, main
+from brakes.cli.answering import add_command, app, main
 
 __all__ = ["app", "main"]
 

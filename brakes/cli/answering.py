@@ -1,25 +1,52 @@
-"""The body of every command on a brake: read, solve one design or many, write files, print, warn."""
+"""The program `brakes`, and what every command on a brake does: read, solve, write files, print, warn."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from beamdyn.common.edge import program
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
 from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.spread_options import NO_SPREAD, OPTION, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
 from beamdyn.common.edge.varying import OPTION as VARY
-from brakes.cli.program import warn
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Question
     from brakes.answers.base import Answer, BrakeType
+
+
+# The program ``brakes`` ----------------------------------------------------------------------------------
+
+
+app = App(
+    name="brakes",
+    version=lambda: version("beamdyn"),
+    help="""Statics of brake mechanisms: bicycle calipers, drum brakes, a forklift's duo-servo brake.
+
+Inputs are TOML files with units; `brakes COMMAND --help` lists the options of a command.""",
+    help_epilogue=program.EXIT_CODES,
+    help_format="markdown",
+    suppress_keyboard_interrupt=False,
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; see `beamdyn.common.edge.program.run`."""
+    return program.run(app, arguments)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Print warnings on standard error."""
+    program.warn("brakes", warnings)
+
 
 BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
 What = Annotated[str | None, Parameter(name="--what")]

@@ -11,8 +11,7 @@ from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.program import examples
 from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
-from brakes.cli.answering import What, run_command
-from brakes.cli.program import app
+from brakes.cli.answering import What, app, run_command
 
 ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
 StageChoice = Literal["vehicle", "kinematics", "forces", "all"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from beamdyn.common.app.server import add_command
-from brakes.cli.program import app
+from brakes.cli.answering import app
 
 if TYPE_CHECKING:
     from beamdyn.common.app.screens import Program

@@ -7,7 +7,7 @@ from pathlib import Path
 from beamdyn.common.edge.outputs import check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.varying import SomeFolder
-from brakes.cli.program import app
+from brakes.cli.answering import app
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))

@@ -15,8 +15,8 @@ from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.calipers.stopping import check_wheels
-from brakes.planar.inputs import DescribedDirection, DescribedPoint
-from brakes.planar.points import Point as Coordinates
+from brakes.planar.part import DescribedDirection, DescribedPoint
+from brakes.planar.rows import Point as Coordinates
 
 SHORT_TEXTS = ConfigDict(str_max_length=200)  # of titles and names: they are drawn
 

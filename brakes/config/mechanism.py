@@ -1,8 +1,8 @@
-"""Any planar mechanism in TOML: bodies, joints and loads; and the choice between it and a named caliper."""
+"""Any planar mechanism in TOML: bodies, joints and loads, their inputs, and whether it is a named caliper."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from os import PathLike
 from typing import Annotated, Any
@@ -10,9 +10,9 @@ from typing import Annotated, Any
 from pydantic import Field, create_model
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.common.described import described_hints, description
+from beamdyn.common.described import described_hints, description, descriptions
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
-from beamdyn.common.edge.inputs import Section
+from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.edge.wording import in_small_units
@@ -24,11 +24,14 @@ from brakes.config.caliper import (
     CaliperInput,
     CaliperStopInput,
     Point,
+    PointQuantity,
     RunInput,
     model_of,
+    named,
 )
 from brakes.planar import JOINTS, LOADS, Joint, Load, Mechanism, Part
-from brakes.planar.inputs import DescribedPoint, is_list
+from brakes.planar.part import DescribedPoint, is_list
+from brakes.planar.rows import Point as Coordinates
 
 
 def load_mechanism(path: str | PathLike[str]) -> CaliperInput | MechanismInput:
@@ -205,3 +208,84 @@ def _table_with_points(table: Any, part: type[Part], known: Mapping[str, Any]) -
             many = is_list(hint) and isinstance(table[key], list)
             replaced[key] = [place(value) for value in table[key]] if many else place(table[key])
     return table | replaced
+
+
+# Descriptions of the inputs of calipers and mechanisms for forms and sweeps; named designs as TOML -------
+
+
+def _keys(part: type[Part]) -> str:
+    """The kind of part, and its required and optional keys, as help text."""
+    fields, keys = SECTIONS[part.key()].model_fields, {True: [], False: []}
+    for key, described in descriptions(part).items():
+        otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
+        keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
+    return f"{part.label}: {'; '.join(', '.join(some) for some in (keys[True], keys[False]) if some)}"
+
+
+PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
+_LISTED = ("points", *PARTS)
+
+
+def caliper_inputs(name: str) -> list[Input]:
+    """Inputs of the caliper of a name; those without dimensions where there is no such name."""
+    return describe(type(named(name)) if name in NAMED else CaliperInput)
+
+
+def mechanism_inputs(points: Iterable[str]) -> list[Input]:
+    """Inputs of a mechanism: one for each of its points, one for each list of parts."""
+    rest = {
+        entry.path: entry for entry in describe(CompleteMechanismInput) if _table(entry.path) not in _LISTED
+    }
+    place = PointQuantity("m", meaning="point in the drawing")
+    return [
+        rest.pop("title"),
+        rest.pop("bodies"),
+        *(_input(f"points.{name}", Coordinates, place, required=True) for name in points),
+        *(_input(part, list[dict], Quantity(meaning=words)) for part, words in PARTS.items()),
+        *rest.values(),
+    ]
+
+
+def _table(path: str) -> str:
+    return path.partition(".")[0]
+
+
+def _input(path: str, kind: Any, description: Quantity, required: bool = False) -> Input:
+    return Input(path, CompleteMechanismInput, kind, description, (), required, None if required else [])
+
+
+def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
+    """Inputs of the caliper or mechanism that the tables of a file describe."""
+    name, points = tables.get("caliper"), tables.get("points")
+    if isinstance(name, str):
+        return caliper_inputs(name)
+    return mechanism_inputs(points if isinstance(points, dict) else ())
+
+
+def idle_inputs(entries: Mapping[str, str]) -> list[str]:
+    """Paths of inputs of a caliper alone, where the entries of a form, by path, are of a plain mechanism."""
+    if any(text.strip() for path, text in entries.items() if _table(path) == "caliper"):
+        return []
+    stops = [path for path in entries if _table(path) == "stop"]
+    stops = [] if any(entries[path].strip() for path in stops) else stops
+    return ["run.finger", "run.wear", *stops]
+
+
+def named_text(name: str) -> str:
+    """TOML text of a named caliper with all its dimensions."""
+    given = named(name)
+    inputs = [entry for entry in caliper_inputs(name) if entry.path.startswith("dimensions.")]
+    lines = [f"{entry.name} = {_shown(entry)}" for entry in inputs]
+    return "\n".join([f"caliper = {show(given.caliper)}", "", "[dimensions]", *lines]) + "\n"
+
+
+def _shown(entry: Input) -> str:
+    """A dimension as a file gives it, lengths in mm."""
+    value: Any = entry.default
+    if isinstance(value, tuple):
+        return f"[{', '.join(_length(part) for part in value)}]"
+    return _length(value) if entry.quantity.unit == "m" else show(value)
+
+
+def _length(metres: float) -> str:
+    return f'"{1e3 * metres:.12g} mm"'

@@ -1,21 +1,24 @@
-"""A caliper with its curves, in one figure."""
+"""A caliper with its curves in one figure, and sketches explaining inputs of calipers and mechanisms."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
-from beamdyn.common.drawing.shapes import Drawing
-from brakes.calipers import Caliper, CaliperStroke
-from brakes.drawings.mechanism import open_and_closed
-from brakes.drawings.mechanism_stroke import merged, named_curves, travel_axis
-from brakes.planar import Equilibrium, Position
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketch
+from brakes.calipers import NAMED, Caliper, CaliperStroke
+from brakes.drawings.mechanism import merged, named_curves, open_and_closed, travel_axis
+from brakes.planar import Equilibrium, Position, solve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
 
 _HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # of the charts over the stroke, relative to one another
 
@@ -118,3 +121,120 @@ def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Ch
 
 def _sides(pair: np.ndarray) -> dict[str, np.ndarray]:
     return {"right pad": pair[:, 0], "left pad": pair[:, 1]}
+
+
+# Sketches that explain the inputs of calipers and mechanisms: dimensions, symbols of joints, angles ------
+
+
+_MM = 1e3
+_LETTERS = 9.0
+
+
+def caliper_sketch(name: str) -> Rows:
+    """A named caliper with the names of its dimensions, and the vehicle; for an unknown name the latter."""
+    return [[_dimensions(name)], [_bicycle()]] if name in NAMED else [[_bicycle()]]
+
+
+def _bicycle() -> Drawing:
+    """Dimensions of the vehicle that a caliper stops."""
+    s = Sketch()
+    R, L = 0.7, 2.1
+    cg = np.array([1.15, 2.0])
+    s.add(Outline([(-1.0, 0.0), (3.2, 0.0)], "ground", 2.0))
+    for x in (0.0, L):
+        s.add(Disc((x, R), R, "wheel", 1.6), Disc((x, R), 0.84 * R, "axis", 1.0))
+        s.axis((x, R))
+    frame = np.array([(0.0, R), (0.2, 1.7), (0.85, 0.75), (L, R), (1.35, 1.65), (0.2, 1.7)])
+    s.add(Outline(frame, "body", 3.0), Outline([(0.85, 0.75), (1.35, 1.65)], "body", 3.0))
+    s.add(Symbol("dot", cg, "weight", 7.0))
+    s.say("M", cg, (1.0, 1.0), "weight")
+    s.length("R", (L, R), (L, 0.0), (1.0, 0.0))
+    s.length("r", (0.0, R), 0.84 * R * np.array([-np.cos(0.5), -np.sin(0.5)]) + (0.0, R), (-0.3, 1.0))
+    s.length("h", (3.05, 0.0), (3.05, cg[1]), (1.0, 0.0))
+    s.dashed(cg, (3.15, cg[1]))
+    s.dashed((0.0, R), (0.0, -1.0))
+    s.dashed((L, 0.0), (L, -1.0))
+    s.dashed(cg, (cg[0], -0.36))
+    s.length("x", (0.0, -0.26), (cg[0], -0.26), (0.0, -1.0))
+    s.length("L", (0.0, -0.88), (L, -0.88), (0.0, -1.0))
+    s.arrow("v", (0.0, 2.15), (-0.8, 2.15))
+    return s.drawing("The vehicle that it stops", "A bicycle: R, r, L, h, x, M, v")
+
+
+def _dimensions(name: str) -> Drawing:
+    design = NAMED[name]()
+    drawn = caliper_drawing(design.build(), solve(design.build().mechanism), design.label)
+    points = {key: value for key, value in vars(design).items() if isinstance(value, tuple)}
+    middle = np.mean([*points.values()], axis=0)
+    places: dict[tuple[float, float], list[str]] = {}
+    for key, at in points.items():
+        places.setdefault(at, []).append(key.replace("_", " "))
+    labels = [
+        Label("\n".join(names), np.multiply(_MM, at), "dimension", tuple(np.sign(at - middle)), size=_LETTERS)
+        for at, names in places.items()
+    ]
+    words = f"Where the points of the form are: {', '.join(key.replace('_', ' ') for key in points)}"
+    marks = [Symbol("dot", np.multiply(_MM, at), "dimension", 5.0) for at in places]
+    shapes = [shape for shape in drawn.shapes if getattr(shape, "role", "") not in ("load", "reaction")]
+    return Drawing((*shapes, *marks), tuple(labels), f"{design.label}, seen from the front", words, unit="")
+
+
+def mechanism_sketch(stops: bool) -> Rows:
+    """The symbols of joints and loads, and the angles of directions; with a vehicle if it stops one."""
+    return [[_symbols()], [_directions()], *([[_bicycle()]] if stops else [])]
+
+
+def _symbols() -> Drawing:
+    s = Sketch()
+    symbols: Sequence[tuple[str, Callable[[Sketch, float, float], None]]] = (
+        ("pin", _pin),
+        ("pin on the ground", _grounded),
+        ("bar", _bar),
+        ("cable", _cable),
+        ("spring", _spring),
+        ("slot, contact", _face),
+    )
+    for i, (words, draw) in enumerate(symbols):
+        x, y = 2.6 * (i % 2), -0.8 * (i // 2)
+        draw(s, x, y)
+        s.labels.append(Label(words, (x + 0.4, y), "text", (1.0, 0.0), size=_LETTERS))
+    s.room = [(5.0, 0.0)]  # of the words on the right
+    return s.drawing("Signs of joints", "How pins, bars, cables, springs, slots and contacts are drawn")
+
+
+def _pin(s: Sketch, x: float, y: float) -> None:
+    s.add(Symbol("pin", (x, y), "pin"))
+
+
+def _grounded(s: Sketch, x: float, y: float) -> None:
+    s.add(Symbol("ground", (x, y), "ground", 14.0), Symbol("pin", (x, y), "pin"))
+
+
+def _line(s: Sketch, x: float, y: float, role: str, width: float, dash: tuple[float, ...] = ()) -> None:
+    s.add(Outline([(x - 0.35, y), (x + 0.35, y)], role, width, dash))
+
+
+def _bar(s: Sketch, x: float, y: float) -> None:
+    _line(s, x, y, "neutral", 4.0)
+
+
+def _cable(s: Sketch, x: float, y: float) -> None:
+    _line(s, x, y, "cable", 1.4, (5.0, 3.0))
+
+
+def _spring(s: Sketch, x: float, y: float) -> None:
+    _line(s, x, y, "spring", 1.4, (1.5, 2.0))
+
+
+def _face(s: Sketch, x: float, y: float) -> None:
+    _line(s, x, y, "contact", 1.6)
+
+
+def _directions() -> Drawing:
+    """Directions of some angles."""
+    s = Sketch()
+    for words, way in {"0 deg": (1.0, 0.0), "90 deg": (0.0, 1.0), "-30 deg": (0.87, -0.5)}.items():
+        s.add(Arrow((0.0, 0.0), way, "load", words, 1.6))
+        s.labels.append(Label(words, way, "text", way, size=_LETTERS))
+    s.room = [(-1.6, 0.0), (2.6, 0.0)]
+    return s.drawing("Directions and angles", "0 deg points to the right, 90 deg up")

@@ -1,4 +1,4 @@
-"""Sketches that explain the symbols of the forms: truck, duo-servo brake, drum brake, bicycle."""
+"""Sketches that explain the symbols of the forms: truck, duo-servo brake, drum brake."""
 
 from __future__ import annotations
 
@@ -181,32 +181,3 @@ def _cylinder() -> Drawing:
     s.dashed((-0.35, -0.25), (0.0, -0.25))
     s.length("d", (-0.22, -0.25), (-0.22, 0.25), (-1.0, 0.0))
     return s.drawing("Wheel cylinder", "The bore of a wheel cylinder and its pressure: d, p_h")
-
-
-# Bicycle --------------------------------------------------------------------------------------------------
-
-
-def bicycle_sketch() -> Drawing:
-    """Dimensions of the vehicle that a caliper stops."""
-    s = Sketch()
-    R, L = 0.7, 2.1
-    cg = np.array([1.15, 2.0])
-    s.add(Outline([(-1.0, 0.0), (3.2, 0.0)], "ground", 2.0))
-    for x in (0.0, L):
-        s.add(Disc((x, R), R, "wheel", 1.6), Disc((x, R), 0.84 * R, "axis", 1.0))
-        s.axis((x, R))
-    frame = np.array([(0.0, R), (0.2, 1.7), (0.85, 0.75), (L, R), (1.35, 1.65), (0.2, 1.7)])
-    s.add(Outline(frame, "body", 3.0), Outline([(0.85, 0.75), (1.35, 1.65)], "body", 3.0))
-    s.add(Symbol("dot", cg, "weight", 7.0))
-    s.say("M", cg, (1.0, 1.0), "weight")
-    s.length("R", (L, R), (L, 0.0), (1.0, 0.0))
-    s.length("r", (0.0, R), 0.84 * R * np.array([-np.cos(0.5), -np.sin(0.5)]) + (0.0, R), (-0.3, 1.0))
-    s.length("h", (3.05, 0.0), (3.05, cg[1]), (1.0, 0.0))
-    s.dashed(cg, (3.15, cg[1]))
-    s.dashed((0.0, R), (0.0, -1.0))
-    s.dashed((L, 0.0), (L, -1.0))
-    s.dashed(cg, (cg[0], -0.36))
-    s.length("x", (0.0, -0.26), (cg[0], -0.26), _DOWN)
-    s.length("L", (0.0, -0.88), (L, -0.88), _DOWN)
-    s.arrow("v", (0.0, 2.15), (-0.8, 2.15))
-    return s.drawing("The vehicle that it stops", "A bicycle: R, r, L, h, x, M, v")

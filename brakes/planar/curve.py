@@ -8,9 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from brakes.planar.diagnosis import OutOfReachError
-from brakes.planar.linear import decompose
-from brakes.planar.system import System
+from brakes.planar.system import OutOfReachError, System, decompose
 
 _SMALL_STEP = 1e-9  # convergence is quadratic: the next step would be below rounding
 _GUIDING_STEP = 1e-5  # of nodes, which guide: positions asked for are solved to rounding

@@ -8,8 +8,7 @@ import numpy as np
 
 from beamdyn.common.checks import count, kind, one_of
 from brakes.planar.mechanism import Position
-from brakes.planar.points import GROUND
-from brakes.planar.rows import Row
+from brakes.planar.rows import GROUND, Row
 from brakes.planar.statics import Equilibrium
 
 

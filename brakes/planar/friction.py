@@ -6,9 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brakes.planar.diagnosis import check_moves, join_names
 from brakes.planar.kinematics import assemble
-from brakes.planar.linear import decompose, rank_tolerance, times
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import (
     Balance,
@@ -19,7 +17,7 @@ from brakes.planar.statics import (
     solve,
     tell_where,
 )
-from brakes.planar.system import System
+from brakes.planar.system import System, check_moves, decompose, join_names, rank_tolerance, times
 
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
 _SETTLED = 1e-6  # relative size of Newton's last step, above its rounding where friction nearly jams

@@ -14,10 +14,32 @@ from typing import Annotated
 import numpy as np
 
 from beamdyn.common.described import Described
-from brakes.planar.inputs import Body, Coefficient, DescribedPoint, Direction, DrawnPoint, Length, Other
-from brakes.planar.part import Joint, OneWay, Shape
-from brakes.planar.points import GROUND, End, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import FrictionLaw, Line, Path, Round, Row, Turn
+from brakes.planar.part import (
+    Body,
+    Coefficient,
+    DescribedPoint,
+    Direction,
+    DrawnPoint,
+    Joint,
+    Length,
+    OneWay,
+    Other,
+    Shape,
+)
+from brakes.planar.rows import (
+    GROUND,
+    End,
+    FrictionLaw,
+    Line,
+    Path,
+    Point,
+    Round,
+    Row,
+    Turn,
+    check_distinct,
+    path_length,
+    unit_vector,
+)
 
 _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
 _TURNS = 0.1  # turn of a straight face over a stroke that is worth a warning [deg]

@@ -17,18 +17,20 @@ from brakes.planar.curve import (
     solve_at_sum,
     solve_at_values,
 )
-from brakes.planar.diagnosis import (
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
+from brakes.planar.system import (
     AssemblyError,
     OppositeTravelError,
     OutOfReachError,
+    System,
     check_moves,
+    decompose,
     explain_mobility,
     join_names,
     moving_bodies,
+    rank_tolerance,
+    times,
 )
-from brakes.planar.linear import decompose, rank_tolerance, times
-from brakes.planar.mechanism import Mechanism, Position, check_mechanism
-from brakes.planar.system import System
 
 MOST_POSITIONS = 100_000  # of a stroke: some seconds for the smallest mechanisms
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism

@@ -13,11 +13,19 @@ from typing import Annotated
 import numpy as np
 
 from beamdyn.common.described import Described
-from brakes.planar.inputs import Body, Direction, DrawnPoint, NewtonMetres, Newtons, Other
 from brakes.planar.joints import SLACK
-from brakes.planar.part import AppliedLoad, Load, Shape
-from brakes.planar.points import GROUND, Point, check_distinct, path_length, unit_vector
-from brakes.planar.rows import Line, Path, Row, Turn
+from brakes.planar.part import (
+    AppliedLoad,
+    Body,
+    Direction,
+    DrawnPoint,
+    Load,
+    NewtonMetres,
+    Newtons,
+    Other,
+    Shape,
+)
+from brakes.planar.rows import GROUND, Line, Path, Point, Row, Turn, check_distinct, path_length, unit_vector
 
 _NO_DIRECTION = "it has no direction; move one of its ends"
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from beamdyn.common.checks import kind, set_fields, several
 from brakes.planar.part import Joint, Load, Part, Shape
-from brakes.planar.points import GROUND, Point, suggest
-from brakes.planar.rows import FrictionLaw
+from brakes.planar.rows import GROUND, FrictionLaw, Point, suggest
 from brakes.planar.system import System, build
 
 

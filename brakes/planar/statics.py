@@ -10,17 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from brakes.planar.curve import close_joints
-from brakes.planar.diagnosis import (
+from brakes.planar.kinematics import assemble
+from brakes.planar.mechanism import Mechanism, Position, check_mechanism
+from brakes.planar.part import OneWay, Part
+from brakes.planar.system import (
+    Decomposition,
+    Rows,
+    System,
+    decompose,
     describe_loose,
     describe_near_toggle,
     describe_self_stress,
     names_of_moving,
+    times,
 )
-from brakes.planar.kinematics import assemble
-from brakes.planar.linear import Decomposition, decompose, times
-from brakes.planar.mechanism import Mechanism, Position, check_mechanism
-from brakes.planar.part import OneWay, Part
-from brakes.planar.system import Rows, System
 
 _BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
 _UNDETERMINED = 1e-7  # component in a self-stress from which a reaction counts as undetermined

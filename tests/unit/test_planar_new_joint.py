@@ -9,7 +9,7 @@ import pytest
 
 from beamdyn.common.described import descriptions
 from brakes import planar
-from brakes.config.mechanism_inputs import PARTS
+from brakes.config.mechanism import PARTS
 from brakes.drawings.mechanism import mechanism_drawing
 from brakes.planar import (
     GROUND,
@@ -22,7 +22,7 @@ from brakes.planar import (
     free_body,
     solve_with_friction,
 )
-from brakes.planar.inputs import Body, Coefficient, DrawnPoint, Other
+from brakes.planar.part import Body, Coefficient, DrawnPoint, Other
 from brakes.planar.rows import FrictionLaw, Line, Row
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.drawing.style import INKS, PAPER
+from beamdyn.common.drawing.style import INKS
 
 _DIGITS = 5  # of numbers on the page; of places on an axis, over its length
 _MOST_DIGITS = 10  # of a curve that varies little
@@ -83,7 +83,7 @@ def _paint(role: str, area: bool = False) -> str:
     """A colour of the page, by its role; that on light ground in a picture without the page."""
     if role in _MORE:
         return f"var(--{role},{_MORE[role]})"
-    ink = PAPER if role == "paper" else INKS[role]
+    ink = INKS[role]
     return f"var(--{role}{'-area' if area else ''},{ink.area if area else ink.line})"
 
 

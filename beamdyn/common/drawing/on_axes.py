@@ -6,21 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.drawing.layout import Fit, Frame, Layout, Rule, Text, arrange, heading
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outline, Symbol
+from beamdyn.common.drawing import strokes
+from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, heading
+from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
-from beamdyn.common.drawing.style import AREA, PAPER, ink
+from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, letters_of, strokes_of
+from beamdyn.common.drawing.style import colour
 from beamdyn.common.drawing.text_width import LINE_HEIGHT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+    from matplotlib.path import Path
 
 _INCH = 72.0  # [pt]
-_HALO = 2.6
 _EDGE = 4.0  # between the frame and the title
-_MARKERS = {"pin": "o", "dot": "o", "cross": "+", "diamond": "D"}
-_LOWEST, _LETTERS = 1.0, 50.0  # zorder of the first shape, and of texts
 
 
 def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
@@ -93,14 +94,13 @@ def _fill(ax: Axes, layout: Layout) -> Axes:
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     ax.set_axis_off()
     above = heading(drawing.title, right - left, bottom - top)
-    ax.set_title(_literal("\n".join(above.lines)), fontsize=above.letters, color=ink("text").line, y=1.0,
+    ax.set_title(_literal("\n".join(above.lines)), fontsize=above.letters, color=colour("text"), y=1.0,
                  pad=-_EDGE, va="top", linespacing=LINE_HEIGHT)  # fmt: skip
-    for order, shape in enumerate(drawing.shapes):
-        _DRAW[type(shape)](ax, shape, _LOWEST + 0.01 * order, fit)
-    for rule in layout.rules:
-        _draw_rule(ax, rule, fit)
+    for stroke in strokes_of(layout):
+        _draw(ax, stroke, fit)
     for text in layout.texts[len(above.lines) :]:  # the title's come first
-        _write(ax, text, fit)
+        for line in letters_of(text):
+            _write(ax, line, fit)
     return ax
 
 
@@ -116,79 +116,40 @@ def _literal(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def _colours(shape: DrawnShape) -> tuple[str, str]:
-    found = ink(shape.role)
-    return found.line, found.area
+def _draw(ax: Axes, stroke: Stroke, fit: Fit) -> Patch:
+    """Draw a path or a circle, whose points are taken from the paper to the axes."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import Circle, PathPatch
 
-
-def _draw_outline(ax: Axes, shape: Outline, order: float, _: Fit) -> None:
-    (line, area), points = _colours(shape), np.asarray(shape.points, dtype=float).reshape(-1, 2)
-    if shape.filled:
-        ax.fill(*points.T, facecolor=area, edgecolor="none", alpha=AREA, zorder=order)
-    if shape.width:
-        closed = np.vstack([points, points[:1]]) if shape.closed else points
-        style: Any = (0, tuple(d / shape.width for d in shape.dash)) if shape.dash else "-"
-        ax.plot(*closed.T, color=line, linewidth=shape.width, linestyle=style, zorder=order,
-                solid_capstyle="butt", solid_joinstyle="round")  # fmt: skip
-
-
-def _draw_disc(ax: Axes, shape: Disc, order: float, _: Fit) -> None:
-    from matplotlib.patches import Circle
-
-    line, area = _colours(shape)
-    style: Any = (0, tuple(d / shape.width for d in shape.dash)) if shape.dash else "-"
-    face = area if shape.filled else "none"
-    centre = (float(shape.centre[0]), float(shape.centre[1]))
-    ax.add_patch(Circle(centre, shape.radius, facecolor=face, edgecolor=line, linewidth=shape.width,
-                        linestyle=style, zorder=order))  # fmt: skip
-
-
-def _draw_symbol(ax: Axes, shape: Symbol, order: float, fit: Fit) -> None:
-    line, area = _colours(shape)
-    x, y = (float(v) for v in shape.at)
-    if shape.kind == "ground":
-        half, height = shape.size / 2 / fit.scale, 0.85 * shape.size / fit.scale
-        ax.fill((x, x + half, x - half), (y, y - height, y - height), color=line, linewidth=0, zorder=order)
-        return
-    face = area if shape.kind == "pin" else line
-    edge = PAPER.line if shape.kind == "diamond" else line
-    ax.plot(x, y, _MARKERS[shape.kind], color=face, markeredgecolor=edge, markersize=shape.size, zorder=order)
-
-
-def _draw_arrow(ax: Axes, shape: Arrow, order: float, _: Fit) -> None:
-    (x0, y0), (x1, y1) = shape.foot, shape.tip
-    how = {
-        "arrowstyle": "<|-|>" if shape.both else "-|>",
-        "color": ink(shape.role).line,
-        "linewidth": shape.width,
-        "shrinkA": 0,
-        "shrinkB": 0,
+    pen = stroke.pen
+    style: Any = {
+        "facecolor": to_rgba(colour(pen.fill), pen.opacity) if pen.fill else "none",
+        "edgecolor": colour(pen.line) if pen.line else "none",
+        "linewidth": pen.width if pen.line else 0.0,
+        "linestyle": (0, tuple(d / pen.width for d in pen.dash)) if pen.dash and pen.line else "-",
+        "capstyle": "butt",
+        "joinstyle": "round",
     }
-    ax.annotate("", (x1, y1), (x0, y0), arrowprops=how, zorder=order, annotation_clip=False)
+    if isinstance(stroke, strokes.Circle):
+        x, y = fit.from_paper(stroke.centre)
+        return ax.add_patch(Circle((float(x), float(y)), stroke.radius / fit.scale, **style))
+    return ax.add_patch(PathPatch(_path(stroke, fit), **style))
 
 
-_DRAW: dict[type[DrawnShape], Any] = {
-    Outline: _draw_outline,
-    Disc: _draw_disc,
-    Symbol: _draw_symbol,
-    Arrow: _draw_arrow,
-}
+def _path(stroke: strokes.Path, fit: Fit) -> Path:
+    from matplotlib.path import Path
+
+    ways = [fit.from_paper(run) for run in stroke.runs]
+    if not stroke.closed:
+        return Path.make_compound_path(*map(Path, ways))
+    return Path.make_compound_path(*(Path(np.vstack([way, way[:1]]), closed=True) for way in ways))
 
 
-def _draw_rule(ax: Axes, rule: Rule, fit: Fit) -> None:
-    ends = fit.from_paper(rule.ends)
-    colour = ink(rule.role).line
-    ax.plot(*ends.T, color=colour, linewidth=rule.width, zorder=_LETTERS - 1, solid_capstyle="butt")
-
-
-def _write(ax: Axes, text: Text, fit: Fit) -> None:
+def _write(ax: Axes, line: Letters, fit: Fit) -> None:
     from matplotlib.patheffects import withStroke
 
-    halo = [withStroke(linewidth=_HALO, foreground=PAPER.line)]
-    height = text.letters * LINE_HEIGHT
-    top = text.centre[1] - height * (len(text.lines) - 1) / 2
-    for i, line in enumerate(text.lines):
-        symbol = f"${text.symbol}$ " if text.symbol and i == 0 else ""
-        x, y = fit.from_paper((text.centre[0], top + height * i))
-        ax.text(x, y, (symbol + _literal(line)).strip(), color=ink(text.role).line, fontsize=text.letters,
-                ha="center", va="center_baseline", zorder=_LETTERS, path_effects=halo)  # fmt: skip
+    halo = [withStroke(linewidth=HALO, foreground=colour(GROUND))]
+    symbol = f"${line.symbol}$ " if line.symbol else ""
+    x, y = fit.from_paper((line.middle, line.baseline))
+    ax.text(x, y, (symbol + _literal(line.words)).strip(), color=colour(line.colour), fontsize=line.size,
+            ha="center", va="baseline", path_effects=halo)  # fmt: skip

@@ -14,7 +14,6 @@ class Ink(NamedTuple):
     dark_area: str = "none"
 
 
-PAPER = Ink("#ffffff", "#16191d", "#ffffff", "#16191d")
 # Okabe and Ito's colours, which colour-blind people can tell apart; lighter on dark ground.
 BLACK = Ink("#000000", "#f2f2f2", "#000000", "#f2f2f2")
 BLUE = Ink("#0072b2", "#62b8ee", "#0072b2", "#62b8ee")
@@ -23,6 +22,7 @@ GREEN = Ink("#00805c", "#3ecfa0", "#00805c", "#3ecfa0")
 GREY = Ink("#4d4d4d", "#c4c4c4", "#4d4d4d", "#c4c4c4")
 AREA = 0.7  # opacity of areas: what lies behind is seen
 INKS = {
+    "paper": Ink("#ffffff", "#16191d", "#ffffff", "#16191d"),
     "text": Ink("#333333", "#dddddd"),
     "body": Ink("#80868f", "#969daa", "#dfe1e5", "#343a44"),
     "second": Ink("#8a8a8a", "#a0a0a0", "#f2f2f2", "#292d33"),
@@ -60,3 +60,9 @@ def ink(role: str) -> Ink:
     if role not in INKS:
         raise ValueError(f"role is {role!r}; it must be one of {', '.join(INKS)}")
     return INKS[role]
+
+
+def colour(name: str) -> str:
+    """A colour on light ground: of a role's lines by its name, of its areas by "ROLE-area"."""
+    role = name.removesuffix("-area")
+    return ink(role).line if name == role else ink(role).area

@@ -9,15 +9,13 @@ from zlib import crc32
 
 import numpy as np
 
-from beamdyn.common.drawing.layout import Fit, Layout, Rule, Text
-from beamdyn.common.drawing.shapes import Arrow, Disc, DrawnShape, Outline, Symbol
+from beamdyn.common.drawing.layout import Fit, Layout
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
-from beamdyn.common.drawing.style import AREA, INKS, PAPER, ink
+from beamdyn.common.drawing.strokes import GROUND, HALO, Circle, Letters, Pen, Stroke, letters_of, strokes_of
+from beamdyn.common.drawing.style import INKS, colour
 from beamdyn.common.drawing.text_width import FAMILY, SUBSCRIPT, line_width, symbol_width
 
-_HEAD, _HALF = 9.0, 3.3  # length and half width of an arrow's head [pt]
 _DARK = "@media (prefers-color-scheme: dark)"
-_HALO = 2.6  # width of the ground's colour around letters [pt]
 
 
 def svg_of(rows: Rows, paper: Paper | None = None) -> str:
@@ -59,7 +57,7 @@ def element(layouts: Sequence[Layout], paper: Paper) -> str:
         f'aria-labelledby="{name}-t {name}-d" viewBox="0 0 {paper.width:g} {paper.height:g}" '
         f'width="{paper.width:g}" height="{paper.height:g}" font-family="{escape(FAMILY)}">'
         f'<title id="{name}-t">{escape(title)}</title><desc id="{name}-d">{escape(described)}</desc>'
-        f'<rect width="100%" height="100%" fill="{_paint("paper", "area")}"/>{body}{grips}</svg>'
+        f'<rect width="100%" height="100%" fill="{_paint(GROUND)}"/>{body}{grips}</svg>'
     )
 
 
@@ -72,16 +70,14 @@ def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
 
 def page_colours(selector: str, dark: bool = False) -> str:
     """Style rules that set the colours of the drawings in the elements of a CSS selector."""
-    inks = {"paper": PAPER} | INKS
-    values = [(role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in inks.items()]
+    values = [(role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in INKS.items()]
     variables = "".join(f"--{role}:{line};--{role}-area:{area};" for role, (line, area) in values)
     return f"{selector}{{{variables}}}"
 
 
-def _paint(role: str, part: str = "line") -> str:
-    """A role's colour, as a variable of the page or file; where that is not set, the one on light ground."""
-    colours = PAPER if role == "paper" else ink(role)
-    return f"var(--{role}{'-area' if part == 'area' else ''},{getattr(colours, part)})"
+def _paint(name: str) -> str:
+    """A colour, as a variable of the page or file; where that is not set, the one on light ground."""
+    return f"var(--{name},{colour(name)})"
 
 
 def _parts(layout: Layout) -> Iterator[str]:
@@ -91,120 +87,47 @@ def _parts(layout: Layout) -> Iterator[str]:
         f'<clipPath id="{clip}"><rect x="{left:g}" y="{top:g}" width="{right - left:g}" '
         f'height="{bottom - top:g}"/></clipPath><g clip-path="url(#{clip})">'
     )
-    for shape in layout.drawing.shapes:
-        yield _SHAPES[type(shape)](shape, layout.fit)
-    yield "</g>"
-    yield from map(_rule, layout.rules)
+    yield from map(_stroke, strokes_of(layout))
     yield (
-        f'<g stroke="{_paint("paper", "area")}" stroke-width="{_HALO}" stroke-linejoin="round" '
+        f'</g><g stroke="{_paint(GROUND)}" stroke-width="{HALO}" stroke-linejoin="round" '
         'paint-order="stroke" xml:space="preserve">'
     )
     for text in layout.texts:
-        yield from _text(text)
+        yield from map(_letters, letters_of(text))
     yield "</g>"
 
 
-def _line(shape: Outline | Disc) -> str:
-    """Attributes of a line and its area."""
-    area = f'{_paint(shape.role, "area")}" fill-opacity="{AREA}' if shape.filled else "none"
-    dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in shape.dash)}"' if shape.dash else ""
-    stroke = f' stroke="{_paint(shape.role)}" stroke-width="{shape.width:g}"{dash}' if shape.width else ""
-    return f' fill="{area}"{stroke}'
+def _stroke(stroke: Stroke) -> str:
+    if isinstance(stroke, Circle):
+        x, y = stroke.centre
+        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{stroke.radius:.2f}"{_pen(stroke.pen)}/>'
+    end = "Z" if stroke.closed else ""
+    way = "".join(f"M{_pairs(run)}{end}" for run in stroke.runs)
+    return f'<path d="{way}"{_pen(stroke.pen)} stroke-linejoin="round"/>'
 
 
-def _outline(shape: Outline, fit: Fit) -> str:
-    points = fit.to_paper(shape.points)
-    breaks = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    runs = [run[np.isfinite(run).all(axis=1)] for run in np.split(points, breaks)]
-    end = "Z" if shape.closed else ""
-    way = "".join(f"M{_pairs(run)}{end}" for run in runs if len(run))
-    return f'<path d="{way}"{_line(shape)} stroke-linejoin="round"/>' if way else ""
-
-
-def _disc(shape: Disc, fit: Fit) -> str:
-    (x, y), r = fit.to_paper(shape.centre), shape.radius * fit.scale
-    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{r:.2f}"{_line(shape)}/>'
+def _pen(pen: Pen) -> str:
+    """Attributes of a line and of what is within it."""
+    opacity = f' fill-opacity="{pen.opacity}"' if pen.fill and pen.opacity < 1 else ""
+    dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in pen.dash)}"' if pen.dash else ""
+    line = f' stroke="{_paint(pen.line)}" stroke-width="{pen.width:g}"{dash}' if pen.line else ""
+    return f' fill="{_paint(pen.fill) if pen.fill else "none"}"{opacity}{line}'
 
 
 def _pairs(points: np.ndarray) -> str:
     return " ".join(f"{x:.2f},{y:.2f}" for x, y in points.tolist())
 
 
-def _arrow(shape: Arrow, fit: Fit) -> str:
-    (foot, tip), paint = fit.to_paper([shape.foot, shape.tip]), _paint(shape.role)
-    length = float(np.hypot(*(tip - foot)))
-    if not 0 < length < np.inf:
-        return ""
-    along = (tip - foot) / length
-    head = min(_HEAD, 0.6 * length)
-    start = foot + head * along if shape.both else foot
-    heads = _arrowhead(tip, along, head) + (_arrowhead(foot, -along, head) if shape.both else "")
-    shaft = f"M{_pairs(np.array([start, tip - 0.8 * head * along]))}"
+def _letters(line: Letters) -> str:
+    """A line of letters, drawn as wide as it was measured, whatever font there is."""
+    symbol, words = line.symbol, line.words
+    gap = " " if symbol and words else ""
+    width = (symbol_width(symbol) + line_width(f"{gap}{words}")) * line.size
     return (
-        f'<path d="{shaft}" stroke="{paint}" stroke-width="{shape.width:g}"/>'
-        f'<path d="{heads}" fill="{paint}"/>'
+        f'<text x="{line.middle - width / 2:.2f}" y="{line.baseline:.2f}" font-size="{line.size:g}" '
+        f'textLength="{width:.2f}" lengthAdjust="spacingAndGlyphs" fill="{_paint(line.colour)}">'
+        f"{_symbol(symbol, line.size) if symbol else ''}{gap}{escape(words)}</text>"
     )
-
-
-def _arrowhead(tip: np.ndarray, along: np.ndarray, head: float) -> str:
-    across = _HALF * head / _HEAD * np.array([-along[1], along[0]])
-    return f"M{_pairs(np.array([tip, tip - head * along + across, tip - head * along - across]))}Z"
-
-
-def _pin(s: Symbol, x: float, y: float) -> str:
-    return (
-        f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{s.size / 2:g}" fill="{_paint(s.role, "area")}" '
-        f'stroke="{_paint(s.role)}" stroke-width="1.2"/>'
-    )
-
-
-def _dot(s: Symbol, x: float, y: float) -> str:
-    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{s.size / 2:g}" fill="{_paint(s.role)}"/>'
-
-
-def _ground(s: Symbol, x: float, y: float) -> str:
-    w, h = s.size / 2, 0.85 * s.size
-    return f'<path d="M{x:.2f},{y:.2f} l{w:g},{h:g} h{-2 * w:g} Z" fill="{_paint(s.role)}"/>'
-
-
-def _cross(s: Symbol, x: float, y: float) -> str:
-    r = s.size / 2
-    way = f"M{x - r:.2f},{y:.2f} h{s.size:g} M{x:.2f},{y - r:.2f} v{s.size:g}"
-    return f'<path d="{way}" stroke="{_paint(s.role)}" stroke-width="1.2"/>'
-
-
-def _diamond(s: Symbol, x: float, y: float) -> str:
-    r = s.size / 2
-    way = f"M{x:.2f},{y - r:.2f} l{r:g},{r:g} l{-r:g},{r:g} l{-r:g},{-r:g} Z"
-    return f'<path d="{way}" fill="{_paint(s.role)}" stroke="{_paint("paper", "area")}"/>'
-
-
-_SYMBOLS: dict[str, Any] = {"pin": _pin, "dot": _dot, "ground": _ground, "cross": _cross, "diamond": _diamond}
-
-
-def _draw_symbol(shape: Symbol, fit: Fit) -> str:
-    return _SYMBOLS[shape.kind](shape, *fit.to_paper(shape.at))
-
-
-_SHAPES: dict[type[DrawnShape], Any] = {Outline: _outline, Disc: _disc, Symbol: _draw_symbol, Arrow: _arrow}
-
-
-def _rule(rule: Rule) -> str:
-    return f'<path d="M{_pairs(rule.ends)}" stroke="{_paint(rule.role)}" stroke-width="{rule.width:g}"/>'
-
-
-def _text(text: Text) -> Iterator[str]:
-    """The lines of a text, each drawn as wide as it was measured, whatever font there is."""
-    for i, (line, y) in enumerate(zip(text.lines, text.baselines, strict=True)):
-        symbol = text.symbol if i == 0 else ""
-        width = symbol_width(symbol) + line_width(f" {line}" if symbol and line else line)
-        content = (_symbol(symbol, text.letters) + (" " if line else "") if symbol else "") + escape(line)
-        if content:
-            yield (
-                f'<text x="{text.centre[0] - width * text.letters / 2:.2f}" y="{y:.2f}" '
-                f'font-size="{text.letters:g}" textLength="{width * text.letters:.2f}" '
-                f'lengthAdjust="spacingAndGlyphs" fill="{_paint(text.role)}">{content}</text>'
-            )
 
 
 def _symbol(symbol: str, letters: float) -> str:

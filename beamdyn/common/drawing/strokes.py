@@ -1,0 +1,144 @@
+"""What is drawn of a layout: paths, circles and lines of letters on paper, for every kind of file.
+
+Lengths are in [pt], from the top left of the paper.  A file writes these; it knows no shape of a machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beamdyn.common.drawing.layout import Fit, Layout, Text
+from beamdyn.common.drawing.shapes import Arrow, Disc, DrawnShape, Outline, Symbol
+from beamdyn.common.drawing.style import AREA
+
+GROUND = "paper-area"
+HALO = 2.6  # width of the ground's colour around letters
+_HEAD, _HALF = 9.0, 3.3  # length and half width of an arrow's head
+_THIN = 1.2  # lines of symbols
+
+
+class Pen(NamedTuple):
+    """How a line is drawn, and what is within it: names of colours (see `style.colour`), "" for nothing."""
+
+    line: str = ""
+    width: float = 1.0
+    dash: tuple[float, ...] = ()
+    fill: str = ""
+    opacity: float = 1.0  # of the fill
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Lines through points, each an array of shape (k, 2); each ends where it begins if they are closed."""
+
+    runs: Sequence[np.ndarray]
+    pen: Pen
+    closed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Circle:
+    """A circle about a point."""
+
+    centre: np.ndarray
+    radius: float
+    pen: Pen
+
+
+class Letters(NamedTuple):
+    """A line of letters: a symbol before the words, the middle of its baseline, size, colour."""
+
+    symbol: str
+    words: str
+    middle: float
+    baseline: float
+    size: float
+    colour: str
+
+
+Stroke = Path | Circle
+
+
+def strokes_of(layout: Layout) -> Iterator[Stroke]:
+    """All lines and areas, the lowest first."""
+    for shape in layout.drawing.shapes:
+        yield from _SHAPES[type(shape)](shape, layout.fit)
+    for rule in layout.rules:
+        yield Path([rule.ends], Pen(rule.role, rule.width))
+
+
+def letters_of(text: Text) -> list[Letters]:
+    """The lines of a text that have letters."""
+    lines = zip(text.lines, text.baselines, strict=True)
+    made = [
+        Letters(text.symbol if i == 0 else "", line, float(text.centre[0]), y, text.letters, text.role)
+        for i, (line, y) in enumerate(lines)
+    ]
+    return [each for each in made if each.symbol or each.words]
+
+
+def _pen(shape: Outline | Disc) -> Pen:
+    """The pen of a shape: a disc, which stands before what it carries, hides that."""
+    line, fill = shape.role if shape.width else "", f"{shape.role}-area" if shape.filled else ""
+    return Pen(line, shape.width, shape.dash, fill, AREA if isinstance(shape, Outline) else 1.0)
+
+
+def _outline(shape: Outline, fit: Fit) -> Iterator[Stroke]:
+    points = fit.to_paper(shape.points)
+    breaks = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    runs = (run[np.isfinite(run).all(axis=1)] for run in np.split(points, breaks))
+    if whole := [run for run in runs if len(run)]:
+        yield Path(whole, _pen(shape), shape.closed)
+
+
+def _disc(shape: Disc, fit: Fit) -> Iterator[Stroke]:
+    yield Circle(fit.to_paper(shape.centre), shape.radius * fit.scale, _pen(shape))
+
+
+def _arrow(shape: Arrow, fit: Fit) -> Iterator[Stroke]:
+    foot, tip = fit.to_paper([shape.foot, shape.tip])
+    length = float(np.hypot(*(tip - foot)))
+    if not 0 < length < np.inf:
+        return
+    along = (tip - foot) / length
+    head = min(_HEAD, 0.6 * length)
+    start = foot + head * along if shape.both else foot
+    ends = [(tip, along), (foot, -along)] if shape.both else [(tip, along)]
+    yield Path([np.array([start, tip - 0.8 * head * along])], Pen(shape.role, shape.width))
+    yield Path([_arrowhead(end, to, head) for end, to in ends], Pen(fill=shape.role), closed=True)
+
+
+def _arrowhead(tip: np.ndarray, along: np.ndarray, head: float) -> np.ndarray:
+    across = _HALF * head / _HEAD * np.array([-along[1], along[0]])
+    return np.array([tip, tip - head * along + across, tip - head * along - across])
+
+
+def _symbol(shape: Symbol, fit: Fit) -> Iterator[Stroke]:
+    at, half, line = fit.to_paper(shape.at), shape.size / 2, shape.role
+    if shape.kind in _ROUND:
+        yield Circle(at, half, _ROUND[shape.kind](line))
+    else:
+        ways, closed, pen = _ANGULAR[shape.kind]
+        yield Path([at + half * np.array(way) for way in ways], pen(line), closed)
+
+
+_ROUND: dict[str, Callable[[str], Pen]] = {
+    "pin": lambda line: Pen(line, _THIN, fill=f"{line}-area"),
+    "dot": lambda line: Pen(fill=line),
+}
+# Lines of the other symbols, of half width 1, whether these are closed, and their pen.
+_ANGULAR: dict[str, tuple[Any, bool, Callable[[str], Pen]]] = {
+    "ground": ([[(0, 0), (1, 1.7), (-1, 1.7)]], True, lambda line: Pen(fill=line)),
+    "cross": ([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]], False, lambda line: Pen(line, _THIN)),
+    "diamond": ([[(0, -1), (1, 0), (0, 1), (-1, 0)]], True, lambda line: Pen(GROUND, fill=line)),
+}
+_SHAPES: dict[type[DrawnShape], Callable[[Any, Fit], Iterator[Stroke]]] = {
+    Outline: _outline,
+    Disc: _disc,
+    Symbol: _symbol,
+    Arrow: _arrow,
+}
