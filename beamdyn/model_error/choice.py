@@ -16,6 +16,7 @@ from time import perf_counter
 
 import numpy as np
 
+from beamdyn.accuracy.margins import EFFECTS
 from beamdyn.common.checks import InvalidValue, reason_of
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
@@ -31,7 +32,6 @@ from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_MARGIN = 0.5  # of the tolerance: an estimate may be low by a factor of two
 _SMALL = 0.1  # of the tolerance, below which no effect is added
 _SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
 _MODES = 3  # of which a motion consists
@@ -318,7 +318,7 @@ def choose_by(
         start = start.without(LARGE_DEFLECTION, straight)
     best = _grow(start, judge, tolerance, {LARGE_DEFLECTION})
     needed = start.addable().get(LARGE_DEFLECTION, 0.0) > _SMALL * tolerance
-    if needed and best.model_error > _MARGIN * tolerance:
+    if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
             best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
@@ -331,7 +331,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
     while True:
         sizes = {name: size for name, size in candidate.addable().items() if name not in barred}
         largest = max(sizes, key=sizes.__getitem__, default="")
-        if sum(sizes.values()) <= _MARGIN * tolerance or sizes[largest] <= _SMALL * tolerance:
+        if sum(sizes.values()) <= EFFECTS.factor * tolerance or sizes[largest] <= _SMALL * tolerance:
             return candidate
         try:
             candidate = candidate.add(largest, judge)
