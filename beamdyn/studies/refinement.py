@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import refine
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.choice import DEFAULT_TARGET, MOMENTS_TARGET, DiscretizationChoice, list_models
+from beamdyn.modal.choice import DEFAULT_TARGET, DiscretizationChoice, list_models, within_reach
 from beamdyn.scene.scene import Scene
 
 _WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
@@ -71,7 +71,7 @@ class Refinement:
 
     def target_of(self, basis: Discretization) -> float:
         """Relative error to be met in a basis."""
-        return self._target if basis.converges_regularly else max(self._target, MOMENTS_TARGET)
+        return within_reach(basis, self._target)
 
     @property
     def can_be_batched(self) -> bool:
