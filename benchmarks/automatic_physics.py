@@ -22,8 +22,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.equations.effects import NAMED, add_effects
 from beamdyn.modal.model import Model
-from beamdyn.model_error.choice import add_effects
 from beamdyn.model_error.large_deflection import bends
 from beamdyn.scene.physics_choice import PhysicsChoice
 from benchmarks.cases.random_physics import Section, random_twist, speed_of_deflection
@@ -129,7 +129,7 @@ def _solved(modes: bd.Modes, physics: bd.Physics) -> float:
 
 def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsChoice) -> float:
     """What leaving one of the added effects out would change."""
-    others = add_effects(scene, [other for other in choice.included if other != name])
+    others = add_effects(scene, [NAMED[other] for other in choice.included if other != name])
     without = bd.natural_modes(others, speed, _MODES)
     if choice.physics.large_deflection:
         return _direct(without, choice.physics)

@@ -23,8 +23,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modal.model import Model
-from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
+from beamdyn.model_error.effects import Addition, list_effects
 from benchmarks.cases.random_physics import (
     random_mount,
     random_physics_beam,
@@ -89,13 +90,13 @@ def measure(number: int, seed: int) -> list[Answer]:
 def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
     """The change by large deflection, of the equilibrium that is continued from rest."""
     beam, unit = elastica_of_scene(modes.scene)
-    estimated = tuple(modes.left_out[LARGE_DEFLECTION].tolist())
+    estimated = tuple(modes.left_out[LARGE_DEFLECTION.name].tolist())
     try:
         bent = converged(from_rest(beam, modes.speed * unit), _MODES, _KNOWN)
     except ArithmeticError as error:  # the branch turns back
-        return Answer(number, LARGE_DEFLECTION, time, estimated, (np.nan,) * _MODES, str(error))
+        return Answer(number, LARGE_DEFLECTION.name, time, estimated, (np.nan,) * _MODES, str(error))
     true = bent.frequency / (2 * np.pi * unit) / modes.frequency - 1
-    return Answer(number, LARGE_DEFLECTION, time, estimated, tuple(true.tolist()))
+    return Answer(number, LARGE_DEFLECTION.name, time, estimated, tuple(true.tolist()))
 
 
 # Scenes -------------------------------------------------------------------------------------------

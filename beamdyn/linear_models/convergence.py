@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.checks import InvalidValue, count, within
 from beamdyn.linear_models.choice import model_at_speed, model_of_few_modes
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
@@ -18,8 +21,6 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 _FIRST = 4  # modes of the first basis of "auto"
 _ACCURATE = 8  # modes for which its functions are chosen, at least
 _MOST = 40  # of the last
-_MARGIN = 2.0  # error over the distance from a coarser discretization
-_MARGIN_OF_MODES = 4.0  # error over the distance from twice as many modes, which may agree by chance
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 _ROUNDING = 1e-12  # of the largest value
 
@@ -51,7 +52,7 @@ class Refined:
     compared_with: str
 
 
-def refine(
+def evaluate_accurately(
     scene: Scene,
     speed: float,
     top: float,
@@ -102,13 +103,15 @@ def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
 
 def _resolving(scene: Scene, speed: float, top: float, discretization: DiscretizationChoice) -> ModelAtSpeed:
     """The model with functions for modes up to an angular frequency [rad/s], within limits."""
-    modes = _ACCURATE
-    while True:
-        model = model_of_few_modes(scene, speed, modes, discretization)
-        named = isinstance(discretization, str)
-        if not named or modes >= _MOST or np.sqrt(np.abs(model.K).max()) > top:
-            return model
-        modes = min(_MOST, 2 * modes)
+
+    def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
+        return modes, model_of_few_modes(scene, speed, modes, discretization)
+
+    def of_more(found: tuple[int, ModelAtSpeed]) -> tuple[int, ModelAtSpeed] | None:
+        largest = not isinstance(discretization, str) or found[0] >= _MOST
+        return None if largest else of_modes(min(_MOST, 2 * found[0]))
+
+    return refine(of_modes(_ACCURATE), of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
 
 
 def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
@@ -120,18 +123,38 @@ def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
     return whole if values[0] > _MASSLESS * values[-1] else None
 
 
+class _Doubled(NamedTuple):
+    """A value by a model, and by the one with twice as many modes, if there is one."""
+
+    model: ModelAtSpeed
+    value: np.ndarray
+    larger: ModelAtSpeed | None
+    finer: np.ndarray | None
+
+    def settles(self, share: float) -> bool:
+        """Whether more modes change the value by at most a share of the largest."""
+        if self.finer is None:
+            return False
+        return bool(np.abs(self.finer - self.value).max() <= share * np.abs(self.finer).max())
+
+
 def _add_modes(
     model: ModelAtSpeed, tolerance: float, discretization: DiscretizationChoice, evaluate: Evaluation
 ) -> Refined:
     """Add modes until the error meets the tolerance."""
-    value = evaluate(model)
-    while (larger := _larger(model, discretization)) is not None:
-        finer = evaluate(larger)
-        settled = np.abs(finer - value).max() <= tolerance / _MARGIN_OF_MODES * np.abs(finer).max()
-        if settled or (larger.modes or 0) >= _MOST:
-            return _with_error(model, value, larger, evaluate, finer)
-        model, value = larger, finer
-    return _with_error(model, value, None, evaluate)
+
+    def doubled(model: ModelAtSpeed, value: np.ndarray) -> _Doubled:
+        larger = _larger(model, discretization)
+        return _Doubled(model, value, larger, None if larger is None else evaluate(larger))
+
+    def of_more(found: _Doubled) -> _Doubled | None:
+        if found.larger is None or found.finer is None or (found.larger.modes or 0) >= _MOST:
+            return None
+        return doubled(found.larger, found.finer)
+
+    first = doubled(model, evaluate(model))
+    found = refine(first, of_more, lambda found: found.settles(tolerance / LINEAR_MODES.factor))
+    return _with_error(found.model, found.value, found.larger, evaluate, found.finer)
 
 
 def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
@@ -157,15 +180,17 @@ def _with_error(
 ) -> Refined:
     """The value, with its distance from that of more modes and of a coarser discretization."""
     coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
-    rounding = _ROUNDING * np.abs(value).max() + _MARGIN * model.discretization.rounding * np.abs(value)
-    error = _MARGIN * np.abs(evaluate(coarse) - value) + rounding
+    rounding = _ROUNDING * np.abs(
+        value
+    ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
+    error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
     elif larger is not None:
         finer = evaluate(larger) if finer is None else finer
         more = "all functions" if larger.modes is None else f"{larger.modes} modes"
-        truncation, compared = _MARGIN_OF_MODES * np.abs(finer - value), [*compared, more]
+        truncation, compared = LINEAR_MODES.factor * np.abs(finer - value), [*compared, more]
     kept = "all functions" if model.modes is None else f"{model.modes} modes at {model.speed:.6g} rad/s"
     method = f"{model.discretization}, {kept}"
     largest = float(np.max(truncation))

@@ -15,7 +15,7 @@ from beamdyn.common.checks import BeyondModel, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
-from beamdyn.linear_models.convergence import Refined, refine
+from beamdyn.linear_models.convergence import Refined, evaluate_accurately
 from beamdyn.linear_models.excitations import Excitation, as_excitation
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.linear_models.observations import Observation, as_observation
@@ -202,7 +202,7 @@ def frequency_response(
         return transfer(model, drive, seen, given)[1]
 
     top = _TURN * float(given[-1]) + abs(speed)
-    refined: Refined = refine(
+    refined: Refined = evaluate_accurately(
         with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
     )
     check_stable(refined.model)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from beamdyn.accuracy.margins import LINEAR_MESHES
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 
-_MARGIN = 2.0  # error over the distance from a coarser discretization
 _UNRESOLVED = 0.01  # relative error beyond which the partner of a pole may be that of another mode
 _ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
 
@@ -27,8 +27,8 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
     resolved = model.model.exceeds_coarser
     rounding = (kept.rounding + whole.free_motion.rounding) * np.abs(poles)
     with np.errstate(divide="ignore", invalid="ignore"):
-        error = (truncation + _MARGIN * discretized) / np.abs(poles)
-    error += rounding + _ROUNDING + _MARGIN * model.discretization.rounding
+        error = (truncation + LINEAR_MESHES.factor * discretized) / np.abs(poles)
+    error += rounding + _ROUNDING + LINEAR_MESHES.factor * model.discretization.rounding
     found = np.full(len(kept.poles), np.nan)
     found[: len(poles)] = np.where((error < _UNRESOLVED) & resolved, error, np.inf)
     return found

@@ -16,7 +16,7 @@ from beamdyn.common.checks import InvalidValue, ascending, refuse
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.results import Provenance, Result
 from beamdyn.linear_models.choice import check_linear, with_forces
-from beamdyn.linear_models.convergence import evaluate_also, refine
+from beamdyn.linear_models.convergence import evaluate_accurately, evaluate_also
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.frequency_grid import about_resonances, frequencies_of_response, one_of_each
 from beamdyn.linear_models.mean_square import PartialFractions, damped_motion, partial_fractions
@@ -187,7 +187,7 @@ def random_response(
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
     top, loaded = highest_frequency(spectrum), with_forces(scene, [drive])
-    refined = refine(
+    refined = evaluate_accurately(
         loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
         lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
         _DIRECT,

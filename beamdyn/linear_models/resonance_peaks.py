@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.modal_sum import ModalSum, modal_sums
 from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
@@ -23,8 +24,6 @@ from beamdyn.linear_models.observations import Observation
 from beamdyn.linear_models.transfer import respond
 
 _TURN = 2 * np.pi
-_MARGIN = 2.0  # error over the distance from a coarser discretization
-_MARGIN_OF_MODES = 4.0  # error over the distance from more modes, which may agree by chance
 _DENSE = 0.1  # step of samples over the distance to the nearest pole
 _HALVINGS = 60  # of an interval, to rounding
 _UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
@@ -108,9 +107,9 @@ def find_peaks(
     compared = list[tuple[float, list[Peak]]]()
     if found:
         coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
-        compared.append((_MARGIN, [*_peaks(coarse, drive, seen, top)]))
+        compared.append((LINEAR_MESHES.factor, [*_peaks(coarse, drive, seen, top)]))
     if found and model.modes is not None:
-        compared.append((_MARGIN_OF_MODES, [*_peaks(larger, drive, seen, top)] if larger else []))
+        compared.append((LINEAR_MODES.factor, [*_peaks(larger, drive, seen, top)] if larger else []))
     errors = np.reshape([_error(each, compared) for each in found], (-1, 3))
     columns = [np.array(column) for column in zip(*found, strict=True)] or [np.zeros(0)] * 5
     frequency, size, bandwidth, harmonic, _ = columns

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamdyn.accuracy.margins import MODES_OF_FORCES, MODES_OF_MOMENTS
 from beamdyn.loads.section_points import StationOutputs
 from beamdyn.loads.stations import SpanStations
 from beamdyn.modal.modal_basis import ModalBasis
 
-_MARGIN = 3.0  # error over the distance: moments of modes fall as k^-3 after a sudden load
-_MARGIN_OF_FORCES = 4.0  # shear forces as k^-2: those left out are 3 times those that half as many more add
 _LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
 _ROUNDING = 1e-12  # relative to the largest along the span
 _BETWEEN = 21  # stations besides those asked for
@@ -62,7 +61,8 @@ def mode_error(
     near = np.abs(stations.xi[:, None] - everywhere) <= half_wave
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     planes = (distance.shape[-1] - 1) // 2
-    margins = np.repeat([_MARGIN, _MARGIN_OF_FORCES, _MARGIN], [1, planes, planes])
+    factors = MODES_OF_MOMENTS.factor, MODES_OF_FORCES.factor, MODES_OF_MOMENTS.factor
+    margins = np.repeat(factors, [1, planes, planes])
     rounding = through(outputs, _rounding(along_span, length)[..., None, :])
     too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :]) + rounding
     return np.where(too_large, np.inf, through(outputs, margins * nearby) + rounding)

@@ -27,7 +27,7 @@ from beamdyn.common.digits import percent, supported
 from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance
 from beamdyn.linear_models.choice import check_linear, model_of_few_modes, with_forces
-from beamdyn.linear_models.convergence import Refined, refine
+from beamdyn.linear_models.convergence import Refined, evaluate_accurately
 from beamdyn.linear_models.excitations import Excitation
 from beamdyn.linear_models.mean_square import partial_fractions
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
@@ -418,7 +418,7 @@ class _InputAndOutputs:
             return np.nan_to_num(self.statistics(model)) / size
 
         top = _TURN * highest_frequency(self.spectrum) + abs(speed)
-        refined = refine(loaded, speed, top, modes, tolerance, discretization, relative, 0)
+        refined = evaluate_accurately(loaded, speed, top, modes, tolerance, discretization, relative, 0)
         size = size * np.where(np.isnan(few), np.nan, 1.0)
         value = refined.value * size
         rounding = _rounding(self.fractions(refined.model), RandomStatistics(*value), self.spectrum)

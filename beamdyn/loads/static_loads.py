@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, real
 from beamdyn.common.results import Provenance
@@ -35,7 +36,6 @@ from beamdyn.scene.validity import (
 _MODES = 3  # of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
 _ROUNDING = 1e-12  # relative to the largest along the span
-_MARGIN = 1.5  # of the error over the distance from the coarser model
 
 
 @dataclass(frozen=True)
@@ -205,4 +205,4 @@ def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarr
 def _error(values: np.ndarray, coarse: np.ndarray) -> np.ndarray:
     """Error of values (C, S, K) by their distance from those of a coarser model, and of rounding."""
     largest = np.abs(values).max(axis=1, keepdims=True)
-    return _MARGIN * np.abs(values - coarse) + _ROUNDING * largest
+    return BASES_OF_STATIC_LOADS.factor * np.abs(values - coarse) + _ROUNDING * largest

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
@@ -56,16 +57,22 @@ def solve_to_tolerance(
         result = at_ends
     else:
         result = solve_with_error(model, speeds, modes, extra)
-    if tolerance is None:
+    if tolerance is None or not isinstance(discretization, str):
         return result
-    while isinstance(discretization, str) and not result.meet(tolerance):
-        if (finer := _refine(result.model)) is None:
-            break
-        try:
-            result = solve_with_error(finer, speeds, modes, extra)
-        except np.linalg.LinAlgError:  # rounding of so many functions: the last result is the best
-            break
-    return result
+    finer = partial(_solve_finer, speeds=speeds, modes=modes, extra=extra)
+    return refine(result, finer, lambda found: found.meet(tolerance))
+
+
+def _solve_finer(
+    found: EstimatedModes, speeds: np.ndarray, modes: int, extra: int = 0
+) -> EstimatedModes | None:
+    """The modes of the next finer model; None if there is none, or rounding of so many functions bars it."""
+    if (finer := _refine(found.model)) is None:
+        return None
+    try:
+        return solve_with_error(finer, speeds, modes, extra)
+    except np.linalg.LinAlgError:
+        return None
 
 
 def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[str]:
@@ -131,23 +138,22 @@ def _choose(
     split = scene
     if isinstance(discretization, str):
         split = split_layers(scene, speed, target if discretization == "ritz" else _OF_ELEMENTS)
-    found: tuple[Model, EstimatedModes | None] | None = None
-    for finer in list_models(split, discretization, modes, target, cheapest, split is not scene):
-        if not isinstance(discretization, str):
-            return finer, None
-        if finer.solver.size < modes and found is None and _refine(finer) is not None:
-            continue  # some of its functions depend on others
-        try:
-            at_ends = solve_with_error(finer, ends, modes)
-        except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
-            if found is None:
-                raise
-            break
-        found = finer, at_ends
-        if at_ends.meet(target if finer.discretization.converges_regularly else max(target, MOMENTS_TARGET)):
-            break
-    assert found is not None
-    return found
+    models = list_models(split, discretization, modes, target, cheapest, split is not scene)
+    if not isinstance(discretization, str):
+        return next(models), None
+    # Some functions of a model may depend on others.
+    first = next(m for m in models if m.solver.size >= modes or _refine(m) is None)
+    at_ends = refine(
+        solve_with_error(first, ends, modes),
+        partial(_solve_finer, speeds=ends, modes=modes),
+        lambda found: found.meet(within_reach(found.model.discretization, target)),
+    )
+    return at_ends.model, at_ends
+
+
+def within_reach(discretization: Discretization, target: float) -> float:
+    """A target of the error, or the least at which a basis aims: moment bases state too large errors."""
+    return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
 
 
 def least_target(discretization: DiscretizationChoice) -> float:

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.accuracy.margins import BASES_OF_FIELDS, SLOW_BASES
 from beamdyn.common.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modal.eigensolver import Eigen, Eigensolver
@@ -23,11 +24,9 @@ _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer 
 _SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
 _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
 _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
-_MARGIN = 3.0  # of the error over the distance of two bases, where convergence is slow
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-_MARGIN_OF_FIELDS = 12.0  # with two planes, shear or springs: a mode may lack functions of one field only
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
@@ -221,7 +220,7 @@ def error_of_assumed_modes(
     ndarray, shape (S, k)
         inf where unresolved.
     """
-    margin = _MARGIN if is_slender else _MARGIN_OF_FIELDS
+    margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
         error = _ritz_error(distance, squared, lowest_at_rest, margin, parts) + _ROUNDING * rounding
@@ -265,7 +264,7 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
 
 def _ritz_error_of(model: Model, fine: Eigen, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
     """The error `_ritz_error` of a model, by its basis and by what it may lack."""
-    margin = _MARGIN if model.scene.is_slender_beam_in_one_plane else _MARGIN_OF_FIELDS
+    margin = SLOW_BASES.factor if model.scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
     parts = parts_of_distances(model.scene, model.discretization)
     lowest = 0.0 if _are_above_rest(model, fine, squared) else model.solver.lowest_at_rest
     return _ritz_error(distance, squared, np.asarray(lowest), margin, parts)
@@ -295,7 +294,7 @@ def _ritz_error(
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size
-    margin = np.where(largest > _FEW, of_few, _MARGIN)
+    margin = np.where(largest > _FEW, of_few, SLOW_BASES.factor)
     own, others, limit = parts
     is_slow = largest > limit
     of_largest = np.where(is_slow, margin / 10, others) * largest

@@ -9,8 +9,9 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.left_out import list_left_out
-from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
+from beamdyn.model_error.effects import list_effects
 from beamdyn.model_error.large_deflection import REFUSED, TWO_PLANES, comparable
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.scene import Scene
@@ -52,7 +53,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     additions, not_known, not_modelled = list_effects(base)
     without, found, assumed = solve(base, ""), {}, {}
     if not scene.physics.large_deflection:
-        found[LARGE_DEFLECTION] = _with_large_deflection(base, without, solve)
+        found[LARGE_DEFLECTION.name] = _with_large_deflection(base, without, solve)
     for added in additions:
         found[added.name] = _change(without, solve(added.scene, added.name))
         judged_on = STRAIGHT if scene.physics.large_deflection else ""
@@ -87,4 +88,4 @@ def _with_large_deflection(scene: Scene, without: Answer, solve: Solve) -> Answe
     except InvalidValue as error:
         return Answer(unknown, REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
-    return _change(without, solve(bent, LARGE_DEFLECTION))
+    return _change(without, solve(bent, LARGE_DEFLECTION.name))

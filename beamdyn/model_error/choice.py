@@ -16,13 +16,14 @@ from time import perf_counter
 
 import numpy as np
 
+from beamdyn.accuracy.margins import EFFECTS
 from beamdyn.common.checks import InvalidValue, reason_of
-from beamdyn.equations.left_out import list_left_out
+from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
 from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import bends
-from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
+from beamdyn.model_error.effects import list_effects
 from beamdyn.model_error.large_deflection import EXCLUDED
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, vibrate, without_large_deflection
@@ -31,15 +32,13 @@ from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_MARGIN = 0.5  # of the tolerance: an estimate may be low by a factor of two
 _SMALL = 0.1  # of the tolerance, below which no effect is added
 _SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
 _MODES = 3  # of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
+_BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
-_EXCLUSIVE = "it cannot be combined with large deflection"
-_WITH_LARGE_DEFLECTION = ("rotary inertia of sections",)
 
 
 @dataclass(frozen=True)
@@ -142,14 +141,14 @@ def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: 
     An effect that turns modes into others can be added: that its size is not known is no reason against it.
     """
     sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
-    sizes |= dict.fromkeys(effects.not_known.keys() - sizes.keys(), math.nan)
-    if LARGE_DEFLECTION in sizes and (rough == math.inf or not math.isfinite(sizes[LARGE_DEFLECTION])):
-        sizes[LARGE_DEFLECTION] = rough
+    sizes |= {name: math.nan for name in effects.not_known if name not in sizes}
+    if _BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[_BENDING])):
+        sizes[_BENDING] = rough
     additions, _, _ = list_effects(scene)
     assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
     addable = {a.name for a in additions} - assumed.keys()
-    if effects.not_known.get(LARGE_DEFLECTION) not in EXCLUDED:
-        addable.add(LARGE_DEFLECTION)
+    if effects.not_known.get(_BENDING) not in EXCLUDED:
+        addable.add(_BENDING)
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return Judged(sizes, nothing | assumed | refused)
@@ -190,20 +189,18 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
         return None
-    sizes = {
-        effect.name: size if effect.name == LARGE_DEFLECTION else effect.size for effect in choice.effects
-    }
-    kept = (LARGE_DEFLECTION, *(name for name in choice.included if name in _WITH_LARGE_DEFLECTION))
+    sizes = {effect.name: effect.size for effect in choice.effects} | {_BENDING: size}
+    kept = (_BENDING, *(name for name in choice.included if NAMED[name].bends))
     lost = sum(sizes[name] for name in choice.included if name not in kept)
     try:
-        bent = add_effects(replace(scene, physics=Physics()), kept)
+        bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
     except InvalidValue:  # an oblique direction
         return None
     if lost >= size:
         return None
     effects = [replace(e, size=sizes[e.name], included=e.name in kept) for e in choice.effects]
     effects = [
-        replace(e, reason=_EXCLUSIVE) if e.name in choice.included and not e.included else e for e in effects
+        replace(e, reason=EXCLUSIVE) if e.name in choice.included and not e.included else e for e in effects
     ]
     left_out = sum(e.size for e in effects if not e.included and not math.isnan(e.size))
     chosen = replace(
@@ -267,23 +264,16 @@ class _Candidate:
         ArithmeticError
             If it leaves no answer.
         """
-        scene = add_effects(self.scene, [name])
+        scene = add_effects(self.scene, [NAMED[name]])
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
-        left_out = {other: self._judged_again(other, judged) for other in self.left_out.keys() - included}
+        left_out = {o: self._judged_again(o, judged) for o in self.left_out if o not in included}
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
 
     def _judged_again(self, name: str, judged: Judged) -> float:
         """Size of an effect, as before where it is not known any more."""
         size = judged.sizes.get(name, math.nan)
-        rough = name == LARGE_DEFLECTION and name in judged.reasons
+        rough = name == _BENDING and name in judged.reasons
         return self.left_out[name] if rough or math.isnan(size) else size
-
-
-def add_effects(scene: Scene, names: Sequence[str]) -> Scene:
-    """The scene with further effects, given by their names."""
-    fields = {effect.name: effect.physics for effect in list_left_out(scene)}
-    switches = {fields[name]: 2 if fields[name] == "planes" else True for name in names}
-    return replace(scene, physics=replace(scene.physics, **switches))
 
 
 def choose_by(
@@ -315,14 +305,14 @@ def choose_by(
     judged = judge(plain)
     start = _Candidate(plain, {}, judged.sizes, judged.reasons)
     if straight:
-        start = start.without(LARGE_DEFLECTION, straight)
-    best = _grow(start, judge, tolerance, {LARGE_DEFLECTION})
-    needed = start.addable().get(LARGE_DEFLECTION, 0.0) > _SMALL * tolerance
-    if needed and best.model_error > _MARGIN * tolerance:
+        start = start.without(_BENDING, straight)
+    best = _grow(start, judge, tolerance, {_BENDING})
+    needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
+    if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
             best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
-            best = best.without(LARGE_DEFLECTION, reason_of(error))
+            best = best.without(_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
 
 
@@ -331,7 +321,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
     while True:
         sizes = {name: size for name, size in candidate.addable().items() if name not in barred}
         largest = max(sizes, key=sizes.__getitem__, default="")
-        if sum(sizes.values()) <= _MARGIN * tolerance or sizes[largest] <= _SMALL * tolerance:
+        if sum(sizes.values()) <= EFFECTS.factor * tolerance or sizes[largest] <= _SMALL * tolerance:
             return candidate
         try:
             candidate = candidate.add(largest, judge)
@@ -341,17 +331,17 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
 
 def _bent(start: _Candidate, judge: Judge, tolerance: float) -> _Candidate:
     """The scene with large deflection and what that is combined with; raises what `add` does."""
-    bent = start.add(LARGE_DEFLECTION, judge)
-    return _grow(bent, judge, tolerance, bent.left_out.keys() - {*_WITH_LARGE_DEFLECTION})
+    bent = start.add(_BENDING, judge)
+    return _grow(bent, judge, tolerance, {name for name in bent.left_out if not NAMED[name].bends})
 
 
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
     """What was chosen, in numbers: each effect by its size, and what the choice costs."""
-    without, costs = _cost(plain, solve), {}
+    without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
-        costs[name] = _cost(add_effects(plain, [name]), solve) / without
+        costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without
     together = _cost(best.scene, solve) / without if len(costs) > 1 else [*costs.values(), np.ones(2)][0]
     included = [JudgedEffect(n, size, True, "", *costs[n].tolist()) for n, size in best.included.items()]
     left_out = [JudgedEffect(n, s, False, _why(n, best, tolerance)) for n, s in best.left_out.items()]
@@ -378,10 +368,10 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
         return ""
     if name in best.reasons:
         return best.reasons[name]
-    if LARGE_DEFLECTION in best.included and name not in _WITH_LARGE_DEFLECTION:
-        return _EXCLUSIVE
-    others = ", ".join(n for n in best.included if n not in _WITH_LARGE_DEFLECTION)
-    return f"it cannot be combined with {others}" if name == LARGE_DEFLECTION and others else ""
+    if _BENDING in best.included and not NAMED[name].bends:
+        return EXCLUSIVE
+    others = ", ".join(n for n in best.included if not NAMED[n].bends)
+    return f"it cannot be combined with {others}" if name == _BENDING and others else ""
 
 
 def _cost(scene: Scene, solve: Solve) -> np.ndarray:

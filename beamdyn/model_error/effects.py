@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue
-from beamdyn.equations.left_out import OmittedEffect, list_left_out
+from beamdyn.equations.effects import LARGE_DEFLECTION, SECOND_PLANE, SHEAR, TWIST, Effect, add_effects
+from beamdyn.equations.left_out import effects_left_out
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
@@ -22,27 +23,32 @@ class Addition:
 
     Parameters
     ----------
-    name : str
-        Name of the effect.
+    effect : Effect
+        The effect.
     scene : Scene
         The scene that includes it.
     assumed : str
         What was assumed about the beam to include it; empty if nothing.
     """
 
-    name: str
+    effect: Effect
     scene: Scene
     assumed: str = ""
 
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.effect.name
 
-def add_effect(scene: Scene, effect: OmittedEffect) -> Addition:
+
+def add_effect(scene: Scene, effect: Effect) -> Addition:
     """Add an effect that a scene leaves out to it.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    effect : OmittedEffect
+    effect : Effect
         The effect, which a model can have.
 
     Returns
@@ -54,15 +60,14 @@ def add_effect(scene: Scene, effect: OmittedEffect) -> Addition:
     InvalidValue
         If the beam lacks a property that the effect needs, or the effect cannot be combined with the others.
     """
-    physics = replace(scene.physics, **{effect.physics: 2 if effect.physics == "planes" else True})
     try:
-        return Addition(effect.name, replace(scene, physics=physics))
+        return Addition(effect, add_effects(scene, [effect]))
     except InvalidValue:
-        beam = _assume_shear(scene.beam) if physics.shear else None
+        beam = _assume_shear(scene.beam) if scene.physics.shear or effect is SHEAR else None
         if beam is None:
             raise
     assumed = f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
-    return Addition(effect.name, replace(scene, beam=beam, physics=physics), assumed)
+    return Addition(effect, add_effects(replace(scene, beam=beam), [effect]), assumed)
 
 
 def _assume_shear(beam: Beam) -> Beam | None:
@@ -97,16 +102,13 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
     not_modelled : tuple of str
         Those that no model has.
     """
-    left_out = {effect.name: effect for effect in list_left_out(scene) if effect.name != LARGE_DEFLECTION}
-    if "twist" in left_out:  # it needs the second plane: the two are one effect
-        left_out.pop("second plane of bending", None)
+    left_out = [effect for effect in effects_left_out(scene) if effect is not LARGE_DEFLECTION]
+    if TWIST in left_out:  # it needs the second plane: the two are one effect
+        left_out.remove(SECOND_PLANE)
     additions, not_known = [], {}
-    for effect in (effect for effect in left_out.values() if effect.physics):
+    for effect in (effect for effect in left_out if effect.switch):
         try:
             additions.append(add_effect(scene, effect))
         except InvalidValue as error:
             not_known[effect.name] = f"give {error.other}" if error.other else str(error)
-    return additions, not_known, tuple(e.name for e in left_out.values() if not e.physics)
-
-
-LARGE_DEFLECTION = "large deflection"
+    return additions, not_known, tuple(e.name for e in left_out if not e.switch)

@@ -8,11 +8,12 @@ from typing import TypeAlias
 
 import numpy as np
 
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.left_out import list_left_out
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import bends
-from beamdyn.model_error.effects import LARGE_DEFLECTION, Addition, list_effects
+from beamdyn.model_error.effects import Addition, list_effects
 from beamdyn.model_error.known_modes import Simple, find_alike
 from beamdyn.model_error.large_deflection import NO_CRITICAL_SPEED, large_deflection_change
 from beamdyn.model_error.left_out_effects import LeftOutEffects
@@ -105,7 +106,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 def nothing_known(scene: Scene) -> LeftOutEffects:
     """The effects that a scene leaves out, where there is no value that they could change."""
     additions, not_known, not_modelled = list_effects(replace(scene, physics=_straight(scene.physics)))
-    names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION]
+    names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
     return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
 
@@ -121,8 +122,8 @@ def _gather(
     additions, not_known, not_modelled = list_effects(simple.scene)
     changes = {}
     if bent is not None:
-        changes[LARGE_DEFLECTION], reason = bent()
-        not_known |= {LARGE_DEFLECTION: reason} if reason else {}
+        changes[LARGE_DEFLECTION.name], reason = bent()
+        not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
     for addition in additions:
         changes[addition.name] = _change_by(simple, addition, change)
     assumed = {addition.name: addition.assumed for addition in additions if addition.assumed}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from time import perf_counter
@@ -11,6 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.announced import OUTSIDE, announce
 from beamdyn.common.checks import within
 from beamdyn.common.one_line import error_at_most
@@ -315,18 +317,19 @@ class _Found:
 
 def _search(models: Iterator[Model], target: float) -> _Found:
     """Refine until the error meets the target or rounding, or the models end."""
-    found = None
-    for model in models:
-        try:
-            found = _compare(model)
-        except np.linalg.LinAlgError:  # rounding of so many functions: the last model is the best
-            if found is None:
-                raise
-            break
-        if np.isfinite(found.speed) and found.error <= max(target, 3 * found.rounding):
-            break
-    assert found is not None
-    return found
+
+    def meets(found: _Found) -> bool:
+        return bool(np.isfinite(found.speed)) and found.error <= max(target, 3 * found.rounding)
+
+    compared = _compare_each(models)
+    return refine(next(compared), lambda _: next(compared, None), meets)
+
+
+def _compare_each(models: Iterator[Model]) -> Iterator[_Found]:
+    """Compare each model with a coarser one, until rounding of so many functions leaves the last the best."""
+    yield _compare(next(models))
+    with suppress(np.linalg.LinAlgError):
+        yield from map(_compare, models)
 
 
 def _compare(model: Model) -> _Found:

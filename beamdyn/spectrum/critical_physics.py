@@ -9,11 +9,12 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import bends
 from beamdyn.model_error.choice import PHYSICS_TOLERANCE, Judged, choose_by
-from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
+from beamdyn.model_error.effects import list_effects
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
@@ -75,7 +76,7 @@ def _choose(scene: Scene, find: Callable[[Scene], _CriticalAnswer], tolerance: f
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
         # Where rotation bends the beam from rest on, it does not buckle.
-        sizes[LARGE_DEFLECTION] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
+        sizes[LARGE_DEFLECTION.name] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
         unresolved = {name: _UNRESOLVED for name, size in sizes.items() if math.isnan(size)}
         return Judged(sizes | dict.fromkeys(not_known, math.nan), unresolved | assumed | not_known)
 

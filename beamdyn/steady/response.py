@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.one_line import error_at_most, states, warned
@@ -376,12 +377,12 @@ class ResponseRequest(FieldsOnly):
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
-        response = replace(self, basis=self.smallest_basis()).run()
-        while (response.mode_error > self.tolerance).any():
-            if (response.request.basis.modes or 0) >= _MOST_MODES or response.refined is None:
-                break
-            response = response.refined
-        return response
+
+        def finer(response: SteadyResponse) -> SteadyResponse | None:
+            return None if (response.request.basis.modes or 0) >= _MOST_MODES else response.refined
+
+        first = replace(self, basis=self.smallest_basis()).run()
+        return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
         """Modes at the slowest and the fastest speed; about equilibria, those at each speed are taken."""

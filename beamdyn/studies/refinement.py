@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.accuracy.refinement import refine
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.choice import DEFAULT_TARGET, MOMENTS_TARGET, DiscretizationChoice, list_models
+from beamdyn.modal.choice import DEFAULT_TARGET, DiscretizationChoice, list_models, within_reach
 from beamdyn.scene.scene import Scene
 
 _WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
@@ -70,7 +71,7 @@ class Refinement:
 
     def target_of(self, basis: Discretization) -> float:
         """Relative error to be met in a basis."""
-        return self._target if basis.converges_regularly else max(self._target, MOMENTS_TARGET)
+        return within_reach(basis, self._target)
 
     @property
     def can_be_batched(self) -> bool:
@@ -87,8 +88,13 @@ class Refinement:
         functions : int
             Largest number of functions that was needed.
         """
-        pending, answers, functions = np.arange(count), [], 0
-        for basis in self.bases() if count else ():
+        bases, answers, functions = self.bases(), list[np.ndarray](), 0
+
+        def solve_finer(pending: np.ndarray) -> np.ndarray | None:
+            """Solve designs in the next basis: those whose errors do not meet the target, None at the end."""
+            nonlocal answers, functions
+            if (basis := next(bases, None)) is None:
+                return None
             unmet = [np.empty(0, dtype=int)]
             most = max(1, _ENTRIES // (_size(basis) ** 2 * speeds))
             for batch in np.split(pending, range(most, len(pending), most)):
@@ -98,8 +104,9 @@ class Refinement:
                         kept[part] = array
                     functions = max(functions, _size(basis))
                     unmet.append(part[~found.met])
-            if not (pending := np.concatenate(unmet)).size:
-                break
+            return np.concatenate(unmet)
+
+        refine(np.arange(count), solve_finer, lambda pending: not pending.size)
         return answers, functions
 
 

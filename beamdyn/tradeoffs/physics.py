@@ -12,11 +12,12 @@ from beamdyn.common.assignment import assign
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.digits import percent
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.equations.effects import LARGE_DEFLECTION, STRETCH
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.error_estimate import EstimatedModes
 from beamdyn.modal.model import Model
 from beamdyn.modal.static_load import bends
-from beamdyn.model_error.effects import LARGE_DEFLECTION, list_effects
+from beamdyn.model_error.effects import list_effects
 from beamdyn.scene.scene import Scene
 from beamdyn.tradeoffs.frequencies import sizes_of_eigenvalues, solve_reference
 from beamdyn.tradeoffs.measurements import Diagram, Measurement, number_of
@@ -26,7 +27,7 @@ AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is left aside
 _BETTER = 0.5  # of the error of the model as given: what is not below it has gained nothing by more physics
-_COMPARED = ("stretch",)  # effects that are modelled to compare with papers only
+_COMPARED = (STRETCH.name,)  # effects that are modelled to compare with papers only
 
 
 @dataclass(frozen=True)
@@ -126,8 +127,8 @@ def _list_choices(
     alone = [c for c in alone if _change(c, given, modes) > _NOTHING]
     if not alone:
         return [], tuple(not_known)
-    bent = [c for c in alone if c.name == LARGE_DEFLECTION]
-    straight = [c for c in alone if c.name != LARGE_DEFLECTION]
+    bent = [c for c in alone if c.name == LARGE_DEFLECTION.name]
+    straight = [c for c in alone if c.name != LARGE_DEFLECTION.name]
     with_bent = [*bent, *(c for c in straight if _combined(scene, [*bent, c]) is not None)] if bent else []
     kept = max(with_bent, straight, key=lambda s: max((_change(c, given, modes) for c in s), default=0.0))
     apart = [f"{c.name}: it cannot be combined with the others" for c in alone if c not in kept]
@@ -144,9 +145,9 @@ def _solve_additions(scene: Scene, speed: float, modes: int) -> tuple[list[Choic
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]
     if not scene.physics.large_deflection and speed and bends(Model(scene, Ritz(12))):
         try:
-            scenes[LARGE_DEFLECTION] = _with(scene, large_deflection=True)
+            scenes[LARGE_DEFLECTION.name] = _with(scene, large_deflection=True)
         except InvalidValue as error:
-            not_known.append(f"{LARGE_DEFLECTION}: {error}")
+            not_known.append(f"{LARGE_DEFLECTION.name}: {error}")
     return [_solve(name, added, speed, modes) for name, added in scenes.items()], not_known
 
 

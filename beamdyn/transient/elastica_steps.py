@@ -17,14 +17,14 @@ from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
-    ROUNDING,
     TOLERANCES,
+    Attempt,
     StepSize,
     check_number_of_steps,
+    shorten_steps,
     split_at_breakpoints,
 )
 from beamdyn.transient.time_error import (
-    ERROR_ORDER,
     STAGES,
     UNRESOLVED_PHASE,
     TimeError,
@@ -57,20 +57,18 @@ def integrate_elastica(
     """
     if _stays_in_equilibrium(system, y0, t_end):
         return _rest(system, y0, t_end), 0.0, "no steps: the beam stays in equilibrium"
-    step_size, last = StepSize.from_tolerance(tolerance), np.inf
-    while True:
+
+    def run(step_size: StepSize, before: Attempt | None) -> Attempt:
         try:
-            run = _Attempt.of(system, y0, t_end, step_size)
+            runs = _TwoRuns.of(system, y0, t_end, step_size)
         except StepNotSolved:
             if step_size.is_finest:
                 raise
-            step_size = _shorten(step_size, system.size)
-            continue
-        error, bound = run.error, tolerance * run.largest
-        stalled = last / 2 < error.total < ROUNDING * run.largest
-        if error.total <= bound or stalled or step_size.is_finest:
-            return run.path, error.total, f"Gauss collocation of order {2 * _FINER}, {run.steps} steps"
-        step_size, last = step_size.refine(error, bound, ERROR_ORDER), error.total
+            return run(_shorten(step_size, system.size), before)
+        method = f"Gauss collocation of order {2 * _FINER}, {runs.steps} steps"
+        return Attempt(step_size, runs.path, runs.error, runs.largest, method)
+
+    return shorten_steps(run, tolerance)
 
 
 def _shorten(step_size: StepSize, size: int) -> StepSize:
@@ -81,7 +79,7 @@ def _shorten(step_size: StepSize, size: int) -> StepSize:
 
 
 @dataclass(frozen=True)
-class _Attempt:
+class _TwoRuns:
     """Two runs in the same steps, with different numbers of stages.
 
     Parameters
@@ -97,7 +95,7 @@ class _Attempt:
     fine: tuple[Segment, ...]
 
     @classmethod
-    def of(cls, system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize) -> _Attempt:
+    def of(cls, system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize) -> _TwoRuns:
         """Integrate twice, with equal steps in each segment."""
         pieces = smooth_piece_ends(system.motion, t_end)
         edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)

@@ -14,12 +14,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from beamdyn.common.checks import InvalidValue, reason_of
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modal.choice import ensure_size
 from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
 from beamdyn.modal.modal_basis import find_speed_range
 from beamdyn.modal.model import Model
 from beamdyn.model_error.by_solving import Answer, left_out_by_solving
-from beamdyn.model_error.effects import LARGE_DEFLECTION
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, without_large_deflection
 from beamdyn.scene.scene import Scene
@@ -77,7 +77,7 @@ def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -
             return without
         if (shift := shifts.get(name)) is not None:
             return Answer(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
-        if name == LARGE_DEFLECTION and len(run.path.samples[0]) > _SHORT_RUN:
+        if name == LARGE_DEFLECTION.name and len(run.path.samples[0]) > _SHORT_RUN:
             return _estimate_bent(run, largest, scene, speed)
         return _run_again(request, scene, window)
 
@@ -88,7 +88,7 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
     """Relative change of the first frequency by each effect that changes the frequencies hardly at all."""
     s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
     omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
-    largest = {name: np.abs(change).max() for name, change in changes.items() if name != LARGE_DEFLECTION}
+    largest = {name: np.abs(each).max() for name, each in changes.items() if name != LARGE_DEFLECTION.name}
     small = (n for n, size in largest.items() if size <= _SHIFT and size * omega * t_end <= _PHASE)
     return {name: float(changes[name][0, 0]) for name in small}
 

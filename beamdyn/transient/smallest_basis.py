@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from beamdyn.accuracy.refinement import refine
 from beamdyn.modal.modal_basis import ModalBasis
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.trajectory import SAMPLES
@@ -64,13 +65,16 @@ def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -
 
 def _add_modes(run: Transient, tolerance: float) -> Transient:
     """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
-    before = np.inf
-    while run.mode_error > tolerance and (finer := _enlarge(run, tolerance)) is not None:
+
+    def finer(found: tuple[Transient, float]) -> tuple[Transient, float] | None:
+        run, before = found
+        larger = _enlarge(run, tolerance)
         most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
-        if _work(finer) > most or finer.with_more_modes is None:
-            break
-        run, before = finer, run.mode_error
-    return run
+        if larger is None or _work(larger) > most or larger.with_more_modes is None:
+            return None
+        return larger, run.mode_error
+
+    return refine((run, np.inf), finer, lambda found: not found[0].mode_error > tolerance)[0]
 
 
 def _enlarge(run: Transient, tolerance: float) -> Transient | None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.closed_form import propagate_in_closed_form
@@ -82,7 +83,7 @@ class StepSize:
         fastest = np.maximum(natural, speed * max(multiple, float(system.equations.gravity != 0)))
         return np.maximum(1, np.ceil(np.diff(ends) * fastest / self.phase)).astype(int).tolist()
 
-    def refine(self, error: TimeError, bound: float, order: int) -> StepSize:
+    def next(self, error: TimeError, bound: float, order: int) -> StepSize:
         """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle.
 
         The `order` is that at which the error falls with the step size.
@@ -99,6 +100,74 @@ class StepSize:
     def is_finest(self) -> bool:
         """Whether a smaller step size only adds rounding error."""
         return self.phase < _REFERENCE_PHASE / _MOST_REFINED
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A run in steps of one size.
+
+    Parameters
+    ----------
+    step_size : StepSize
+        The step size.
+    path : Trajectory
+        The motion.
+    error : TimeError
+        Estimated error of the tip deflection.
+    largest : float
+        Largest deflection of the tip [m].
+    method : str
+        Integrator and number of steps, for the provenance.
+    order : int
+        Order at which the error falls with the step size.
+    """
+
+    step_size: StepSize
+    path: Trajectory
+    error: TimeError
+    largest: float
+    method: str
+    order: int = ERROR_ORDER
+
+    @property
+    def is_finest(self) -> bool:
+        """Whether shorter steps only add rounding errors."""
+        return self.step_size.is_finest and self.order == ERROR_ORDER
+
+    def stalls_after(self, before: Attempt | None) -> bool:
+        """Whether shorter steps have not halved an error that may be one of rounding."""
+        last = np.inf if before is None else before.error.total
+        return last / 2 < self.error.total < ROUNDING * self.largest
+
+
+def shorten_steps(
+    run: Callable[[StepSize, Attempt | None], Attempt], tolerance: float
+) -> tuple[Trajectory, float, str]:
+    """Run with the step size of the tolerance, and with shorter ones while the error exceeds it.
+
+    Parameters
+    ----------
+    run : callable
+        A run in steps of a wanted size, after another one, if there was one.
+    tolerance : float
+        Time-integration error aimed at, relative to the largest deflection.
+
+    Returns
+    -------
+    path, error, method
+        As of `integrate`.
+    """
+
+    def meets(found: tuple[Attempt, Attempt | None]) -> bool:
+        last, before = found
+        return last.error.total <= tolerance * last.largest or last.stalls_after(before) or last.is_finest
+
+    def finer(found: tuple[Attempt, Attempt | None]) -> tuple[Attempt, Attempt | None]:
+        last, _ = found
+        return run(last.step_size.next(last.error, tolerance * last.largest, last.order), last), last
+
+    found, _ = refine((run(StepSize.from_tolerance(tolerance), None), None), finer, meets)
+    return found.path, found.error.total, found.method
 
 
 def integrate(
@@ -134,25 +203,22 @@ def integrate(
         edges = smooth_piece_ends(system.motion, t_end)
         path = Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
         return path, 0.0, "no steps: the beam stays in equilibrium"
-    step_size, last = StepSize.from_tolerance(tolerance), np.inf
-    attempt = _attempt_record if is_record(system, t_end, step_size) else _attempt
-    while True:
-        path, error, order = attempt(system, y0, t_end, tolerance, step_size)
-        largest = max(
-            float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments
-        )
-        stalled = last / 2 < error.total < ROUNDING * largest
-        finest = step_size.is_finest and order == ERROR_ORDER
-        if error.total <= tolerance * largest or stalled or finest:
-            steps = sum(len(s.acceleration) for s in path.segments)
-            return path, error.total, f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
-        finer, last = step_size.refine(error, tolerance * largest, order), error.total
-        if attempt is _attempt_record:
-            finer = _between_samples(system, t_end, finer, step_size, order)
-        step_size = finer
+    given_by_samples = is_record(system, t_end, StepSize.from_tolerance(tolerance))
+
+    def run(step_size: StepSize, before: Attempt | None) -> Attempt:
+        if given_by_samples and before is not None:
+            step_size = _between_samples(system, t_end, step_size, before.step_size, before.order)
+        solve = _run_record if given_by_samples else _run
+        path, error, order = solve(system, y0, t_end, tolerance, step_size)
+        tips = (magnitude(s.state[:, 1 : system.size + 1], system.tips).max() for s in path.segments)
+        steps = sum(len(s.acceleration) for s in path.segments)
+        method = f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
+        return Attempt(step_size, path, error, max(map(float, tips)), method, order)
+
+    return shorten_steps(run, tolerance)
 
 
-def _attempt(
+def _run(
     system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
 ) -> tuple[Trajectory, TimeError, int]:
     """Integrate with equal steps in each segment: path, error, and the order of the error."""
@@ -186,7 +252,7 @@ def _choose_steps(system: ModalSystem, t_end: float, step_size: StepSize) -> tup
     return np.array(edges), steps
 
 
-def _attempt_record(
+def _run_record(
     system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
 ) -> tuple[Trajectory, TimeError, int]:
     """Integrate a motion given by samples: path, error, and the order of the error."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Legendre
 
+from beamdyn.accuracy.margins import STEPS
 from beamdyn.transient.gauss import Segment, StepMaps, interpolate, solve_steps, tableau
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
@@ -20,7 +21,6 @@ _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period 
 INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
 _ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
-_MARGIN = 1.5  # safety factor of the estimate
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class TimeError:
     @property
     def total(self) -> float:
         """Sum of all contributions, with a safety factor [unit of the output]."""
-        return _MARGIN * (float(self.modes.sum()) + self.interpolation)
+        return STEPS.factor * (float(self.modes.sum()) + self.interpolation)
 
 
 def estimate_time_error(system: ModalSystem, segments: Sequence[Segment], outputs: np.ndarray) -> TimeError:

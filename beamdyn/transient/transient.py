@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.margins import MODES_OF_MOMENTS
 from beamdyn.common.checks import InvalidValue, real, real_array
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.pickling import FieldsOnly
@@ -45,7 +46,6 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
-_STRAIN_MARGIN = 3.0  # error of the root strain over its distance from the refined run
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
 _OF_TIME_ERROR = 0.1  # of the path, that is part of a distance found along it
@@ -262,7 +262,7 @@ class Transient(StatesModelError):
         difference = float(np.abs(strain - self.refined.root_strain(t)).max())
         if difference > _LIMIT_DIFFERENCE * np.abs(strain).max():
             return np.inf
-        return _STRAIN_MARGIN * difference + self._root_strain.time_error(self.path, self.time_error)
+        return MODES_OF_MOMENTS.factor * difference + self._root_strain.time_error(self.path, self.time_error)
 
     @cached_property
     def _root_strain(self) -> RootStrain:

@@ -1,0 +1,110 @@
+"""Effects beyond the plain beam: what each is named, what a model assumes without it, and how it is added."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from beamdyn.equations.directions import name_directions
+from beamdyn.scene.scene import Scene
+
+EXCLUSIVE = "it cannot be combined with large deflection"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect that models of a beam may have or leave out.
+
+    Parameters
+    ----------
+    name : str
+        Name, as it is shown and saved.
+    assumed : str
+        What a model assumes in its place; "{across}" stands for the direction across that of bending.
+    switch : str
+        Field of `Physics` that includes it; empty if no model has it.
+    value : int
+        Value of that field with the effect.
+    needs : tuple of str
+        Properties of the beam, of which the effect needs one; those that follow from others come last.
+    bends : bool
+        Whether it can be combined with large deflection.
+    taken_out : str
+        Name of what is taken out where large deflection takes its place.
+    """
+
+    name: str
+    assumed: str
+    switch: str = ""
+    value: int = True
+    needs: tuple[str, ...] = ()
+    bends: bool = False
+    taken_out: str = ""
+
+    def is_in(self, scene: Scene) -> bool:
+        """Whether the model of a scene has the effect."""
+        return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
+
+    def is_left_out(self, scene: Scene) -> bool:
+        """Whether the model of a scene lacks the effect: the twist only of a beam that has one."""
+        return not self.is_in(scene) and (self is not TWIST or scene.beam.twist is not None)
+
+    def reason(self, scene: Scene) -> str:
+        """What the model of a scene assumes in place of the effect, and how to include that."""
+        assumed = self.assumed.format(across=name_directions(scene)[1][0])
+        return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
+
+    def _how_to_include(self, scene: Scene) -> str:
+        if scene.physics.large_deflection and not self.bends:
+            return EXCLUSIVE
+        lacking = [name for name in self.needs[:1] if getattr(scene.beam, name) is None]
+        data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
+        others = [e.taken_out for e in EFFECTS if e.taken_out and e.is_in(scene)]
+        without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
+        return f"Physics({self.switch}={self.value}) includes it{data}{without}"
+
+
+_SECOND = ("second_bending_stiffness",)
+SECOND_PLANE = Effect(
+    "second plane of bending", "the beam is rigid {across}", "planes", 2, _SECOND, taken_out="a second plane"
+)
+TWIST = Effect("twist", "sections stand as at the root", "planes", 2, _SECOND)
+SHEAR = Effect(
+    "shear deformation",
+    "sections stay normal to the axis",
+    "shear",
+    needs=("shear_stiffness", "poissons_ratio"),
+    taken_out="shear",
+)
+ROTARY_INERTIA = Effect(
+    "rotary inertia of sections",
+    "sections turn without inertia",
+    "rotary_inertia",
+    needs=("rotary_inertia",),
+    bends=True,
+)
+STRETCH = Effect(
+    "stretch", "the beam is inextensible", "stretch", needs=("axial_stiffness",), taken_out="stretch"
+)
+LARGE_DEFLECTION = Effect(
+    "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
+)
+EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, STRETCH, LARGE_DEFLECTION
+NEVER_MODELLED = (
+    Effect("torsion", "the beam is rigid against torsion"),
+    Effect("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
+    Effect("warping and Poisson contraction", "sections keep their shape"),
+    Effect("contact", "nothing touches the beam"),
+)
+NAMED = {effect.name: effect for effect in EFFECTS}
+
+
+def add_effects(scene: Scene, effects: Iterable[Effect]) -> Scene:
+    """The scene with further effects.
+
+    Raises
+    ------
+    InvalidValue
+        If the beam lacks what an effect needs, or the effects cannot be combined.
+    """
+    return replace(scene, physics=replace(scene.physics, **{each.switch: each.value for each in effects}))

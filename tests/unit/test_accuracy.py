@@ -1,0 +1,39 @@
+"""The one refinement, and the one table of margins."""
+
+from importlib.util import find_spec
+
+import pytest
+
+from beamdyn.accuracy import margins
+from beamdyn.accuracy.refinement import refine
+from beamdyn.equations.effects import EFFECTS
+from beamdyn.scene.physics import Physics
+
+MARGINS = [value for value in vars(margins).values() if isinstance(value, margins.Margin)]
+
+
+def test_refines_until_the_tolerance_is_met() -> None:
+    """Newton's iteration for a root doubles its digits."""
+    found = refine(1.0, lambda x: (x + 2 / x) / 2, lambda x: abs(x * x - 2) < 1e-12)
+    assert found == pytest.approx(2**0.5, rel=1e-12)
+
+
+def test_keeps_what_meets_the_tolerance_and_the_last_where_nothing_does() -> None:
+    """Nothing finer is computed than is needed or can be had."""
+    sizes = iter([2, 4])
+    assert refine(1, lambda _: next(sizes), lambda size: size >= 2) == 2
+    assert next(sizes) == 4
+    assert refine(1, lambda size: size + 1 if size < 3 else None, lambda _: False) == 3
+
+
+@pytest.mark.parametrize("margin", MARGINS, ids=lambda margin: margin.distance)
+def test_evidence_of_a_margin_is_a_benchmark(margin: margins.Margin) -> None:
+    """A reader can measure each margin again."""
+    assert find_spec(f"benchmarks.{margin.evidence}") is not None
+
+
+def test_effects_are_switches_of_the_physics() -> None:
+    """Each effect that models have is switched by a field of `Physics`, to other than its default."""
+    assert all(getattr(Physics(), effect.switch) != effect.value for effect in EFFECTS)
+    fields = {name for name in vars(Physics()) if name != "branch"}
+    assert {effect.switch for effect in EFFECTS} == fields
