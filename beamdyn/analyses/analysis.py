@@ -35,6 +35,10 @@ WRITTEN = "written"  # marks an option that names a file to write
 DRAWN = "drawn"  # marks an option that chooses what a picture shows
 
 
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
 @dataclass(frozen=True)
 class AsText:
     """An option that is given as text, such as a number with its unit, and read for a scene.
@@ -64,11 +68,11 @@ class AsText:
         default = inspect.Parameter.empty if self.default is None else self.default
         return option.replace(annotation=Annotated[str, *notes], default=default)
 
-    def value(self, name: str, text: str | None, scene: Scene) -> Any:
+    def value(self, option: str, text: str | None, scene: Scene) -> Any:
         """The value of a text, or that of none."""
         if text is None:
             return None if self.absent is None else self.absent(scene)
-        return self.read(_option(name), text, scene)
+        return self.read(option, text, scene)
 
 
 @dataclass(frozen=True)
@@ -114,6 +118,8 @@ class Analysis:
         ``moving(options)``: whether the scene must have a motion.
     physics : type, optional
         Annotation of the option on physics; None if the analysis takes that of the scene.
+    screen : str
+        Name of the screen that is made of it; empty if there is none.
     """
 
     function: Callable[..., Result | Answer]
@@ -121,6 +127,7 @@ class Analysis:
     about_scene: str = "The scene."
     moving: Callable[[Mapping[str, Any]], bool] = lambda _: False
     physics: Any = Physics
+    screen: str = ""
 
     @property
     def name(self) -> str:
@@ -147,6 +154,21 @@ class Analysis:
             for note in _notes(each.annotation)
             if isinstance(note, AsText)
         }
+
+    @property
+    def question(self) -> str:
+        """What it asks, in a sentence."""
+        return (self.function.__doc__ or "").partition("\n")[0]
+
+    def meaning(self, name: str) -> str:
+        """What an option means."""
+        from docstring_parser import parse
+
+        notes = [note.help for note in _notes(self.options[name].annotation) if isinstance(note, Parameter)]
+        own = [
+            each.description for each in parse(self.function.__doc__ or "").params if each.arg_name == name
+        ]
+        return next(filter(None, [*own, *notes]), "")
 
     def command(self) -> Callable[..., None]:
         """The function of the command, with the signature that makes its help."""
@@ -176,7 +198,13 @@ class Analysis:
         question = Question.on_file(f"beamdyn {self.name}", file, **asked)
         deliver(self.answer(scene, given, outputs), outputs, question)
 
-    def answer(self, scene: Scene, given: Mapping[str, Any], outputs: Files = NO_FILES) -> Answer:
+    def answer(
+        self,
+        scene: Scene,
+        given: Mapping[str, Any],
+        outputs: Files = NO_FILES,
+        named: Callable[[str], str] = _option,
+    ) -> Answer:
         """The answer on a scene.
 
         Parameters
@@ -187,15 +215,17 @@ class Analysis:
             Values of the options, those in `texts` as text.
         outputs : Outputs
             Files that are asked for.
+        named : callable
+            ``named(name)``: what the user calls an option.
         """
         values = {name: value for name, value in given.items() if name != "physics"}
-        values |= {name: text.value(name, given[name], scene) for name, text in self.texts.items()}
+        values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
         if "outputs" in inspect.signature(self.function).parameters:
             values["outputs"] = outputs
-        with ExitStack() as named:
+        with ExitStack() as refusals:
             for name, text in self.texts.items():
                 if text.field and given[name] is not None:
-                    named.enter_context(naming_option(text.field, _option(name), given[name]))
+                    refusals.enter_context(naming_option(text.field, named(name), given[name]))
             made = self.function(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 
@@ -249,11 +279,12 @@ def analysis(
     about_scene: str = "The scene.",
     moving: Callable[[Mapping[str, Any]], bool] = lambda _: False,
     physics: Any = Physics,
+    screen: str = "",
 ) -> Callable[[Callable[..., Any]], Analysis]:
     """Make the function that follows an `Analysis`, with these attributes, and enter it in `ANALYSES`."""
 
     def enter(function: Callable[..., Any]) -> Analysis:
-        made = Analysis(function, examples, about_scene, moving, physics)
+        made = Analysis(function, examples, about_scene, moving, physics, screen)
         ANALYSES[made.name] = made
         return made
 
@@ -294,10 +325,6 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     program.warn("beamdyn", warnings)
     if refusal:
         raise program.NoAnswer(refusal)
-
-
-def _option(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
 
 
 def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty) -> inspect.Parameter:
