@@ -315,6 +315,8 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
 
     result, refusal = answer.result, answer.refusal
     draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)
+    if draw is None and outputs.plot is not None:
+        raise ValueError(f"--plot = {outputs.plot}: this result has no picture; give --json or --csv")
     draw = None if draw is None else noted(draw, result)
     tables = [*([tables_of(result)] if answer.tables is None else answer.tables), *describe_choice(result)]
     warnings = warnings_of(result) if answer.warnings is None else answer.warnings
