@@ -36,6 +36,7 @@ DRAWN = "drawn"  # marks an option that chooses what a picture shows
 
 
 def _option(name: str) -> str:
+    """The name of an option on the command line."""
     return f"--{name.replace('_', '-')}"
 
 
@@ -155,6 +156,12 @@ class Analysis:
             if isinstance(note, AsText)
         }
 
+    @cached_property
+    def shown(self) -> dict[str, inspect.Parameter]:
+        """The options as the command line and a form have them."""
+        texts = {name: text.shown(self.options[name]) for name, text in self.texts.items()}
+        return self.options | texts
+
     @property
     def question(self) -> str:
         """What it asks, in a sentence."""
@@ -178,8 +185,7 @@ class Analysis:
 
         file = Annotated[Path, Parameter(name="SCENE.toml", help=self.about_scene)]
         first = inspect.Parameter("scene", inspect.Parameter.POSITIONAL_ONLY, annotation=file)
-        texts = {name: text.shown(self.options[name]) for name, text in self.texts.items()}
-        shown = (self.options | texts).values()
+        shown = self.shown.values()
         run.__name__, run.__doc__ = self.function.__name__, self.function.__doc__
         run.__signature__ = inspect.Signature([first, *shown])  # pyright: ignore[reportFunctionMemberAccess]
         run.__annotations__ = {each.name: each.annotation for each in (first, *shown)}
@@ -189,7 +195,7 @@ class Analysis:
         """Answer a file, write the files that are asked for and print the answer."""
         from beamdyn.common.edge.html_report import Question
 
-        given = {name: options.get(name, self._default(name)) for name in self.options}
+        given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
         written, read, asked = self._sort(given)
         outputs.check(file, *read, **written)
@@ -229,10 +235,6 @@ class Analysis:
             made = self.function(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 
-    def _default(self, name: str) -> Any:
-        text = self.texts.get(name)
-        return self.options[name].default if text is None else text.default
-
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
         """Files to write, files and folders to read, and options that the head of a report repeats."""
         written: dict[str, Path] = {}
@@ -252,7 +254,7 @@ class Analysis:
             if is_dataclass(value):
                 hints = get_type_hints(type(value), include_extras=True)
                 of_group: Mapping[str, Any] = getattr(value, "options", vars(value))
-                yield from ((each, of_group.get(each, given), hints[each]) for each in of_group)
+                yield from ((each, of_group[each], hints[each]) for each in of_group)
             else:
                 yield name, value, self.options[name].annotation
 
@@ -274,17 +276,11 @@ class Analysis:
         return scene if given.get("physics") is None else replace(scene, physics=given["physics"])
 
 
-def analysis(
-    *examples: str,
-    about_scene: str = "The scene.",
-    moving: Callable[[Mapping[str, Any]], bool] = lambda _: False,
-    physics: Any = Physics,
-    screen: str = "",
-) -> Callable[[Callable[..., Any]], Analysis]:
-    """Make the function that follows an `Analysis`, with these attributes, and enter it in `ANALYSES`."""
+def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
+    """Make an `Analysis` of the function that follows, with these attributes, and enter it in `ANALYSES`."""
 
     def enter(function: Callable[..., Any]) -> Analysis:
-        made = Analysis(function, examples, about_scene, moving, physics, screen)
+        made = Analysis(function, examples, **about)
         ANALYSES[made.name] = made
         return made
 
@@ -334,5 +330,5 @@ def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty)
 
 
 def _notes(annotation: Any) -> tuple[Any, ...]:
-    """What an annotation carries beside its type."""
+    """Return what an annotation carries beside its type."""
     return get_args(annotation)[1:] if get_origin(annotation) is Annotated else ()

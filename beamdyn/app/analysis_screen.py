@@ -12,11 +12,13 @@ from pydantic import Field, create_model
 
 from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.app.inputs import ASIDE, read_aside, read_scene
-from beamdyn.app.scene_screen import scene_screen
+from beamdyn.app.scene_screen import drawn, scene_screen
 from beamdyn.cautions import warnings_of
+from beamdyn.common.app.folded_parts import FoldedPicture
 from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.inputs import Section, parts_of
 from beamdyn.common.edge.wording import of_file
+from beamdyn.common.results import Result
 
 _KINDS = (str, int, float)  # of options on a form
 
@@ -36,9 +38,11 @@ def analysis_screen(analysis: Analysis) -> Screen:
         said = warnings_of(answer.result) if answer.warnings is None else answer.warnings
         return [*([answer.refusal] if answer.refusal else []), *said]
 
-    return scene_screen(
-        analysis.screen, analysis.question, solve, (table,), lambda answer: answer.result, notes=notes
-    )
+    def result(answer: Answer) -> Result:
+        return answer.result
+
+    more = (FoldedPicture("Picture", lambda answer: drawn(answer.result)),)
+    return scene_screen(analysis.screen, analysis.question, solve, (table,), result, notes=notes, more=more)
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
@@ -58,9 +62,7 @@ def _section(analysis: Analysis) -> type[Section]:
 
 
 def _fields(analysis: Analysis) -> Iterator[tuple[str, Any]]:
-    for name, each in analysis.options.items():
-        text = analysis.texts.get(name)
-        option = each if text is None else text.shown(each)
+    for name, option in analysis.shown.items():
         kind = get_args(option.annotation)[0] if get_args(option.annotation) else option.annotation
         if name != "physics" and _stands_on_a_form(kind):
             default = ... if option.default is Parameter.empty else option.default

@@ -23,11 +23,9 @@ def _section(analysis: Analysis) -> Iterator[str]:
         yield f"In the browser it is the screen *{analysis.screen}*.\n"
     yield from (f"    {example}\n" for example in analysis.examples)
     yield "| option | meaning | default |\n|---|---|---|"
-    for name, option in analysis.options.items():
+    for name, option in analysis.shown.items():
         if not is_dataclass(option.default):
-            text = analysis.texts.get(name)
-            shown = option if text is None else text.shown(option)
-            default = "**required**" if shown.default is Parameter.empty else shown.default
+            default = "**required**" if option.default is Parameter.empty else option.default
             said = " ".join(analysis.meaning(name).split()).replace("|", "\\|")
             yield f"| `--{name.replace('_', '-')}` | {said} | {'' if default in (None, ()) else default} |"
 

@@ -75,6 +75,7 @@ def test_the_screen_has_a_form_of_the_options_and_shows_the_result(new_screen):
     assert len(answer.result.frequency) == 2
     assert len(list(new_screen.rows(answer))) == 3
     assert new_screen.draw(answer, 0.0).axes
+    assert new_screen.more[0].on_page(answer).startswith("<img")
     assert solve(new_screen, entries(**{"fast_modes.modes": "3"})).result.frequency.size == 3
 
 
