@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def warnings_of(result: Any, tolerance: float | None = None) -> list[str]:
     """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files."""
-    warnings = (*result.warnings, *_of_model_error(result, tolerance))
+    warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
     return [as_in_files(_in_units_of(result, said)) for said in warnings]
 
 

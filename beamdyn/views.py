@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from matplotlib.figure import Figure
 from rich.console import Group
 
 from beamdyn.common.curves import sweep_figure
@@ -70,9 +71,15 @@ def _campbell_tables(result: Any) -> Group:
     return Group(*campbell_tables(result))
 
 
+def _campbell_figure(result: Any) -> Figure:
+    figure = Figure(figsize=(8.5, 6.0), layout="constrained")
+    result.plot(figure.subplots())
+    return figure
+
+
 VIEWS = {
     "Backbone": View(backbone_table, backbone_csv, 2),
-    "Campbell": View(_campbell_tables, campbell_csv, 1),
+    "Campbell": View(_campbell_tables, campbell_csv, 1, _campbell_figure),
     "CriticalPoint": View(critical_answer, critical_csv),
     "Crossings": View(crossings_table, crossings_csv, 1),
     "Deck": View(lambda result: Group(*deck_tables(result))),

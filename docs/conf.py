@@ -28,6 +28,7 @@ extensions = [
     "docstring_pages",
     "repository_pages",
     "validation_pages",
+    "analyses_page",
     "file_keys",
 ]
 exclude_patterns = ["build", "_ext", "_templates", "**/GALLERY_HEADER.rst"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,16 +12,14 @@ from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.app.headlines import of_locus
-from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
-from beamdyn.app.sketches import sketch
+from beamdyn.app.inputs import read
+from beamdyn.app.scene_screen import scene_screen, tables_with_choice
 from beamdyn.app.speed_charts import CrossingPoint, describe_margin, frequency_chart
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.campbell_diagram.margins import Margin, margins_at_rated
-from beamdyn.cautions import critical_label, describe_choice, notes_of, warnings_of
-from beamdyn.common.app.screens import Screen
+from beamdyn.cautions import critical_label, notes_of, warnings_of
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.edge.tables import table
-from beamdyn.common.edge.views import rows_of
 from beamdyn.model_error.choice import plain_physics
 from beamdyn.output.campbell import Curves, plot_campbell
 from beamdyn.output.notes import note_below
@@ -32,7 +30,6 @@ from beamdyn.spectrum.critical import CriticalPoint
 from beamdyn.spectrum.locus import Locus
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.tables.results import crossings_table, locus_table
 
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
 _COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance
@@ -177,11 +174,11 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
     """Crossings and frequencies, each with the physics that was chosen for it."""
-    parts: list[RenderableType] = [locus_table(answer.locus), *describe_choice(answer.locus)]
+    parts = tables_with_choice(answer.locus)
     if answer.margins:
         parts = [_margins_table(answer), *parts]
     if answer.crossings is not None:
-        parts = [crossings_table(answer.crossings), *describe_choice(answer.crossings), *parts]
+        parts = [*tables_with_choice(answer.crossings), *parts]
     return parts
 
 
@@ -222,26 +219,16 @@ def warnings(answer: Frequencies) -> Sequence[str]:
     return found
 
 
-def rows(answer: Frequencies) -> Iterable[Sequence[object]]:
-    """Rows of the CSV file."""
-    return rows_of(answer.locus)
-
-
-FREQUENCIES = Screen(
+FREQUENCIES = scene_screen(
     "Frequencies",
     "Natural frequencies over the speed of rotation, and the speeds at which the motion excites them.",
-    TABLES,
-    TABLES,
     solve,
-    make_tables,
-    draw,
-    warnings,
-    rows,
+    result=lambda answer: answer.locus,
+    tables=make_tables,
+    draw=draw,
+    notes=warnings,
     sweeps=sweeps_of(frequency_outputs, "mount.setting_angle=0:180:31 deg", "frequency_1"),
-    drags=DRAGS,
     headline=lambda answer: [*of_locus(answer.locus, answer.critical)],
     coarser=coarser,
     charts=chart,
-    effort=EFFORT,
-    sketch=sketch,
 )

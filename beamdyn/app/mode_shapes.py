@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from rich.console import RenderableType
 
 from beamdyn import natural_modes
 from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.headlines import of_modes, of_numbers
-from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_at_speed
-from beamdyn.app.left_out import left_out_table
-from beamdyn.app.sketches import sketch
-from beamdyn.cautions import describe_choice, notes_of, warnings_of
-from beamdyn.common.app.screens import Drag, Screen, Slider
+from beamdyn.app.inputs import DRAGS, read_at_speed
+from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.app.screens import Drag, Slider
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.edge.views import rows_of
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.output.notes import note_below
 from beamdyn.spectrum.modes import Modes
-from beamdyn.tables.results import modes_table
 
 _PLACES = 41  # along the beam
 _LARGEST = 0.22  # deflection drawn, over the length
 _ABREAST = 2  # drawings in a row
-NEEDS = ("options", "operation", *SCENE_TABLES)
 
 
 def solve(tables: Mapping[str, Any]) -> Modes:
@@ -55,37 +47,15 @@ def _drawings(modes: Modes, swing: float) -> Iterator[Drawing]:
         yield bent_beam(x, swing * shape, said, "", (shape, -shape), _LARGEST * length)
 
 
-def tables(modes: Modes) -> Sequence[RenderableType]:
-    """Frequencies, and what the physics leaves out of them."""
-    return [
-        modes_table(modes),
-        *describe_choice(modes),
-        left_out_table(modes.left_out_effects, "frequencies"),
-    ]
-
-
-def draw(modes: Modes, _: float = 0.0) -> Figure:
-    """All shapes on one pair of axes."""
-    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
-    modes.plot(figure.subplots())
-    return note_below(figure, notes_of(modes))
-
-
-MODE_SHAPES = Screen(
+MODE_SHAPES = scene_screen(
     "Mode shapes",
     "How the beam moves in each natural mode at one speed; the sizes of the deflections are arbitrary.",
-    ("operation", "options", *SCENE_TABLES),
-    NEEDS,
     solve,
-    tables,
-    draw,
-    warnings_of,
-    rows_of,
+    ("operation", "options"),
+    left_out_of="frequencies",
     slider=Slider("swing", ("one way", "at rest", "other way"), 0.05),
     drags=(Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     drawings=drawings,
     headline=lambda modes: [*of_modes(modes)],
     quick_headline=lambda modes: [*of_numbers(modes)],
-    effort=EFFORT,
-    sketch=sketch,
 )

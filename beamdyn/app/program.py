@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from importlib.resources import files
 
+from beamdyn.analyses import ANALYSES
+from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.app.inputs import inputs_of
 from beamdyn.app.mode_shapes import MODE_SHAPES
@@ -15,7 +17,8 @@ from beamdyn.common.app.screens import Document, Program
 from beamdyn.config.scene_inputs import with_physics_as_table
 from beamdyn.config.scenes import parse_scene
 
-SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE)
+SHOWN = [analysis for analysis in ANALYSES.values() if analysis.screen]
+SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE, *map(analysis_screen, SHOWN))
 SCENE = Document(
     "scene",
     (files("beamdyn.app") / "scene.toml").read_text(encoding="utf-8"),
@@ -30,7 +33,8 @@ SCENE = Document(
         "run.end": "12 s",
         "run.window_start": "0 s",
         "run.window_end": "",
-    },
+    }
+    | {path: text for analysis in SHOWN for path, text in first_entries(analysis).items()},
     in_fields=with_physics_as_table,
     headings={
         "options": "Speeds and modes",
@@ -38,6 +42,7 @@ SCENE = Document(
         "operation": "Speed",
         "trade": "Digits to keep",
         "run": "Time and window",
-    },
+    }
+    | {analysis.function.__name__: "Options" for analysis in SHOWN},
 )
 BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE,))

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 
 from beamdyn import draw as draw_rotor
-from beamdyn.app.inputs import DRAGS, SCENE_TABLES, first_frequency, read_scene
-from beamdyn.app.sketches import sketch
-from beamdyn.common.app.screens import Handle, Screen
+from beamdyn.app.inputs import first_frequency, read_scene
+from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.app.screens import Handle
 from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.edge.views import rows_of
 from beamdyn.rotor import RotorDrawing
-from beamdyn.tables.rotor import rotor_table
 
 _STEPS = 200  # lengths are dragged in steps of about so many parts of the beam
 
@@ -61,18 +59,13 @@ def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:
     )
 
 
-ROTOR = Screen(
+ROTOR = scene_screen(
     "Rotor",
     "The beam on its carrier, seen along the axis of rotation, and the section of its root.",
-    SCENE_TABLES,
-    SCENE_TABLES,
     solve,
-    lambda rotor: [rotor_table(rotor)],
-    lambda rotor, _: rotor.figure(),
-    lambda rotor: rotor.warnings,
-    rows_of,
-    drags=DRAGS,
+    (),
+    draw=lambda rotor, _: rotor.figure(),
     drawings=drawings,
     handles=handles,
-    sketch=sketch,
+    effort="",
 )

@@ -6,25 +6,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from rich.console import RenderableType
 
 from beamdyn import resonance_speeds, steady_response
 from beamdyn.app.headlines import of_steady
-from beamdyn.app.inputs import DRAGS, EFFORT, TABLES, read
-from beamdyn.app.left_out import left_out_table
-from beamdyn.app.sketches import sketch
+from beamdyn.app.inputs import read
+from beamdyn.app.scene_screen import scene_screen
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
-from beamdyn.cautions import describe_choice, notes_of, warnings_of
-from beamdyn.common.app.screens import Screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.views import rows_of
-from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import LARGE_DEFLECTION
 from beamdyn.steady.response import SteadyResponse
-from beamdyn.tables.results import steady_table
 
 _SPEEDS = 242
 _BESIDE = (-4e-3, -1e-3, -2e-4, 2e-4, 1e-3, 4e-3)  # relative distances from a resonance speed
@@ -49,19 +41,6 @@ def _speeds(scene: Scene, top: float, modes: int) -> np.ndarray:
         return even
     near = np.multiply.outer(found, 1 + np.array(_BESIDE + ((0.0,) if scene.is_damped else ()))).ravel()
     return np.union1d(even, near[near < top])
-
-
-def draw(answer: SteadyResponse, _: float = 0.0) -> Figure:
-    """The resonance curve."""
-    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
-    answer.plot(figure.subplots())
-    return note_below(figure, notes_of(answer))
-
-
-def tables(answer: SteadyResponse) -> Sequence[RenderableType]:
-    """Amplitudes, and what the physics leaves out of them."""
-    effects = left_out_table(answer.left_out_effects, "amplitude, at the speeds where that is judged")
-    return [steady_table(answer), *describe_choice(answer), effects]
 
 
 def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
@@ -113,20 +92,12 @@ def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
             yield ChartBand(float(low), float(high), str(said[start]))
 
 
-STEADY_STATE = Screen(
+STEADY_STATE = scene_screen(
     "Steady response",
     "Largest deflection of the tip over speed, after the transient of the start has decayed.",
-    TABLES,
-    TABLES,
     solve,
-    tables,
-    draw,
-    warnings_of,
-    rows_of,
+    left_out_of="amplitude, at the speeds where that is judged",
     sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
-    drags=DRAGS,
     headline=lambda answer: [*of_steady(answer)],
     charts=chart,
-    effort=EFFORT,
-    sketch=sketch,
 )

@@ -14,11 +14,11 @@ from rich.console import RenderableType
 
 from beamdyn import natural_modes
 from beamdyn.app.headlines import of_trade
-from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, read_aside, read_at_speed
+from beamdyn.app.inputs import DRAGS, read_aside, read_at_speed
 from beamdyn.app.left_out import left_out_table
-from beamdyn.app.sketches import sketch
+from beamdyn.app.scene_screen import scene_screen
 from beamdyn.cautions import notes_of, warnings_of
-from beamdyn.common.app.screens import Drag, Screen
+from beamdyn.common.app.screens import Drag
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
 from beamdyn.model_error.choice import plain_physics
@@ -37,7 +37,6 @@ _KEPT = 8  # scenes whose measurements are kept
 _LARGEST, _LEAST = 1.0, 1e-14  # relative errors that are drawn
 _ROUNDING = 1e-9  # relative, of a power of ten
 _FAMILIES = {"tolerance=": "chosen by tolerance"}  # called so in Python
-NEEDS = ("trade", "options", "operation", *SCENE_TABLES)
 
 
 @dataclass(frozen=True)
@@ -251,19 +250,16 @@ def draw(answer: Trade, _: float = 0.0) -> Figure:
     return note_below(figure, notes_of(answer.modes))
 
 
-TRADE = Screen(
+TRADE = scene_screen(
     "Trade",
     "The cheapest model that keeps so many digits of the natural frequencies at a speed.",
-    ("trade", "operation", "options", *SCENE_TABLES),
-    NEEDS,
     solve,
-    tables,
-    draw,
-    lambda answer: warnings_of(answer.modes, answer.tolerance),
-    rows,
+    ("trade", "operation", "options"),
+    tables=tables,
+    draw=draw,
+    notes=lambda answer: warnings_of(answer.modes, answer.tolerance),
+    rows=rows,
     drags=(Drag("trade.digits", 1, 10, 1, ""), Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     charts=charts,
     headline=lambda answer: [*of_trade(answer.modes, answer.time, cheapest_in_all(answer))],
-    effort=EFFORT,
-    sketch=sketch,
 )

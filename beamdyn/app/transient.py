@@ -7,28 +7,25 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import resonance_speeds, simulate
 from beamdyn.app.bent_beam import bent_beam, drawn_larger
 from beamdyn.app.headlines import of_peak
-from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES, first_frequency, read_aside, read_scene
+from beamdyn.app.inputs import first_frequency, read_aside, read_scene
 from beamdyn.app.left_out import left_out_table
-from beamdyn.app.sketches import sketch
-from beamdyn.cautions import describe_choice, notes_of, warnings_of
+from beamdyn.app.scene_screen import scene_screen
+from beamdyn.cautions import describe_choice
 from beamdyn.common.app.courses import Onward
-from beamdyn.common.app.screens import KeyResult, Screen, Slider
+from beamdyn.common.app.screens import KeyResult, Slider
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.views import rows_of
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.one_line import number
 from beamdyn.equations.directions import modelled_directions
-from beamdyn.output.notes import note_below
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
 from beamdyn.tables.results import time_of_peak, transient_table
@@ -41,7 +38,6 @@ _SAMPLES = 40  # number of the largest samples near which the peak is sought
 _CLOSE = 4  # periods of the first mode before and after the present time in the close-up
 _MOST_SENT = 4000  # points of the whole run on the page: enough to see its periods when zoomed
 _MODES = 3  # whose resonances are marked
-NEEDS = ("run", *SCENE_TABLES)
 
 
 @dataclass(frozen=True)
@@ -240,28 +236,15 @@ def _of_passages(answer: Playable) -> Iterator[KeyResult]:
         yield KeyResult("passes a resonance at", number(at, "s"))
 
 
-def draw(answer: Playable, _: float = 1.0) -> Figure:
-    """The tip over time."""
-    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
-    answer.run.plot(figure.subplots())
-    return note_below(figure, notes_of(answer.run))
-
-
-TRANSIENT = Screen(
+TRANSIENT = scene_screen(
     "Transient",
     "The motion from rest: the beam, and its tip over time.",
-    NEEDS,
-    NEEDS,
     solve,
-    tables,
-    draw,
-    lambda answer: warnings_of(answer.run),
-    lambda answer: rows_of(answer.run),
+    ("run",),
+    result=lambda answer: answer.run,
+    tables=tables,
     slider=Slider("time", ("start", "end"), 0.001, 20.0, Onward),
-    drags=DRAGS,
     drawings=drawings,
     charts=charts,
     headline=headline,
-    effort=EFFORT,
-    sketch=sketch,
 )

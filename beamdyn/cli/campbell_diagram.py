@@ -10,30 +10,26 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from cyclopts import Parameter
 
-from beamdyn.cli.program import app, deliver
-from beamdyn.cli.values import (
-    Discretization,
-    ModeCount,
-    PhysicsOption,
-    Text,
-    naming_option,
-    parse_positive,
-    parse_speed,
-)
+import beamdyn as bd
+from beamdyn.analyses.analysis import Answer, Physics, deliver
+from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
+from beamdyn.analyses.values import naming_option, parse_positive, parse_speed
+from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from beamdyn.campbell_diagram.diagram import Campbell
     from beamdyn.common.edge.html_report import Question
     from beamdyn.scene.scene import Scene
 
 SceneFiles = Annotated[tuple[Path, ...], Parameter(name="FILE", negative=())]
-
+OfAll = Annotated[
+    Physics,
+    Parameter(
+        help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scenes."
+    ),
+]
 _SPEEDS = 301
-_SIZE = (8.5, 6.0)  # of the picture [inch]
 
 
 @app.command(
@@ -55,9 +51,9 @@ def campbell(
     hub_radius: Text | None = None,
     bounds: Flag = False,
     discretization: Discretization = "ritz",
-    tolerance: float | None = None,
+    tolerance: FrequencyTolerance = None,
     crossings: Path | None = None,
-    physics: PhysicsOption = None,
+    physics: OfAll = None,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Campbell diagram: natural frequencies over rotor speed, per-rev lines, crossings and margins.
@@ -79,8 +75,6 @@ def campbell(
         a unit, e.g. "6.9:12.1 rpm".
     per_rev
         Per-rev lines: "6" for 1P to 6P, one order, e.g. "2P", or a list, e.g. "3, 6, 9".
-    modes
-        Number of modes, from the lowest.
     labels
         Names of the scenes, separated by commas; default: those of the files.
     length
@@ -89,20 +83,12 @@ def campbell(
         Distance of the root from the axis of rotation with its unit, likewise.
     bounds
         Also give guaranteed bounds of the frequencies at the rated speed, or else the top speed.
-    discretization
-        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
-    tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
-        if not given.
     crossings
         Write the crossings into this file: .csv.
-    physics
-        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scenes.
     outputs
         Output files.
     """
-    from beamdyn import campbell
-    from beamdyn.tables.campbell import campbell_csv, campbell_tables, crossings_of_lines_csv
+    from beamdyn.tables.campbell import crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
@@ -116,7 +102,7 @@ def campbell(
     by_label = _label(inputs, labels, physics)
     at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1], alone)
     with naming_option("per_rev", "--per-rev", per_rev):
-        result = campbell(
+        result = bd.campbell(
             by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
             bounds=bounds, **options,
         )  # fmt: skip
@@ -124,15 +110,7 @@ def campbell(
         write_table(crossings, crossings_of_lines_csv(result))
     ignored = (warning for given in inputs for warning in given.warnings)
     warnings = *ignored, *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
-    deliver(
-        result,
-        outputs,
-        question,
-        campbell_tables(result),
-        campbell_csv(result),
-        lambda: _draw(result),
-        warnings,
-    )
+    deliver(Answer(result, warnings=warnings), outputs, question)
 
 
 class _BladeFile(NamedTuple):
@@ -242,7 +220,7 @@ def _parse_orders(text: str) -> Sequence[int]:
     return orders if len(parts) > 1 else range(1, orders[0] + 1)
 
 
-def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: PhysicsOption) -> dict[str, Scene]:
+def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -> dict[str, Scene]:
     """The scenes by their labels, with the physics of the option if that is given."""
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
@@ -255,11 +233,3 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: PhysicsOpt
     scenes = (given.scene for given in inputs)
     chosen = (scene if physics is None else replace(scene, physics=physics) for scene in scenes)
     return dict(zip(names, chosen, strict=True))
-
-
-def _draw(result: Campbell) -> Figure:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=_SIZE, layout="constrained")
-    result.plot(figure.subplots())
-    return figure

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.cli.program import app, warn
-from beamdyn.cli.values import Text, naming_option, parse_quantity, parse_speed
+from beamdyn.analyses.options import Text
+from beamdyn.analyses.values import naming_option, parse_quantity, parse_speed
+from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import Flag, Outputs
-from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.program import examples, warn
 
 if TYPE_CHECKING:
     from beamdyn.decks.deck import Deck
@@ -74,7 +75,7 @@ def import_deck(
         show([f"Written: {output}, for beamdyn modes {output} and the other commands."])
     if polynomials is not None:
         _write_polynomials(deck, polynomials, at, force)
-    warn(deck.audit.warnings)
+    warn("beamdyn", deck.audit.warnings)
 
 
 def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 from beamdyn import load_scene
+from beamdyn.analyses.transients import _how_to_resume
+from beamdyn.analyses.values import parse_window
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
-from beamdyn.cli.transients import _how_to_resume
-from beamdyn.cli.values import parse_window
 from beamdyn.tables.results import peaks
 
 ROOT = Path(__file__).parents[2]
@@ -72,7 +72,7 @@ def test_digits_that_the_modes_left_out_spoil_are_not_printed(run):
 
 
 def test_simulate_writes_files(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.cli.transients._FRAMES", 7)
+    monkeypatch.setattr("beamdyn.analyses.transients._FRAMES", 7)
     names = ("j.json", "c.csv", "p.png", "s.xdmf", "a.gif")
     j, c, p, s, a = (tmp_path / name for name in names)
     files = ("--json", j, "--csv", c, "--plot", p, "--series", s, "--animation", a)

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamdyn.analyses.excitations import read_spectrum
+from beamdyn.analyses.linear_models import parse_frequencies
 from beamdyn.cli import BAD_INPUT, main
-from beamdyn.cli.excitations import read_spectrum
-from beamdyn.cli.linear_models import parse_frequencies
 from beamdyn.common.edge.config import ConfigError
 from brakes.cli import main as brakes
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.analyses.excitations import parse_input, parse_output
+from beamdyn.analyses.linear_models import parse_frequencies
 from beamdyn.cli import BAD_INPUT, DONE, main
-from beamdyn.cli.excitations import parse_input, parse_output
-from beamdyn.cli.linear_models import parse_frequencies
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.modal.model import Model
 from beamdyn.tables.linear_models import random_csv, response_csv

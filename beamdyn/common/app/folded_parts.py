@@ -12,6 +12,7 @@ from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.rendering import drawing, html, picture
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.console import RenderableType
 
 
@@ -57,6 +58,30 @@ class FoldedDrawings:
         """The drawings as a picture."""
         rows = self.rows(answer)
         return picture(drawing(lambda: figure_of(rows, Paper.of_squares(rows))), self.title)
+
+
+@dataclass(frozen=True)
+class FoldedPicture:
+    """A figure of matplotlib.
+
+    Parameters
+    ----------
+    title : str
+        What it shows.
+    draw : callable
+        ``draw(answer)``: the figure.
+    """
+
+    title: str
+    draw: Callable[[Any], Figure]
+
+    def on_page(self, answer: Any) -> str:
+        """The figure as a picture."""
+        return picture(drawing(lambda: self.draw(answer)), self.title)
+
+    def in_report(self, answer: Any) -> str:
+        """Where the figure stands: a report has that of each screen anyway."""
+        return "<p>It is the drawing above.</p>"
 
 
 @dataclass(frozen=True)

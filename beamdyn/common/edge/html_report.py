@@ -40,7 +40,7 @@ class Question:
 
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """Make one from the text of the file; options that are None or empty are left out."""
+        """Make one from the text of the file; options that are None, False or empty are left out."""
         words = [*command.split(), str(file), *_options(options)]
         return cls(f"{command}: {file}", f"# {_line(shlex.join(words))}\n\n{text}")
 
@@ -54,9 +54,10 @@ class Question:
 
 def _options(options: dict[str, object]) -> Iterator[str]:
     for name, value in options.items():
+        option = f"--{name.replace('_', '-')}"
         for given in value if isinstance(value, tuple) else (value,):
-            if given is not None:
-                yield from (f"--{name.replace('_', '-')}", str(given))
+            if given is not None and given is not False:
+                yield from (option,) if given is True else (option, str(given))
 
 
 def _line(text: str) -> str:

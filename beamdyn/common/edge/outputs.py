@@ -38,30 +38,19 @@ _SUFFIXES = {
 }
 
 
-@Parameter(name="*")
-@dataclass(frozen=True)
-class Outputs:
-    """Files to write.
-
-    Parameters
-    ----------
-    plot : Path, optional
-        Draw the result into this file: .png, .svg or .pdf.
-    json : Path, optional
-        Write the result with its error estimate and provenance into this file: .json.
-    csv : Path, optional
-        Write a table for other programs into this file: .csv, .tsv or .txt.
-    report : Path, optional
-        Write inputs, results, drawings and warnings into this file, which needs no other: .html.
-    force : bool
-        Overwrite files that exist.
-    """
+class Files:
+    """Files to write: what all kinds of commands do with them."""
 
     plot: Path | None = None
     json: Path | None = None
     csv: Path | None = None
     report: Path | None = None
-    force: Flag = False
+    force: bool = False
+
+    @property
+    def draws(self) -> bool:
+        """Whether a picture is wanted."""
+        return self.plot is not None or self.report is not None
 
     def check(self, *inputs: str | Path | None, **more: Path | None) -> None:
         """Refuse, before anything is computed, a file that cannot be written or would destroy another.
@@ -91,12 +80,59 @@ class Outputs:
             _check_output(option, path, self.force)
 
 
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Outputs(Files):
+    """Files to write.
+
+    Parameters
+    ----------
+    plot : Path, optional
+        Draw the result into this file: .png, .svg or .pdf.
+    json : Path, optional
+        Write the result with its error estimate and provenance into this file: .json.
+    csv : Path, optional
+        Write a table for other programs into this file: .csv, .tsv or .txt.
+    report : Path, optional
+        Write inputs, results, drawings and warnings into this file, which needs no other: .html.
+    force : bool
+        Overwrite files that exist.
+    """
+
+    plot: Path | None = None
+    json: Path | None = None
+    csv: Path | None = None
+    report: Path | None = None
+    force: Flag = False
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class AnswerFiles(Files):
+    """Files to write of an answer that is one number or a list in words.
+
+    Parameters
+    ----------
+    json : Path, optional
+        Write the result with its error estimate and provenance into this file: .json.
+    report : Path, optional
+        Write inputs, result and warnings into this file, which needs no other: .html.
+    force : bool
+        Overwrite files that exist.
+    """
+
+    json: Path | None = None
+    report: Path | None = None
+    force: Flag = False
+
+
 NO_FILES = Outputs()
+NO_ANSWER_FILES = AnswerFiles()
 
 
 def write(
     result: Result,
-    outputs: Outputs,
+    outputs: Files,
     rows: Iterable[Sequence[object]] = (),
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,

@@ -84,13 +84,13 @@ def rows_of(result: Result) -> Iterator[Sequence[object]]:
     return in_display_units(_fields_rows(result) if made is None else made(result), result.display_units)
 
 
-def figure_from(result: Result) -> Figure | None:
-    """The picture of a result, by its view or by `plot`; None if it has neither."""
+def picture_of(result: Result) -> Callable[[], Figure] | None:
+    """What draws the picture of a result, by its view or its `plot`; None if it has neither."""
     made = view_of(result).figure
     if made is not None:
-        return made(result)
+        return lambda: made(result)
     plot = getattr(result, "plot", None)
-    return None if plot is None else figure_of(plot)
+    return None if plot is None else lambda: figure_of(plot)
 
 
 # Text and data frames -------------------------------------------------------------------------------
@@ -172,10 +172,10 @@ def _warning(sentence: str) -> str:
 def _picture(result: Result) -> str:
     """The picture as an image in the page, or why it cannot be drawn; nothing where there is none."""
     try:
-        figure = figure_from(result)
-        if figure is None:
+        draw = picture_of(result)
+        if draw is None:
             return ""
-        content = base64.b64encode(png(figure)).decode()
+        content = base64.b64encode(png(draw())).decode()
     except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
         return f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return f'<img alt="{escape(repr(result))}" src="data:image/png;base64,{content}">'

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 from cyclopts import Parameter
 
-from beamdyn.cli.values import Text, parse_positive, speed_or_final
+from beamdyn.analyses.options import Text
+from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed
 
 if TYPE_CHECKING:
     from beamdyn.linear_models.excitations import Excitation
@@ -63,11 +64,6 @@ class RandomInput:
     input: Text | None = None
 
     @property
-    def options(self) -> dict[str, object]:
-        """The options, for the head of a report; None where one is not given."""
-        return dict(vars(self))
-
-    @property
     def drive(self) -> Excitation | None:
         """Where the input acts; None for what its density suggests."""
         return None if self.input is None else parse_input(self.input)
@@ -98,12 +94,16 @@ class RandomInput:
         limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
         return RoadRoughness(self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit)
 
+    def shown(self, scene: Scene) -> Scene:
+        """The scene, with results in the unit of the speed."""
+        return in_unit_of(scene, self.speed)
+
     def speed_of(self, scene: Scene) -> float:
         """The speed that is given [rad/s], that of a wheel which rolls at the velocity, or the scene's."""
         from beamdyn.scene.motion import RollingWheel
 
         if self.velocity is None:
-            return speed_or_final(scene, self.speed)
+            return final_speed(scene) if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
             raise ValueError("--speed, --velocity: give one of the two")
         if not isinstance(scene.motion, RollingWheel):

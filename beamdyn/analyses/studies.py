@@ -1,4 +1,4 @@
-"""The command of studies: an answer over all combinations of inputs."""
+"""Studies: an answer over all combinations of inputs, or its ranges over tolerances of them."""
 
 from __future__ import annotations
 
@@ -9,21 +9,16 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
-from beamdyn.cli.program import app, deliver
-from beamdyn.cli.spreads import answer_spread
-from beamdyn.cli.values import (
-    Discretization,
-    ModeCount,
-    PhysicsOption,
-    SceneFile,
-    Text,
-    load_with,
+import beamdyn as bd
+from beamdyn.analyses.analysis import Answer, analysis
+from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Text
+from beamdyn.analyses.values import (
+    final_speed,
+    in_unit_of,
     naming_option,
+    parse_speed,
     parse_window,
-    speed_or_final,
 )
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
-from beamdyn.common.edge.program import examples
 from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
 
@@ -34,108 +29,103 @@ if TYPE_CHECKING:
     from beamdyn.studies.result import Study
 
 _FACTOR = "factor of a property along the beam"
+Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"]
 
 
-@app.command(
-    help_epilogue=examples(
-        'beamdyn study examples/tyre_harvester.toml --vary "beam.thickness=0.1:0.4:7 mm"',
-        'beamdyn study examples/tyre_harvester.toml --spread "beam.thickness=+-2%"',
-    )
+@analysis(
+    'beamdyn study examples/tyre_harvester.toml --vary "beam.thickness=0.1:0.4:7 mm"',
+    'beamdyn study examples/tyre_harvester.toml --spread "beam.thickness=+-2%"',
 )
 def study(
-    scene: SceneFile,
-    /,
+    scene: Scene,
     *,
     varying: VaryOptions = NOTHING_VARIED,
     spreading: SpreadOptions = NO_SPREAD,
-    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
+    what: Kind = "frequencies",
     speed: Text | None = None,
-    modes: ModeCount | None = None,
+    modes: Count | None = None,
     window: Text | None = None,
     discretization: Discretization = "ritz",
-    tolerance: float | None = None,
-    physics: PhysicsOption = None,
-    outputs: Outputs = NO_FILES,
-) -> None:
+    tolerance: FrequencyTolerance = None,
+) -> Answer:
     """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
     Or their ranges over tolerances, and the input that matters most. At most a million designs are answered.
 
     Parameters
     ----------
-    scene
-        The scene.
-    varying
-        Inputs that are varied. Names are those of the file; "speed"; or factors of properties as they are
-        along the beam, such as "beam.scale.bending_stiffness=0.9:1.1:5".
-    spreading
-        Inputs that have a tolerance, in place of those that are varied.
     what
-        frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the speeds at
-        which modes meet lines of the excitation; amplitude, of the tip in steady motion; or peak, its largest
-        deflection in a window of time.
+        frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the
+        speeds at which modes meet lines of the excitation; amplitude, of the tip in steady motion;
+        or peak, its largest deflection in a window of time.
     speed
-        Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed of
-        crossings. Default: the final speed of the scene's motion, or 0 without one.
+        Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed
+        of crossings. Default: the final speed of the scene's motion, or 0 without one.
     modes
-        Number of modes of frequencies and crossings, from the lowest; default: 3. Amplitudes and peaks take
-        as many as they need.
+        Number of modes of frequencies and crossings, from the lowest; default: 3. Amplitudes and
+        peaks take as many as they need.
     window
         Beginning and end of the window of time of peaks; default: 20:30 s.
-    discretization
-        ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other.
-    tolerance
-        Largest relative error of a frequency: the cheapest discretization that meets it is chosen; 1e-11
-        if not given.
-    physics
-        auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene.
-    outputs
-        Output files.
     """
-    from beamdyn import study
-    from beamdyn.cautions import warnings_of
     from beamdyn.common.designs import MOST_DESIGNS, check_designs
-    from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.varied_inputs import designs_of, parse_axis
-    from beamdyn.common.edge.wording import of_file
-    from beamdyn.tables.studies import study_csv, study_table
 
-    outputs.check(scene)
     spreading.check(varying)
     if not varying.vary and not spreading.spread:
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
-    loaded = load_with(scene, physics, speed, *_speeds_of(varying))
-    known = _inputs(loaded)
+    scene = in_unit_of(scene, speed, *_speeds_of(varying))
+    known = _inputs(scene)
     axes = [parse_axis(known, text, OPTION, MOST_DESIGNS) for text in varying.vary]
     check_designs(designs_of(axes, varying.combine), option=OPTION)
-    options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
-    asked = varying.options | spreading.options | {"what": what, "speed": speed, "window": window} | options
-    question = Question.on_file("beamdyn study", scene, **asked, physics=physics)
-    options["window"] = None if window is None else parse_window(window)
-    options["speed"] = _speed_of(loaded, what, speed, axes)
-    as_given = _refused_as_given(axes, speed=speed, window=window)
-    if spreading.spread:
-        how = options | {"what": what, "workers": varying.workers, "store": varying.store}
-        with as_given:
-            answer_spread(loaded, known, spreading, outputs, question, how)
-        return
-    with at_work("designs") as progress, of_file({}), as_given:
-        result = study(
-            loaded,
-            {axis.input.path: axis.values for axis in axes},
-            what,
-            **options,
-            combine=varying.combine,
-            workers=varying.workers,
-            store=varying.store,
-            progress=progress,
+    how = {
+        "what": what,
+        "modes": modes,
+        "discretization": discretization,
+        "tolerance": tolerance,
+        "window": None if window is None else parse_window(window),
+        "speed": _speed_of(scene, what, speed, axes),
+        "workers": varying.workers,
+        "store": varying.store,
+    }
+    with _refused_as_given(axes, speed=speed, window=window):
+        return (
+            _spread(scene, known, spreading, how) if spreading.spread else _study(scene, axes, varying, how)
         )
+
+
+def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
+    """Answer all designs."""
+    from beamdyn.cautions import warnings_of
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.common.edge.wording import of_file
+    from beamdyn.tables.studies import study_table
+
+    inputs = {axis.input.path: axis.values for axis in axes}
+    with at_work("designs") as progress, of_file({}):
+        result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
-    tables, rows = [study_table(result, units)], study_csv(result)
-    warnings = [_as_given(axes, said) for said in warnings_of(result, tolerance)]
-    refusal = _refusal(result)
-    deliver(result, outputs, question, tables, rows, on_axes(result.plot), warnings, refusal)
+    warnings = [_as_given(axes, said) for said in warnings_of(result, how["tolerance"])]
+    return Answer(result, _refusal(result), warnings, [study_table(result, units)])
+
+
+def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
+    """Ranges of the answer over tolerances."""
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
+    from beamdyn.common.edge.wording import of_file
+    from beamdyn.scene.numbers import unit_of
+    from beamdyn.spreads.spread import nominal_value
+
+    def nominal(entry: Input) -> tuple[float, str]:
+        return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
+
+    with at_work("designs") as progress, of_file({"spread": "--spread", "samples": "--samples"}):
+        given = parse_spreads(inputs, spreading.spread, nominal)
+        drawn = {"samples": spreading.samples, "seed": spreading.seed, "progress": progress}
+        with in_units_of(given):
+            result = bd.spread(scene, {each.name: each.distribution for each in given}, **drawn, **how)
+    none = f"none of {result.designs} random designs has an answer"
+    return Answer(result, none if (result.scatter.no_answer == 1).all() else "")
 
 
 # Values as they were given ------------------------------------------------------------------------
@@ -148,7 +138,9 @@ def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) 
 
     varied = any(axis.input.path == SPEED for axis in axes)
     needed = "speed" in KINDS[what].options and not varied
-    return speed_or_final(scene, speed) if needed or speed is not None else None
+    if speed is not None:
+        return parse_speed("--speed", speed, scene)
+    return final_speed(scene) if needed else None
 
 
 def _speeds_of(varying: VaryOptions) -> Iterator[str]:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING
 
 from cyclopts import Parameter, Token
 
@@ -17,11 +17,6 @@ if TYPE_CHECKING:
     import numpy as np
 
     from beamdyn.scene.scene import Scene
-
-SceneFile = Annotated[Path, Parameter(name="SCENE.toml")]
-Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
-Discretization = Literal["ritz", "fem"]
-PhysicsOption = Literal["auto"] | None
 
 
 def _whole(kind: object, tokens: Sequence[Token]) -> int | str:
@@ -40,20 +35,14 @@ _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
 _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
-def _at_most(most: int) -> Parameter:
-    """A whole number with an upper limit, beyond which a command takes hours or fills the memory."""
+def at_most(most: int) -> Parameter:
+    """An option that is a whole number up to a limit, beyond which a command takes hours or fills memory."""
 
     def check(_: object, value: object) -> None:
         if isinstance(value, int) and value > most:
             raise ValueError(f"Give at most {most}.")
 
     return Parameter(converter=_whole, validator=check)
-
-
-ModeCount = Annotated[int, _at_most(100)]
-BasisSize = Annotated[int | Literal["auto"], _at_most(100)]
-Order = Annotated[int, _at_most(5)]
-Workers = Annotated[int, _at_most(128)]
 
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
@@ -190,14 +179,14 @@ def _member(text: str, number: str, unit: str, scene: Scene | None) -> float:
     return parse_speed("--speeds", f"{number} {unit}", scene)
 
 
-def parse_positions(text: str) -> list[float]:
-    """Positions along the beam [m] of ``--at``: a list with a unit at its end, such as "0, 10, 25 mm"."""
-    return [x for (x,) in _tuples("--at", text, 1, "0, 10, 25 mm")]
+def parse_positions(option: str, text: str) -> list[float]:
+    """Positions along the beam [m]: a list with a unit at its end, such as "0, 10, 25 mm"."""
+    return [x for (x,) in _tuples(option, text, 1, "0, 10, 25 mm")]
 
 
-def parse_points(text: str) -> list[list[float]]:
-    """Points of a section [m] of ``--points``: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
-    return _tuples("--points", text, 2, "-0.1:0, 0.1:0 mm")
+def parse_points(option: str, text: str) -> list[list[float]]:
+    """Points of a section [m]: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
+    return _tuples(option, text, 2, "-0.1:0, 0.1:0 mm")
 
 
 def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]]:
@@ -210,41 +199,30 @@ def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]
     return [[parse_quantity(option, f"{number} {unit.group()}", "m") for number in part] for part in parts]
 
 
-def load_with(path: Path, physics: PhysicsOption = None, *speeds: str | None) -> Scene:
-    """Read a scene, with the physics of the option in place of its own if that is given.
-
-    The answer shows its speeds in the unit of the options `speeds`, if one is given, else as in the file.
-    """
-    from beamdyn.config.scenes import load_scene
-
-    scene = load_scene(path)
-    units = scene.units.with_others({"speed": unit_of_speed(*speeds)})
-    return replace(scene, units=units, **({} if physics is None else {"physics": physics}))
-
-
 def unit_of_speed(*texts: str | None) -> str:
-    """Unit of the first option on speeds that is given; empty if none is, or speeds are not shown in it."""
+    """Unit of the first text with a speed that can be shown in its unit; empty if there is none."""
     from beamdyn.common.display_units import known_unit
 
     found = (_UNIT.search(text.strip()) for text in texts if text is not None)
-    return next((known_unit("speed", unit.group()) for unit in found if unit), "")
+    return next(filter(None, (known_unit("speed", unit.group()) for unit in found if unit)), "")
 
 
-def load_moving(path: Path, physics: PhysicsOption = None, *speeds: str | None) -> Scene:
-    """Read a scene that must have a motion, as `load_with` does."""
+def in_unit_of(scene: Scene, *texts: str | None) -> Scene:
+    """A scene whose results are shown in the unit of the speeds in texts, if one is given."""
+    return replace(scene, units=scene.units.with_others({"speed": unit_of_speed(*texts)}))
+
+
+def check_moves(scene: Scene, path: Path) -> None:
+    """Refuse a scene without a motion."""
     from beamdyn.common.edge.config import ConfigError
 
-    scene = load_with(path, physics, *speeds)
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
         raise ConfigError(str(path), [sentence], ["motion"])
-    return scene
 
 
-def speed_or_final(scene: Scene, speed: str | None) -> float:
-    """The speed of the option [rad/s]; without it the final speed of the scene's motion, or 0."""
-    if speed is not None:
-        return parse_speed("--speed", speed, scene)
+def final_speed(scene: Scene) -> float:
+    """The final speed of the scene's motion [rad/s], or 0."""
     final = 0.0 if scene.motion is None else scene.motion.final_speed
     return final if isfinite(final) else 0.0

@@ -6,11 +6,13 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.cli.values import Text, naming_option
+from beamdyn.analyses.analysis import WRITTEN
+from beamdyn.analyses.options import LoadQuantity, Text
+from beamdyn.analyses.values import naming_option
 from beamdyn.common.edge.outputs import write_table
 from beamdyn.common.files import write_text
 
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
     from beamdyn.loads.cycles import LoadCycles
     from beamdyn.loads.equivalent_ranges import EquivalentRange
 
-LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
@@ -46,12 +47,7 @@ class CycleOptions:
     cycles: LoadQuantity | None = None
     woehler: Text | None = None
     equivalent_cycles: float | None = None
-    cycles_file: Path | None = None
-
-    @property
-    def options(self) -> dict[str, object]:
-        """The options, for the head of a report; None where one is not given."""
-        return {name: value for name, value in vars(self).items() if name != "cycles_file"}
+    cycles_file: Annotated[Path | None, WRITTEN] = None
 
     def check(self, in_transient: bool) -> None:
         """Refuse options that nothing would use."""

@@ -1,0 +1,334 @@
+"""The description of an analysis, from which its command, screen, report and page in the manual are made."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, is_dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+from cyclopts import Parameter
+
+from beamdyn.analyses.values import check_moves, in_unit_of, naming_option
+from beamdyn.common.edge import program
+from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from rich.console import RenderableType
+
+    from beamdyn.common.edge.html_report import Question
+    from beamdyn.common.results import Result
+    from beamdyn.scene.scene import Scene
+
+Physics = Annotated[
+    Literal["auto"] | None,
+    Parameter(
+        help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene."
+    ),
+]
+ANALYSES: dict[str, Analysis] = {}  # by the name of the command, in the order of the manual
+WRITTEN = "written"  # marks an option that names a file to write
+DRAWN = "drawn"  # marks an option that chooses what a picture shows
+
+
+def _option(name: str) -> str:
+    """The name of an option on the command line."""
+    return f"--{name.replace('_', '-')}"
+
+
+@dataclass(frozen=True)
+class AsText:
+    """An option that is given as text, such as a number with its unit, and read for a scene.
+
+    Parameters
+    ----------
+    read : callable
+        ``read(option, text, scene)``: the value in SI; a ValueError names the option.
+    default : str, optional
+        The text if none is given.
+    absent : callable, optional
+        ``absent(scene)``: the value if none is given; without it and a default, the option is required.
+    field : str
+        Argument of the core whose refusal shows the option as it was given.
+    """
+
+    read: Callable[[str, str, Scene], Any]
+    default: str | None = None
+    absent: Callable[[Scene], Any] | None = None
+    field: str = ""
+
+    def shown(self, option: inspect.Parameter) -> inspect.Parameter:
+        """The option as the command line has it: a text."""
+        notes = Parameter(allow_leading_hyphen=True), *_notes(option.annotation)
+        if self.default is None and self.absent is not None:
+            return option.replace(annotation=Annotated[str | None, *notes], default=None)
+        default = inspect.Parameter.empty if self.default is None else self.default
+        return option.replace(annotation=Annotated[str, *notes], default=default)
+
+    def value(self, option: str, text: str | None, scene: Scene) -> Any:
+        """The value of a text, or that of none."""
+        if text is None:
+            return None if self.absent is None else self.absent(scene)
+        return self.read(option, text, scene)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A result, and what its command says of it beyond its views and warnings.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    refusal : str
+        Why the model has no answer; empty if it has one.
+    warnings : sequence of str, optional
+        Warnings; those of the result if not given.
+    tables : sequence of rich renderables, optional
+        The result for people; by its view if not given.
+    draw : callable, optional
+        Draws it on axes; by its view if not given.
+    """
+
+    result: Result
+    refusal: str = ""
+    warnings: Sequence[str] | None = None
+    tables: Sequence[RenderableType] | None = None
+    draw: Callable[[Axes], object] | None = None
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """An analysis of a scene.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(scene, **options)``: its result, or an `Answer`. Its name is that of the command, its
+        docstring what it asks; the annotations of its keyword arguments describe the options. It is given
+        `outputs` only if it names them.
+    examples : tuple of str
+        Commands that can be typed as they stand.
+    about_scene : str
+        What it takes of the scene.
+    moving : callable
+        ``moving(options)``: whether the scene must have a motion.
+    physics : type, optional
+        Annotation of the option on physics; None if the analysis takes that of the scene.
+    screen : str
+        Name of the screen that is made of it; empty if there is none.
+    """
+
+    function: Callable[..., Result | Answer]
+    examples: tuple[str, ...]
+    about_scene: str = "The scene."
+    moving: Callable[[Mapping[str, Any]], bool] = lambda _: False
+    physics: Any = Physics
+    screen: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of the command."""
+        return self.function.__name__.replace("_", "-")
+
+    @cached_property
+    def options(self) -> dict[str, inspect.Parameter]:
+        """The options with their annotations, those that all analyses have at the end."""
+        own = [p for p in inspect.signature(self.function).parameters.values() if p.kind is p.KEYWORD_ONLY]
+        names = vars(inspect.getmodule(self.function))
+        found = {p.name: p.replace(annotation=eval(p.annotation, names)) for p in own}
+        outputs = found.pop("outputs", _keyword("outputs", Outputs, NO_FILES))
+        if self.physics is not None:
+            found["physics"] = _keyword("physics", self.physics, None)
+        return found | {"outputs": outputs}
+
+    @cached_property
+    def texts(self) -> dict[str, AsText]:
+        """Descriptions of the options that are given as text."""
+        return {
+            name: note
+            for name, each in self.options.items()
+            for note in _notes(each.annotation)
+            if isinstance(note, AsText)
+        }
+
+    @cached_property
+    def shown(self) -> dict[str, inspect.Parameter]:
+        """The options as the command line and a form have them."""
+        texts = {name: text.shown(self.options[name]) for name, text in self.texts.items()}
+        return self.options | texts
+
+    @property
+    def question(self) -> str:
+        """What it asks, in a sentence."""
+        return (self.function.__doc__ or "").partition("\n")[0]
+
+    def meaning(self, name: str) -> str:
+        """What an option means."""
+        from docstring_parser import parse
+
+        notes = [note.help for note in _notes(self.options[name].annotation) if isinstance(note, Parameter)]
+        own = [
+            each.description for each in parse(self.function.__doc__ or "").params if each.arg_name == name
+        ]
+        return next(filter(None, [*own, *notes]), "")
+
+    def command(self) -> Callable[..., None]:
+        """The function of the command, with the signature that makes its help."""
+
+        def run(scene: Path, /, **options: Any) -> None:
+            self.run(scene, options)
+
+        file = Annotated[Path, Parameter(name="SCENE.toml", help=self.about_scene)]
+        first = inspect.Parameter("scene", inspect.Parameter.POSITIONAL_ONLY, annotation=file)
+        shown = self.shown.values()
+        run.__name__, run.__doc__ = self.function.__name__, self.function.__doc__
+        run.__signature__ = inspect.Signature([first, *shown])  # pyright: ignore[reportFunctionMemberAccess]
+        run.__annotations__ = {each.name: each.annotation for each in (first, *shown)}
+        return run
+
+    def run(self, file: Path, options: Mapping[str, Any]) -> None:
+        """Answer a file, write the files that are asked for and print the answer."""
+        from beamdyn.common.edge.html_report import Question
+
+        given = {name: options.get(name, each.default) for name, each in self.shown.items()}
+        outputs: Files = given.pop("outputs")
+        written, read, asked = self._sort(given)
+        outputs.check(file, *read, **written)
+        self._check_drawn(given, outputs)
+        scene = self._load(file, given)
+        question = Question.on_file(f"beamdyn {self.name}", file, **asked)
+        deliver(self.answer(scene, given, outputs), outputs, question)
+
+    def answer(
+        self,
+        scene: Scene,
+        given: Mapping[str, Any],
+        outputs: Files = NO_FILES,
+        named: Callable[[str], str] = _option,
+    ) -> Answer:
+        """The answer on a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            The scene, with the physics that is wanted.
+        given : mapping
+            Values of the options, those in `texts` as text.
+        outputs : Outputs
+            Files that are asked for.
+        named : callable
+            ``named(name)``: what the user calls an option.
+        """
+        values = {name: value for name, value in given.items() if name != "physics"}
+        values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
+        if "outputs" in inspect.signature(self.function).parameters:
+            values["outputs"] = outputs
+        with ExitStack() as refusals:
+            for name, text in self.texts.items():
+                if text.field and given[name] is not None:
+                    refusals.enter_context(naming_option(text.field, named(name), given[name]))
+            made = self.function(scene, **values)
+        return made if isinstance(made, Answer) else Answer(made)
+
+    def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
+        """Files to write, files and folders to read, and options that the head of a report repeats."""
+        written: dict[str, Path] = {}
+        read: list[Path] = []
+        asked: dict[str, object] = {}
+        for name, value, annotation in self._each(given):
+            if WRITTEN in _notes(annotation):
+                written[_option(name)[2:]] = value
+                continue
+            read += [value] if isinstance(value, Path) else []
+            asked[name] = value
+        return written, read, asked
+
+    def _each(self, given: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+        """Yield name, value and annotation of each option, those of a group one by one."""
+        for name, value in given.items():
+            if is_dataclass(value):
+                hints = get_type_hints(type(value), include_extras=True)
+                of_group: Mapping[str, Any] = getattr(value, "options", vars(value))
+                yield from ((each, of_group[each], hints[each]) for each in of_group)
+            else:
+                yield name, value, self.options[name].annotation
+
+    def _check_drawn(self, given: Mapping[str, Any], outputs: Files) -> None:
+        """Refuse what a picture shows if there is none."""
+        for name, each in self.options.items():
+            if DRAWN in _notes(each.annotation) and given[name] is not None and not outputs.draws:
+                remedy = "give --plot or --report, or leave it out"
+                raise ValueError(f"{_option(name)} = {given[name]}: it is what a picture shows; {remedy}")
+
+    def _load(self, file: Path, given: Mapping[str, Any]) -> Scene:
+        """The scene with the physics of the option, to be shown in the unit of the speeds that are given."""
+        from beamdyn.config.scenes import load_scene
+
+        scene = load_scene(file)
+        if self.moving(given):
+            check_moves(scene, file)
+        scene = in_unit_of(scene, *(given[name] for name in self.texts))
+        return scene if given.get("physics") is None else replace(scene, physics=given["physics"])
+
+
+def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
+    """Make an `Analysis` of the function that follows, with these attributes, and enter it in `ANALYSES`."""
+
+    def enter(function: Callable[..., Any]) -> Analysis:
+        made = Analysis(function, examples, **about)
+        ANALYSES[made.name] = made
+        return made
+
+    return enter
+
+
+def deliver(answer: Answer, outputs: Files, question: Question) -> None:
+    """Write the requested files, then print the answer and its warnings.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer.
+    outputs : Outputs
+        Files to write.
+    question : Question
+        The command and its input, for the report.
+
+    Raises
+    ------
+    NoAnswer
+        With the refusal, after everything has been written.
+    """
+    from beamdyn.cautions import describe_choice, noted, warnings_of
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.views import picture_of, rows_of, tables_of
+
+    result, refusal = answer.result, answer.refusal
+    draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)
+    if draw is None and outputs.plot is not None:
+        raise ValueError(f"--plot = {outputs.plot}: this result has no picture; give --json or --csv")
+    draw = None if draw is None else noted(draw, result)
+    tables = [*([tables_of(result)] if answer.tables is None else answer.tables), *describe_choice(result)]
+    warnings = warnings_of(result) if answer.warnings is None else answer.warnings
+    refusals = [refusal] if refusal else []
+    # The files of a long computation do not depend on who reads the tables.
+    write(result, outputs, rows_of(result), draw, Report(question, tables, [*warnings, *refusals]))
+    show(tables)
+    program.warn("beamdyn", warnings)
+    if refusal:
+        raise program.NoAnswer(refusal)
+
+
+def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty) -> inspect.Parameter:
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _notes(annotation: Any) -> tuple[Any, ...]:
+    """Return what an annotation carries beside its type."""
+    return get_args(annotation)[1:] if get_origin(annotation) is Annotated else ()

@@ -1,0 +1,159 @@
+"""Natural frequencies at one speed and over speed, and where the beam buckles."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import isinf, isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+import beamdyn as bd
+from beamdyn.analyses.analysis import WRITTEN, Answer, Physics, analysis
+from beamdyn.analyses.options import (
+    AtSpeed,
+    Discretization,
+    FrequencyTolerance,
+    ModeCount,
+    PositiveSpeed,
+    Speeds,
+)
+from beamdyn.common.announced import OUTSIDE
+from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from beamdyn.scene.scene import Scene
+    from beamdyn.spectrum.locus import Locus
+    from beamdyn.spectrum.modes import Modes
+
+_GROWING = "divergence", "flutter"  # states of modes
+_PLAIN = "auto: the plain beam; the limits belong to linear theory, and nothing is added."
+PlainPhysics = Annotated[Physics, Parameter(help=_PLAIN)]
+
+
+@analysis('beamdyn modes examples/tyre_harvester.toml --speed "50 rad/s"')
+def modes(
+    scene: Scene,
+    *,
+    speed: AtSpeed,
+    modes: ModeCount = 3,
+    discretization: Discretization = "ritz",
+    tolerance: FrequencyTolerance = None,
+    shapes: Annotated[Path | None, WRITTEN] = None,
+    outputs: Outputs = NO_FILES,
+) -> Answer:
+    """Natural frequencies at one speed, with their errors and stability.
+
+    Parameters
+    ----------
+    shapes
+        Write the mode shapes into this file for ParaView: .vtu or .vtk.
+    """
+    from beamdyn.cautions import warnings_of
+
+    result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
+    if shapes is not None:
+        _write_shapes(result, shapes, outputs.force)
+    warnings = [w for w in warnings_of(result, tolerance) if not w.startswith("unstable")]
+    return Answer(result, _unstable(result), warnings)
+
+
+@analysis('beamdyn locus examples/tyre_harvester.toml --speeds "0:150:31 rad/s"')
+def locus(
+    scene: Scene,
+    *,
+    speeds: Speeds,
+    modes: ModeCount = 3,
+    discretization: Discretization = "ritz",
+    tolerance: FrequencyTolerance = None,
+) -> Answer:
+    """Natural frequencies over speed; each mode is tracked through crossings.
+
+    Parameters
+    ----------
+    speeds
+        Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50,
+        100 rad/s".
+    """
+    from beamdyn.cautions import warnings_of
+
+    result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
+    return Answer(result, _never(result), warnings_of(result, tolerance), draw=partial(_draw_locus, result))
+
+
+@analysis("beamdyn critical examples/tyre_harvester.toml")
+def critical(
+    scene: Scene, *, discretization: Discretization = "ritz", outputs: AnswerFiles = NO_ANSWER_FILES
+) -> Answer:
+    """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed."""
+    result = bd.critical_point(scene, discretization)
+    # With an infinite error there is one, perhaps, but it was not found or not resolved.
+    refusal = "; ".join(result.warnings) if isinf(result.error) else ""
+    return Answer(result, refusal, [] if refusal else None)
+
+
+@analysis(
+    'beamdyn limits examples/tyre_harvester.toml --top-speed "400 rad/s"',
+    about_scene="The scene; its own setting angle is not used.",
+    physics=PlainPhysics,
+)
+def limits(
+    scene: Scene,
+    *,
+    top_speed: PositiveSpeed,
+    discretization: Discretization = "ritz",
+    outputs: AnswerFiles = NO_ANSWER_FILES,
+) -> Answer:
+    """Setting angles that separate a first frequency that falls with speed from one that rises.
+
+    Parameters
+    ----------
+    top_speed
+        Speed up to which the frequency must rise for the second limit, with its unit, e.g. "400
+        rad/s".
+    """
+    result = bd.setting_angle_limits(scene, top_speed, discretization).in_units(speed=scene.units.speed)
+    if isnan(result.first) or isnan(result.second):
+        return Answer(result, result.warnings[0], (), ())
+    return Answer(result)
+
+
+def _draw_locus(result: Locus, ax: Axes) -> None:
+    from beamdyn.cautions import critical_label
+    from beamdyn.output.plots import mark_critical
+
+    critical = bd.critical_point(result.scene)
+    mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
+
+
+def _write_shapes(result: Modes, path: Path, force: bool) -> None:
+    import numpy as np
+
+    from beamdyn.cautions import labels_of
+    from beamdyn.output.export import write_shapes
+
+    x = np.linspace(0, result.scene.beam.length, 101)
+    write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)
+
+
+def _never(result: Locus) -> str:
+    """That the beam is stable at none of the speeds; empty if it is at one."""
+    import numpy as np
+
+    unstable = np.isin(result.status, _GROWING).any(axis=1)
+    return f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
+
+
+def _unstable(result: Modes) -> str:
+    """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
+    unstable = [i for i, status in enumerate(result.status) if status in _GROWING]
+    if not unstable:
+        return ""
+    which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
+    critical = bd.critical_point(result.scene)
+    said = f"; the critical speed is {critical.speed:.6g} rad/s" if critical.speed <= result.speed else ""
+    straight = ", were the beam straight" if any(OUTSIDE in said for said in critical.warnings) else ""
+    return f"unstable at {result.speed:g} rad/s: {which}{said}{straight}"

@@ -1,0 +1,98 @@
+"""Options that several analyses have: each with its meaning, its bounds and how its text is read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from beamdyn.analyses.analysis import AsText
+from beamdyn.analyses.values import (
+    at_most,
+    final_speed,
+    parse_points,
+    parse_positions,
+    parse_positive,
+    parse_speed,
+    parse_speeds,
+)
+
+if TYPE_CHECKING:
+    from beamdyn.scene.scene import Scene
+
+Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
+
+
+def none_given(_: Scene) -> None:
+    """The value of an option that is left out."""
+
+
+def positive(unit: str, **more: Any) -> AsText:
+    """A number above zero with its unit."""
+    return AsText(lambda option, text, _: parse_positive(option, text, unit), **more)
+
+
+# Speeds and times -----------------------------------------------------------------------------------
+
+_AT_SPEED = (
+    'Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene\'s motion'
+)
+AtSpeed = Annotated[
+    float, AsText(parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}, or 0 without one.")
+]
+AtFinalSpeed = Annotated[float, AsText(parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}.")]
+Speed = Annotated[float | None, AsText(parse_speed, absent=none_given)]
+PositiveSpeed = Annotated[float, positive("rad/s")]
+Speeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene))]
+
+EndOfRun = Annotated[float, positive("s", field="t_end")]
+
+# Discretization, modes and physics ------------------------------------------------------------------
+
+Named = Literal["ritz", "fem"]
+Discretization = Annotated[
+    Named,
+    Parameter(
+        help="ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other."
+    ),
+]
+ModeCount = Annotated[int, at_most(100), Parameter(help="Number of modes, from the lowest.")]
+Count = Annotated[int, at_most(100)]
+CountOrAuto = Annotated[int | Literal["auto"], at_most(100)]
+SmallestBasis = Annotated[
+    CountOrAuto,
+    Parameter(
+        help="Size of the modal basis; auto: the smallest whose modal truncation error meets the tolerance."
+    ),
+]
+Order = Annotated[int, at_most(5)]
+FrequencyTolerance = Annotated[
+    float | None,
+    Parameter(
+        help="Largest relative error of a frequency: the cheapest discretization that meets it is chosen; "
+        "1e-11 if not given."
+    ),
+]
+TimeTolerance = Annotated[
+    float, Parameter(help="Target for the time-integration error, relative to the largest deflection.")
+]
+
+# Loads along the span -------------------------------------------------------------------------------
+
+LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
+Stations = Annotated[
+    list[float] | None,
+    AsText(lambda option, text, _: parse_positions(option, text), absent=none_given, field="at"),
+    Parameter(
+        help='Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of '
+        "jumps.",
+    ),
+]
+SectionPoints = Annotated[
+    list[list[float]] | None,
+    AsText(lambda option, text, _: parse_points(option, text), absent=none_given, field="points"),
+    Parameter(
+        help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, '
+        "in which the beam bends, and along the second. Default: the outermost.",
+    ),
+]

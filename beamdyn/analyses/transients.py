@@ -1,0 +1,188 @@
+"""The motion in time: one transient, and a sweep of them over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import beamdyn as bd
+from beamdyn.analyses.analysis import WRITTEN, Answer, AsText, analysis
+from beamdyn.analyses.options import Discretization, EndOfRun, SmallestBasis, Speeds, Text, TimeTolerance
+from beamdyn.analyses.values import at_most, parse_window
+from beamdyn.common.edge.outputs import NO_FILES, Outputs
+from beamdyn.common.edge.program import Interrupted
+from beamdyn.common.edge.varying import Folder
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from beamdyn.scene.scene import Scene
+    from beamdyn.transient.sweep import Sweep
+    from beamdyn.transient.transient import Transient
+
+_PERIODS, _FRAMES = 3, 60  # of a close-up
+Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
+Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text), field="t_end")]
+
+
+@analysis(
+    'beamdyn simulate examples/rolling_harvester.toml --t-end "12 s" --modes 3',
+    about_scene="The scene, with a motion.",
+    moving=lambda _: True,
+)
+def simulate(
+    scene: Scene,
+    *,
+    t_end: EndOfRun,
+    modes: SmallestBasis = "auto",
+    tolerance: TimeTolerance = 1e-5,
+    method: Method = "auto",
+    discretization: Discretization = "ritz",
+    window: Text | None = None,
+    series: Annotated[Path | None, WRITTEN] = None,
+    animation: Annotated[Path | None, WRITTEN] = None,
+    outputs: Outputs = NO_FILES,
+) -> Answer:
+    """Transient of the beam, from rest.
+
+    Parameters
+    ----------
+    t_end
+        End of the run with its unit, e.g. "30 s".
+    method
+        Integrator: auto is the package's own; scipy's take minutes where that takes a second.
+    window
+        Also give the largest deflection within this time window: start:end, e.g. "20:30 s".
+    series
+        Write three periods around the largest deflection (within the window) for ParaView: .xdmf.
+    animation
+        Write an animation of the same: .gif.
+    """
+    from beamdyn.tables.results import transient_table
+
+    span = None if window is None else parse_window(window, t_end)
+    run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)
+    _write_close_up(run, span or (0.0, t_end), series, animation, outputs.force)
+    return Answer(run, tables=[transient_table(run, span)])
+
+
+@analysis(
+    'beamdyn sweep examples/rough_road.toml --speeds "50:60:3 rad/s" --window "1:2 s"',
+    about_scene="The scene; the final speed of its motion is varied.",
+    moving=lambda _: True,
+)
+def sweep(
+    scene: Scene,
+    *,
+    speeds: Speeds,
+    window: Window,
+    modes: SmallestBasis = "auto",
+    tolerance: TimeTolerance = 1e-5,
+    workers: Annotated[int, at_most(128)] = 1,
+    scheduler: str | None = None,
+    store: Folder = None,
+) -> Sweep:
+    """Largest deflection within a time window over speed: one transient per speed.
+
+    Parameters
+    ----------
+    speeds
+        Speeds with their unit: start:stop:count, e.g. "0:150:151 rad/s", or a list, e.g. "50, 55
+        rad/s".
+    window
+        Time window of the largest deflection: start:end, e.g. "20:30 s"; each transient ends with
+        it.
+    workers
+        Number of processes.
+    scheduler
+        Address of a Dask scheduler, e.g. tcp://host:8786.
+    store
+        Folder for finished speeds: after an interruption the same command computes only the others.
+    """
+    with _executor(scheduler) as executor, _progress(len(speeds), store) as progress:
+        means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}
+        return bd.sweep(scene, speeds, window, modes=modes, tolerance=tolerance, **means, progress=progress)
+
+
+# Close-up -----------------------------------------------------------------------------------------
+
+
+def _write_close_up(
+    run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
+) -> None:
+    from beamdyn.cautions import notes_of
+    from beamdyn.output.export import animate, write_series
+
+    if series is None and animation is None:
+        return
+    x, t, deflection = _close_up(run, window)
+    if series is not None:
+        write_series(series, x, t, deflection, force=force)
+    if animation is not None:
+        animate(x, t, deflection, animation, force=force, notes=notes_of(run))
+
+
+def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Positions, times and deflections: a few periods around the largest deflection in a window."""
+    import numpy as np
+
+    from beamdyn.tables.results import time_of_peak
+
+    middle, _ = time_of_peak(run, *window)
+    speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0
+    half = _PERIODS / 2 / float(bd.natural_modes(run.scene, speed, 1).frequency[0])
+    t = np.linspace(max(middle - half, 0.0), min(middle + half, run.path.end), _FRAMES)
+    x = np.linspace(0, run.scene.beam.length, 41)
+    return x, t, run.shape(x, t)
+
+
+# Sweeps -------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _executor(scheduler: str | None) -> Iterator[Executor | None]:
+    """The executor of a Dask cluster, if there is a scheduler."""
+    if scheduler is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError("--scheduler needs Dask: pip install 'beamdyn[dask]'") from None
+    try:
+        client = Client(scheduler, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise ValueError(f"--scheduler = {scheduler}: no scheduler answers there ({error})") from None
+    with client:
+        yield client.get_executor()
+
+
+@contextmanager
+def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
+    """A bar with the remaining time; where the sweep is interrupted, say what is done."""
+    from beamdyn.common.edge.progress import at_work
+    from beamdyn.transient.sweep import SweepInterrupted
+
+    finished = 0
+
+    def progress(done: int, total: int) -> None:
+        nonlocal finished
+        finished = done
+        show(done, total)
+
+    try:
+        with at_work("sweep") as show:
+            yield progress
+    except KeyboardInterrupt:
+        raise Interrupted(_how_to_resume(finished, cases, store)) from None
+    except SweepInterrupted as error:
+        raise Interrupted(str(error)) from None
+
+
+def _how_to_resume(done: int, cases: int, store: Path | None) -> str:
+    if store is None:
+        return f"{done} of {cases} speeds were done and are lost; --store DIR keeps what is done"
+    return f"{done} of {cases} speeds are stored in {store}; the same command goes on from there"

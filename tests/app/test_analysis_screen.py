@@ -1,0 +1,104 @@
+"""One description of an analysis makes its command, its screen and its section of the manual."""
+
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from cyclopts import App
+
+import beamdyn as bd
+from beamdyn.analyses import ANALYSES
+from beamdyn.analyses.analysis import Analysis
+from beamdyn.analyses.options import Count, PositiveSpeed
+from beamdyn.app.analysis_screen import analysis_screen, first_entries
+from beamdyn.app.inputs import ASIDE, inputs_of
+from beamdyn.app.program import SCENE
+from beamdyn.common.app.form_entries import tables_of
+from beamdyn.common.checks import InvalidValue
+from beamdyn.common.edge.units import InvalidInput
+
+ROOT = Path(__file__).parents[2]
+SCENE_FILE = str(ROOT / "examples" / "tyre_harvester.toml")
+
+
+def fast_modes(scene, *, speed: "PositiveSpeed", modes: "Count" = 2):
+    """Natural frequencies of a beam that turns.
+
+    Parameters
+    ----------
+    speed
+        Speed of rotation, such as "5 rad/s".
+    modes
+        How many.
+    """
+    return bd.natural_modes(scene, speed, modes)
+
+
+FAST_MODES = Analysis(
+    fast_modes, ('beamdyn fast-modes examples/tyre_harvester.toml --speed "50 rad/s"',), screen="Fast modes"
+)
+
+
+@pytest.fixture
+def new_screen(monkeypatch):
+    monkeypatch.setitem(ASIDE, "fast_modes", None)  # it is entered below, and gone afterwards
+    return analysis_screen(FAST_MODES)
+
+
+def entries(**changed: str) -> dict[str, str]:
+    return {**SCENE.base_entries, **first_entries(FAST_MODES), **changed}
+
+
+def solve(screen, given):
+    return screen.solve(tables_of(given, inputs_of(given), screen.needs))
+
+
+def test_the_command_has_the_options_and_writes_the_files(tmp_path, capsys):
+    app = App(name="beamdyn", result_action="return_value")
+    app.command(FAST_MODES.command(), name=FAST_MODES.name)
+    out, report = tmp_path / "modes.json", tmp_path / "modes.html"
+    app(["fast-modes", SCENE_FILE, "--speed", "477.46 rpm", "--json", str(out), "--report", str(report)])
+    expected = bd.natural_modes(bd.load_scene(SCENE_FILE), 50.0, 2)
+    assert bd.load(out).frequency == pytest.approx(expected.frequency, rel=1e-4)
+    assert "477.46" in capsys.readouterr().out  # in the unit that was given
+    assert "# beamdyn fast-modes" in report.read_text()
+    assert "--speed &#x27;477.46 rpm&#x27; --modes 2" in report.read_text()
+    app(["fast-modes", "--help"])
+    assert 'Speed of rotation, such as "5 rad/s".' in capsys.readouterr().out
+
+
+def test_the_screen_has_a_form_of_the_options_and_shows_the_result(new_screen):
+    given = entries()
+    assert given["fast_modes.speed"] == "50 rad/s"
+    answer = solve(new_screen, given)
+    assert len(answer.result.frequency) == 2
+    assert len(list(new_screen.rows(answer))) == 3
+    assert new_screen.draw(answer, 0.0).axes
+    assert new_screen.more[0].on_page(answer).startswith("<img")
+    assert solve(new_screen, entries(**{"fast_modes.modes": "3"})).result.frequency.size == 3
+
+
+def test_refusals_stand_at_the_field(new_screen):
+    with pytest.raises(InvalidInput) as refused:
+        solve(new_screen, entries(**{"fast_modes.speed": "50"}))
+    assert refused.value.field == "fast_modes.speed"
+    with pytest.raises(InvalidValue) as refused:
+        solve(new_screen, entries(**{"fast_modes.modes": "0"}))
+    assert refused.value.field == "fast_modes.modes"
+
+
+def test_the_manual_tells_every_option_of_every_analysis():
+    sys.path.insert(0, str(ROOT / "docs" / "_ext"))
+    page = import_module("analyses_page").page()
+    sys.path.pop(0)
+    for analysis in ANALYSES.values():
+        assert f"`beamdyn {analysis.name}`" in page
+        assert all(analysis.meaning(name) for name in analysis.texts)
+    assert "| `--top-speed` | Largest speed to search" in page
+
+
+def test_the_equilibrium_is_a_screen_of_the_program():
+    assert "Equilibrium" in [screen.name for screen in SCENE.screens]
+    answer = SCENE.screens[-1].solve(tables_of(SCENE.base_entries, inputs_of({}), SCENE.screens[-1].needs))
+    assert answer.result.speed == 50.0
