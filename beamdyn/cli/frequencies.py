@@ -20,9 +20,9 @@ from beamdyn.cli.values import (
     speed_or_final,
     unit_of_speed,
 )
-from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, on_axes
 from beamdyn.common.edge.program import examples
+from beamdyn.common.statements import GROWING, OUTSIDE, of_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,7 @@ def modes(
     result = natural_modes(loaded, speed_or_final(loaded, speed), modes, discretization, tolerance)
     if shapes is not None:
         _write_shapes(result, shapes, outputs.force)
-    warnings = [w for w in warnings_of(result, tolerance) if not w.startswith("unstable")]
+    warnings = warnings_of(result, tolerance, without=GROWING)
     refusal = _unstable(result)
     tables, rows, draw = [modes_table(result)], modes_csv(result), on_axes(result.plot)
     deliver(result, outputs, question, tables, rows, draw, warnings, refusal)
@@ -325,5 +325,5 @@ def _unstable(result: Modes) -> str:
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
     critical = critical_point(result.scene)
     said = f"; the critical speed is {critical.speed:.6g} rad/s" if critical.speed <= result.speed else ""
-    straight = ", were the beam straight" if any(OUTSIDE in said for said in critical.warnings) else ""
+    straight = ", were the beam straight" if of_kind(critical.warnings, OUTSIDE) else ""
     return f"unstable at {result.speed:g} rad/s: {which}{said}{straight}"

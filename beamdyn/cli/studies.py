@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -26,6 +25,7 @@ from beamdyn.common.edge.outputs import NO_FILES, Outputs, on_axes
 from beamdyn.common.edge.program import examples
 from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
+from beamdyn.common.statements import InputValue, Words
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.inputs import Input
@@ -133,7 +133,7 @@ def study(
         )
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
     tables, rows = [study_table(result, units)], study_csv(result)
-    warnings = [_as_given(axes, said) for said in warnings_of(result, tolerance)]
+    warnings = warnings_of(result, tolerance, word=partial(_as_given, axes))
     refusal = _refusal(result)
     deliver(result, outputs, question, tables, rows, on_axes(result.plot), warnings, refusal)
 
@@ -159,19 +159,12 @@ def _speeds_of(varying: VaryOptions) -> Iterator[str]:
             yield values
 
 
-def _as_given(axes: Sequence[Axis], said: str) -> str:
-    """A sentence on designs with their inputs as they were given: rounded, they would not be found again."""
+def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
+    """An input of a design as it was given: rounded, it would not be found again; None of other parts."""
     for axis in axes:
-        if axis.unit:
-            pattern = rf"(?<![\w.])({re.escape(axis.input.path)} = )(-?\d[\d.e+-]*) ([\w/]+)"
-            said = re.sub(pattern, partial(_nearest_given, axis), said)
-    return said
-
-
-def _nearest_given(axis: Axis, found: re.Match[str]) -> str:
-    known = axis.given if found[3] == axis.unit else axis.values
-    nearest = axis.given[abs(known - float(found[2])).argmin()]
-    return f"{found[1]}{nearest:.6g} {axis.unit}"
+        if axis.unit and isinstance(part, InputValue) and part.name == axis.input.path:
+            return f"{part.name} = {axis.given[abs(axis.values - part.value).argmin()]:.6g} {axis.unit}"
+    return None
 
 
 @contextmanager

@@ -26,8 +26,6 @@ _HEADS = {
     "speed": re.compile(r"_rad_per_s(?=(_\d+)?$)"),
     "length": re.compile(r"(?<!_N)(?<!_kg)(?<!_per)_m(?=(_\d+)?$)"),
 }
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-_SPEEDS = re.compile(rf"((?:{_NUMBER.pattern} to )?{_NUMBER.pattern}) rad/s(?!\w)")
 
 
 class ShownUnit(NamedTuple):
@@ -106,17 +104,6 @@ class DisplayUnits:
         """The same, with the units that are given in place of its own."""
         new = DisplayUnits.of(given)
         return DisplayUnits(new.speed or self.speed, new.length or self.length)
-
-    def in_sentence(self, sentence: str) -> str:
-        """A sentence of the core with its speeds, such as "20 to 35 rad/s", in their unit."""
-        unit = self.speed_unit()
-        if unit.per_si == 1.0:
-            return sentence
-
-        def convert(found: re.Match[str]) -> str:
-            return _NUMBER.sub(lambda n: f"{unit.of(float(n[0])):.6g}", found[1]) + f" {unit.name}"
-
-        return _SPEEDS.sub(convert, sentence)
 
     def speed_unit(self) -> ShownUnit:
         """Unit of speeds: rad/s if none was given."""

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
+from beamdyn.common.statements import said_in
 from beamdyn.equations.directions import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
 
@@ -128,9 +129,11 @@ def _say_what_strains_need(known: Sequence[str]) -> list[Text]:
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
     scale, unit = _SCALES[found.quantity]
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    case = f"{found.case:.6g} {result.case.partition('[')[2].rstrip(']')}"
+    name, unit_of_case = result.case
+    case = f"{found.case:.6g} {unit_of_case}"
+    if name == "speed":
+        case = result.display_units.speed_unit().say(found.case)
     what, place = _say_component(result, found), _length_unit(result).say(found.x)
-    case = result.display_units.in_sentence(case)
     return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {case}."
 
 
@@ -146,6 +149,7 @@ def _say_component(result: SpanLoads, found: LargestLoad) -> str:
 
 def random_loads_table(result: RandomLoads) -> Group:
     """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
+    units = result.display_units
     columns = {f"position\n[{_length_unit(result).name}]": _positions(result)}
     for name in ("moment", "strain", "stress"):
         scale, unit = _SCALES[name]
@@ -159,9 +163,8 @@ def random_loads_table(result: RandomLoads) -> Group:
             ]
     title = (
         f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
-        f"at {result.speed:.6g} rad/s, by {result.provenance.method}"
+        f"at {units.speed_unit().say(result.speed)}, by {said_in(units, result.provenance.method)}"
     )
-    title = result.display_units.in_sentence(title)  # the speeds of the modes, too
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
     lines = [Text(_say_expected(result, result.largest(name))) for name in reversed(known)]
     lines += _say_what_strains_need(known)
@@ -243,7 +246,8 @@ CSV_UNITS = {"force": "_N", "moment": "_N_m", "curvature": "_per_m", "strain": "
 def loads_csv(result: SpanLoads) -> Iterator[Sequence[object]]:
     """A row a case and station: the place, all loads, strains and stresses, and their errors."""
     heads = [head for name in CSV_UNITS for head in _csv_heads(result, name)]
-    first = result.case.replace(" [", "_").rstrip("]").replace("/", "_per_")
+    name, unit = result.case
+    first = f"{name}_{unit.replace('/', '_per_')}"
     yield first, "position_m", "side", *heads, *(f"error_of_{head}" for head in heads)
     values = np.concatenate([result.values(name) for name in CSV_UNITS], axis=-1)
     errors = np.concatenate([result.error_of(name) for name in CSV_UNITS], axis=-1)
