@@ -71,7 +71,7 @@ def deliver(
         With the refusal, after everything has been written.
     """
     from beamdyn.cautions import describe_choice, noted
-    from beamdyn.common.display_units import in_display_units
+    from beamdyn.common.columns import in_display_units
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
 

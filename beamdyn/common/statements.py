@@ -24,6 +24,7 @@ GROWING = "unstable"  # the motion grows
 NO_ANSWER = "no answer"  # of some of many cases, or of a part of the question
 INPUT = "input"  # something given has no effect, or is doubtful
 EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
+IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
 LIMITS = "limits"  # of other validity: large strain, few vibrations
 
 
