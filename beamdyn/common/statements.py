@@ -9,12 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, Any, Protocol, SupportsFloat
 
 if TYPE_CHECKING:
     from typing import Self
-
-    from beamdyn.common.display_units import DisplayUnits
 
 # Kinds of statements that programs ask for.
 OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
@@ -26,6 +24,21 @@ INPUT = "input"  # something given has no effect, or is doubtful
 EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
 IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
 LIMITS = "limits"  # of other validity: large strain, few vibrations
+
+
+class _Unit(Protocol):
+    """A unit in which speeds are shown; see `beamdyn.common.display_units.ShownUnit`."""
+
+    @property
+    def name(self) -> str: ...
+    def of(self, values: Any) -> Any: ...
+    def say(self, value: float, digits: int = 6) -> str: ...
+
+
+class _Units(Protocol):
+    """Units in which a medium shows quantities; see `beamdyn.common.display_units.DisplayUnits`."""
+
+    def speed_unit(self) -> _Unit: ...
 
 
 class Words(str):
@@ -56,7 +69,7 @@ class Words(str):
         """The text with each speed and input as a medium words it."""
         return "".join(worded(part, word) for part in self.parts)
 
-    def in_units(self, units: DisplayUnits) -> str:
+    def in_units(self, units: _Units) -> str:
         """The text with its speeds in a display unit."""
         return self.worded(lambda part: part.in_units(units))
 
@@ -93,7 +106,7 @@ class Speeds(_Quantity):
         """The speeds, and the digits by name."""
         return self.values, {"digits": self.digits}
 
-    def in_units(self, units: DisplayUnits) -> str:
+    def in_units(self, units: _Units) -> str:
         """The speeds in a display unit."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
@@ -128,7 +141,7 @@ class InputValue(_Quantity):
         """Name, value and unit, and the digits by name."""
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
-    def in_units(self, units: DisplayUnits) -> str:
+    def in_units(self, units: _Units) -> str:
         """The input with its value in a display unit, if it is a speed."""
         return f"{self.name} = {units.speed_unit().say(self.value)}" if self.unit == "rad/s" else str(self)
 
@@ -213,6 +226,6 @@ def worded(text: str, word: Callable[[Words], str]) -> str:
     return text.worded(word) if isinstance(text, Words) else text
 
 
-def said_in(units: DisplayUnits, text: str) -> str:
+def said_in(units: _Units, text: str) -> str:
     """A text with the speeds that it knows in a display unit."""
     return worded(text, lambda part: part.in_units(units))
