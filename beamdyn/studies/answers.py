@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.statements import Statement
+from beamdyn.common.statements import after
 
 REFUSED = "refused"  # status of a design without an answer
 NO_ANSWERS = (
@@ -30,7 +30,7 @@ class Caution:
     weight : float
         How bad the worst is.
     said : str
-        What is said of it, after the number of designs.
+        What is said of it, after the number of designs; a statement where programs may ask for its kind.
     """
 
     kind: str
@@ -124,13 +124,11 @@ class AnswerArrays:
         """How the answers were found; of several ways that of most of them first."""
         return "; ".join(sorted(self._methods, key=lambda method: (-self._methods[method], method)))
 
-    def warnings(self) -> Iterator[Statement]:
-        """Yield a statement for each kind of caution: of how many designs it is, and of the worst."""
+    def warnings(self) -> Iterator[str]:
+        """Yield a sentence for each kind of caution: of how many designs it is, and of the worst."""
         total = self.shape[0] * self.shape[1]
         for kind in sorted(self._cautions):
-            count, worst = self._counts[kind], self._cautions[kind][0][2]
-            said = f"at {count} of {total} designs", worst.said
-            yield Statement(*said, kind=kind, quantity="designs", value=count, limit=0.0)
+            yield after(f"at {self._counts[kind]} of {total} designs", self._cautions[kind][0][2].said)
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:

@@ -14,7 +14,16 @@ import numpy as np
 from beamdyn.common.announced import unannounced
 from beamdyn.common.designs import rows_of
 from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.statements import InputValue, Speeds, Words, joined
+from beamdyn.common.statements import (
+    NO_ANSWER,
+    OUTSIDE,
+    InputValue,
+    Speeds,
+    Statement,
+    Words,
+    joined,
+    kind_of,
+)
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
@@ -101,8 +110,10 @@ def _caution(
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
         at = joined(", ", (InputValue(name, v, unit_of(name)) for name, v in designs[first].items()))
-        said = Words(f" {words}", *(("; at ", at) if at else ()), ": ", joined("; ", reasons[first]))
-        yield Caution(words, sum(counts), 0.0, said)
+        said = f" {words}", *(("; at ", at) if at else ()), ": ", joined("; ", reasons[first])
+        kinds = {*map(kind_of, reasons[first])} - {""}
+        kind = OUTSIDE if OUTSIDE in kinds else min(kinds, default=NO_ANSWER)
+        yield Caution(words, sum(counts), 0.0, Statement(*said, kind=kind))
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
