@@ -109,7 +109,7 @@ def _caution(
     """Yield of how many answers something holds, and why of the first."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
-        at = joined(", ", (InputValue(name, v, unit_of(name)) for name, v in designs[first].items()))
+        at = joined(", ", (InputValue(name, v, unit_of(name) or "") for name, v in designs[first].items()))
         said = f" {words}", *(("; at ", at) if at else ()), ": ", joined("; ", reasons[first])
         kinds = {*map(kind_of, reasons[first])} - {""}
         kind = OUTSIDE if OUTSIDE in kinds else min(kinds, default=NO_ANSWER)
