@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.announced import OUTSIDE
+from beamdyn.common.display_units import SI_UNITS
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.results import Result
-from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, MODEL_ERROR, StatesModelError, say_size
+from beamdyn.common.statements import MODEL_ERROR, OUTSIDE, Words, kind_of, of_kind, said_in, worded
+from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,15 +18,25 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.modes import Modes
 
 
-def warnings_of(result: Any, tolerance: float | None = None) -> list[str]:
-    """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files."""
+def warnings_of(
+    result: Any,
+    tolerance: float | None = None,
+    without: str = "",
+    word: Callable[[Words], str | None] = lambda part: None,
+) -> list[str]:
+    """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files.
+
+    Statements of the kind `without` are left out; `word` may put inputs in words of its own.
+    """
     warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
-    return [as_in_files(_in_units_of(result, said)) for said in warnings]
+    said = (each for each in warnings if not without or kind_of(each) != without)
+    units = result.display_units if isinstance(result, Result) else SI_UNITS
+    return [as_in_files(worded(each, lambda part: word(part) or part.in_units(units))) for each in said]
 
 
 def _in_units_of(result: Any, sentence: str) -> str:
     """A sentence with its speeds in the unit in which the result shows them."""
-    return result.display_units.in_sentence(sentence) if isinstance(result, Result) else sentence
+    return said_in(result.display_units, sentence) if isinstance(result, Result) else sentence
 
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
@@ -44,15 +55,14 @@ def notes_of(result: Any) -> list[str]:
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
-    outside = [s for s in getattr(result, "warnings", ()) if OUTSIDE in s or MODEL_ERROR in s]
-    each = [said.partition(";")[0] for said in (*outside, *_of_model_error(result))]
-    return [_in_units_of(result, said) for said in each]
+    outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
+    each = [_in_units_of(result, said) for said in (*outside, *_of_model_error(result))]
+    return [said.partition(";")[0] for said in each]
 
 
 def critical_label(point: CriticalPoint) -> str:
     """What a picture calls a critical speed."""
-    straight = any(OUTSIDE in said for said in point.warnings)
-    return "critical speed, were the beam straight:" if straight else "critical speed"
+    return "critical speed, were the beam straight:" if of_kind(point.warnings, OUTSIDE) else "critical speed"
 
 
 def labels_of(modes: Modes) -> list[str]:

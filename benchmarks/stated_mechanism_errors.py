@@ -15,6 +15,7 @@ from typing import NamedTuple
 import mpmath
 import numpy as np
 
+from beamdyn.common.statements import IN_LINE, of_kind
 from benchmarks.cases import mechanisms
 from benchmarks.cases.mechanism_digits import exact_forces
 from benchmarks.invariant_verdicts import draw_mechanism, transform
@@ -122,7 +123,7 @@ def errors_of(mechanism: planar.Mechanism, driver: str | None, moved: float = 0.
 
 def _compared(found: planar.Equilibrium) -> Iterator[Errors]:
     mechanism = found.position.mechanism
-    if not found.is_determined or any("exactly in line" in warning for warning in found.warnings):
+    if not found.is_determined or of_kind(found.warnings, IN_LINE):
         return
     system = mechanism.system
     parts = {name: found.multiplier[rows] for name, rows in system.joints.items()}

@@ -22,6 +22,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.common.statements import TOLERANCE, of_kind
 from beamdyn.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.transient import Transient
@@ -161,7 +162,7 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
         find = find_error_by_twice_the_modes if draw is random_wave_run else find_mode_error
         modes = run.mode_error, find(run, t) / size
     stated, true = run.time_error / size, find_time_error(run, t) / size
-    warned = any(each.startswith("tolerance") for each in run.warnings)
+    warned = bool(of_kind(run.warnings, TOLERANCE))
     missed = given["modes"] == "auto" and modes[1] > given["tolerance"] + _ROUNDING and not warned
     return [Case(number, (stated, modes[0]), (true, modes[1]), missed_in_silence=int(missed))]
 

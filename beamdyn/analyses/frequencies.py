@@ -19,8 +19,8 @@ from beamdyn.analyses.options import (
     PositiveSpeed,
     Speeds,
 )
-from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
+from beamdyn.common.statements import GROWING, OUTSIDE, of_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,8 +57,7 @@ def modes(
     result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
     if shapes is not None:
         _write_shapes(result, shapes, outputs.force)
-    warnings = [w for w in warnings_of(result, tolerance) if not w.startswith("unstable")]
-    return Answer(result, _unstable(result), warnings)
+    return Answer(result, _unstable(result), warnings_of(result, tolerance, without=GROWING))
 
 
 @analysis('beamdyn locus examples/tyre_harvester.toml --speeds "0:150:31 rad/s"')
@@ -155,5 +154,5 @@ def _unstable(result: Modes) -> str:
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
     critical = bd.critical_point(result.scene)
     said = f"; the critical speed is {critical.speed:.6g} rad/s" if critical.speed <= result.speed else ""
-    straight = ", were the beam straight" if any(OUTSIDE in said for said in critical.warnings) else ""
+    straight = ", were the beam straight" if of_kind(critical.warnings, OUTSIDE) else ""
     return f"unstable at {result.speed:g} rad/s: {which}{said}{straight}"

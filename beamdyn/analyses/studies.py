@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -21,6 +20,7 @@ from beamdyn.analyses.values import (
 )
 from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
+from beamdyn.common.statements import InputValue, Words
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.inputs import Input
@@ -104,7 +104,7 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     with at_work("designs") as progress, of_file({}):
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
-    warnings = [_as_given(axes, said) for said in warnings_of(result, how["tolerance"])]
+    warnings = warnings_of(result, how["tolerance"], word=partial(_as_given, axes))
     return Answer(result, _refusal(result), warnings, [study_table(result, units)])
 
 
@@ -151,19 +151,12 @@ def _speeds_of(varying: VaryOptions) -> Iterator[str]:
             yield values
 
 
-def _as_given(axes: Sequence[Axis], said: str) -> str:
-    """A sentence on designs with their inputs as they were given: rounded, they would not be found again."""
+def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
+    """An input of a design as it was given: rounded, it would not be found again; None of other parts."""
     for axis in axes:
-        if axis.unit:
-            pattern = rf"(?<![\w.])({re.escape(axis.input.path)} = )(-?\d[\d.e+-]*) ([\w/]+)"
-            said = re.sub(pattern, partial(_nearest_given, axis), said)
-    return said
-
-
-def _nearest_given(axis: Axis, found: re.Match[str]) -> str:
-    known = axis.given if found[3] == axis.unit else axis.values
-    nearest = axis.given[abs(known - float(found[2])).argmin()]
-    return f"{found[1]}{nearest:.6g} {axis.unit}"
+        if axis.unit and isinstance(part, InputValue) and part.name == axis.input.path:
+            return f"{part.name} = {axis.given[abs(axis.values - part.value).argmin()]:.6g} {axis.unit}"
+    return None
 
 
 @contextmanager

@@ -17,6 +17,7 @@ from beamdyn.common.checks import InvalidValue, ascending, count, flag, kind, on
 from beamdyn.common.display_units import DisplayUnits
 from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import after
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -425,7 +426,7 @@ def _bound(
         try:
             found = frequency_bounds(locus.scene, float(speed), len(names))
             bounded.append((label, found))
-            refused += [f"{_prefix(label)}{warning}" for warning in found.warnings]
+            refused += [after(_prefix(label), warning) for warning in found.warnings]
         except ValueError as error:
             refused.append(f"{_prefix(label)}no guaranteed bounds: {error}")
     return bounded, refused
@@ -433,7 +434,7 @@ def _bound(
 
 def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence[Line]) -> Iterator[str]:
     for label, names, locus in named:
-        yield from (f"{_prefix(label)}{warning}" for warning in locus.warnings)
+        yield from (after(_prefix(label), warning) for warning in locus.warnings)
         for line, mode in coincident(locus, lines):
             both = f"{names[mode]} and {line.name}"
             yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"

@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import ParamSpec, TypeVar
 
-OUTSIDE = "outside linear theory"  # in each sentence that says so
+from beamdyn.common.statements import OUTSIDE, of_kind
+
 _REMEDY = '; Scene(..., physics="auto") adds what matters'
 
 Arguments = ParamSpec("Arguments")
@@ -71,9 +72,8 @@ def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[
 def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
     """Issue what a result says of lying outside linear theory, as warnings for the caller of the caller."""
     if not _within_another.get():
-        for sentence in sentences:
-            if OUTSIDE in sentence:
-                warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)
+        for sentence in of_kind(sentences, OUTSIDE):
+            warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)
 
 
 @contextmanager

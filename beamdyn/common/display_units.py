@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,13 +20,6 @@ _PER_SI = {
     "speed": {"rad/s": 1.0, "rpm": 30 / pi, "deg/s": 180 / pi},
     "length": {"m": 1.0, "mm": 1e3, "cm": 1e2, "um": 1e6, "in": 1 / 0.0254, "ft": 1 / 0.3048},
 }
-# Heads of columns of CSV files that end in the SI unit, or have a number after it; not "N_m" and "per_m".
-_HEADS = {
-    "speed": re.compile(r"_rad_per_s(?=(_\d+)?$)"),
-    "length": re.compile(r"(?<!_N)(?<!_kg)(?<!_per)_m(?=(_\d+)?$)"),
-}
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-_SPEEDS = re.compile(rf"((?:{_NUMBER.pattern} to )?{_NUMBER.pattern}) rad/s(?!\w)")
 
 
 class ShownUnit(NamedTuple):
@@ -51,11 +43,6 @@ class ShownUnit(NamedTuple):
     def say(self, value: float, digits: int = 6) -> str:
         """A value with its unit, from SI."""
         return f"{value * self.per_si:.{digits}g} {self.name}"
-
-    @property
-    def in_heads(self) -> str:
-        """The name as in heads of CSV files: "rad_per_s"."""
-        return self.name.replace("/", "_per_")
 
 
 @dataclass(frozen=True)
@@ -106,17 +93,6 @@ class DisplayUnits:
         """The same, with the units that are given in place of its own."""
         new = DisplayUnits.of(given)
         return DisplayUnits(new.speed or self.speed, new.length or self.length)
-
-    def in_sentence(self, sentence: str) -> str:
-        """A sentence of the core with its speeds, such as "20 to 35 rad/s", in their unit."""
-        unit = self.speed_unit()
-        if unit.per_si == 1.0:
-            return sentence
-
-        def convert(found: re.Match[str]) -> str:
-            return _NUMBER.sub(lambda n: f"{unit.of(float(n[0])):.6g}", found[1]) + f" {unit.name}"
-
-        return _SPEEDS.sub(convert, sentence)
 
     def speed_unit(self) -> ShownUnit:
         """Unit of speeds: rad/s if none was given."""
@@ -179,31 +155,3 @@ def known_unit(kind: str, name: str) -> str:
     """The name of a unit if it is one in which a kind of quantity can be shown, else ""."""
     name = name.replace(" ", "")
     return name if name in _PER_SI[kind] else ""
-
-
-def in_display_units(rows: Iterable[Sequence[object]], units: DisplayUnits) -> Iterator[Sequence[object]]:
-    """Rows of a CSV file, heads first, with columns in units in place of SI; others are as they were.
-
-    Parameters
-    ----------
-    rows : iterable of sequence
-        Heads such as "speed_rad_per_s", then numbers.
-    units : DisplayUnits
-        The units.
-    """
-    lines = iter(rows)
-    heads = [*next(lines, ())]
-    factors: dict[int, float] = {}
-    for kind, pattern in _HEADS.items():
-        unit = units._unit(kind, next(iter(_PER_SI[kind])))
-        for k, head in enumerate(heads):
-            new = pattern.sub(f"_{unit.in_heads}", str(head))
-            if new != head and new not in heads:  # a file may have both units already
-                heads[k], factors[k] = new, unit.per_si
-    yield heads
-    for row in lines:
-        yield [_scaled(cell, factors.get(k, 1.0)) for k, cell in enumerate(row)] if factors else row
-
-
-def _scaled(cell: Any, factor: float) -> Any:
-    return cell * factor if factor != 1.0 and isinstance(cell, float | int) else cell

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from beamdyn.common.plain import plain
 from beamdyn.common.read_only import ReadOnlyArrays
@@ -43,5 +44,12 @@ class Result(Shown, Saved, ReadOnlyArrays):
     A result is one line in a console, a table with a picture in a notebook, and a data frame for whoever asks
     for one.  A subclass gives its `headline`, its `plot` if it has a picture, and an entry in the views of
     its package (`beamdyn.views`, `brakes.views`) with the functions that make its table and the rows of its
-    CSV file.  What it does not give is made from its fields.
+    CSV file.  What it does not give is made from its fields, whose units it may state.
+
+    Attributes
+    ----------
+    field_units : dict of str to str
+        For each unit the names of the fields that are in it, separated by spaces.
     """
+
+    field_units: ClassVar[dict[str, str]] = {}

@@ -1,8 +1,8 @@
 """Objects made of data as JSON's types, and back, to the bit: how results are kept in files.
 
-Numbers, strings, arrays, containers, dataclasses and named tuples of this package are data.  What is not
-(a function, an object of another package's class) is left out, and stands in the object that comes back as a
-`LeftOut`.
+Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
+What is not (a function, an object of another package's class) is left out, and stands in the object that
+comes back as a `LeftOut`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+
+from beamdyn.common.statements import Words
 
 _PACKAGES = ("beamdyn", "brakes")  # whose classes may be named in a file
 
@@ -59,6 +61,8 @@ def encode(value: Any) -> Any:
     """
     if isinstance(value, np.generic):
         return encode(value.item())
+    if isinstance(value, Words):
+        return {"words": [_name(type(value)), *map(encode, value.arguments())]}
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float):
@@ -117,6 +121,11 @@ def _decode_object(content: list[Any]) -> Any:
     return made
 
 
+def _decode_words(content: list[Any]) -> Words:
+    name, given, named = content
+    return _find_class(name)(*decode(given), **decode(named))
+
+
 _DECODERS: dict[str, Any] = {
     "float": float,
     "complex": lambda parts: complex(*map(decode, parts)),
@@ -126,12 +135,13 @@ _DECODERS: dict[str, Any] = {
     "list": lambda items: [*map(decode, items)],
     "dict": lambda items: {key: decode(item) for key, item in items.items()},
     "object": _decode_object,
+    "words": _decode_words,
     "left out": LeftOut,
 }
 
 
 def _is_known(kind: type) -> bool:
-    has_fields = dataclasses.is_dataclass(kind) or hasattr(kind, "_fields")
+    has_fields = dataclasses.is_dataclass(kind) or hasattr(kind, "_fields") or issubclass(kind, Words)
     return has_fields and kind.__module__.partition(".")[0] in _PACKAGES
 
 

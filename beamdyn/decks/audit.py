@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -83,6 +84,8 @@ class ShapeCheck:
     True
     """
 
+    field_units: ClassVar[dict[str, str]] = {"Hz": "frequency"}
+
     mode: str
     coefficient_sum: float
     difference: float
@@ -126,6 +129,14 @@ class DeckAudit(Result):
     >>> deck.audit.stations, round(deck.audit.centre / 40.0, 2)  # centre of mass over the length
     (9, 0.3)
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "kg": "mass",
+        "kg m": "first_moment",
+        "kg m2": "second_moment hub_second_moment",
+        "m": "centre",
+        "rad/s": "shape_speed",
+    }
 
     stations: int
     mass: float

@@ -11,6 +11,7 @@ import numpy as np
 from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.checks import InvalidValue, count, within
+from beamdyn.common.statements import Speeds, Words
 from beamdyn.linear_models.choice import model_at_speed, model_of_few_modes
 from beamdyn.linear_models.model_at_speed import ModelAtSpeed
 from beamdyn.modal.choice import DiscretizationChoice
@@ -191,7 +192,7 @@ def _with_error(
         finer = evaluate(larger) if finer is None else finer
         more = "all functions" if larger.modes is None else f"{larger.modes} modes"
         truncation, compared = LINEAR_MODES.factor * np.abs(finer - value), [*compared, more]
-    kept = "all functions" if model.modes is None else f"{model.modes} modes at {model.speed:.6g} rad/s"
-    method = f"{model.discretization}, {kept}"
+    kept = ("all functions",) if model.modes is None else (f"{model.modes} modes at ", Speeds(model.speed))
+    method = Words(f"{model.discretization}, ", *kept)
     largest = float(np.max(truncation))
     return Refined(model, larger, value, error + truncation, largest, method, ", ".join(compared))

@@ -14,6 +14,7 @@ from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, real_array, refuse, several
 from beamdyn.common.one_line import counted, error_at_most, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.statements import GROWING, Speeds, Statement
 from beamdyn.equations.directions import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear_models.choice import check_linear, model_at_speed, with_forces
@@ -215,12 +216,13 @@ def matrices(
     )
 
 
-def warn_of_model(model: ModelAtSpeed) -> Iterator[str]:
+def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
     """Yield what limits the validity of the equations at the speed, in the words of natural modes there."""
     yield from warn_of_left_out(model.scene)
     growing = _growing(model)
     if growing:
-        yield f"unstable at {model.speed:.6g} rad/s: {growing} mode(s) grow; see poles"
+        end = f": {growing} mode(s) grow; see poles"
+        yield Statement("unstable at ", Speeds(model.speed), end, kind=GROWING)
     yield from warn_of_rotation(model.model, model.speed)
 
 

@@ -158,7 +158,7 @@ class RandomLoads(SpanLoads):
     fractions: tuple[LoadFractions, ...] = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[str] = "speed [rad/s]"
+    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""

@@ -121,7 +121,7 @@ class SpanLoads(Result):
     provenance: Provenance
     scene: Scene = field(repr=False)
 
-    case: ClassVar[str]  # what the first axis of the arrays is, with its unit
+    case: ClassVar[tuple[str, str]]  # what the first axis of the arrays is, and its unit
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""

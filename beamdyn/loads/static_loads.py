@@ -65,7 +65,7 @@ class StaticLoads(SpanLoads):
     angle: float
     tip: np.ndarray
 
-    case: ClassVar[str] = "speed [rad/s]"
+    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
 
     @property
     def cases(self) -> np.ndarray:

@@ -58,7 +58,7 @@ class SteadyLoads(SpanLoads):
     response: SteadyResponse = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[str] = "speed [rad/s]"
+    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
 
     @property
     def cases(self) -> np.ndarray:

@@ -65,7 +65,7 @@ class TransientLoads(SpanLoads):
     path: LoadPath = field(repr=False)
     equivalent_ranges: tuple[EquivalentRange, ...] = ()
 
-    case: ClassVar[str] = "time [s]"
+    case: ClassVar[tuple[str, str]] = ("time", "s")
 
     @property
     def cases(self) -> np.ndarray:

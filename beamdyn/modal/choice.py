@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.checks import InvalidValue
+from beamdyn.common.statements import TOLERANCE, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modal.end_layers import split_layers
@@ -75,12 +76,16 @@ def _solve_finer(
         return None
 
 
-def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[str]:
+def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[Statement]:
     """Yield a warning if the estimated error exceeds the tolerance."""
     if error > tolerance:
-        yield (
+        yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated relative error is {error:.1g}, "
-            "and the model is the largest that helps"
+            "and the model is the largest that helps",
+            kind=TOLERANCE,
+            quantity="estimated relative error",
+            value=error,
+            limit=tolerance,
         )
 
 

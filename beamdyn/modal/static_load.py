@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.announced import OUTSIDE
+from beamdyn.common.statements import OUTSIDE, Statement
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.modal.model import Model
 from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
@@ -42,7 +42,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
 
 
-def warn_of_rotation(model: Model, speed: float) -> Iterator[str]:
+def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
     """Yield a warning if the rotation stretches or bends a beam by more than linear theory allows.
 
     Parameters
@@ -59,14 +59,12 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[str]:
     yield from warn_of_straight(deflection, speeds, model)
 
 
-def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[str]:
+def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
     """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
-        yield (
-            f"at {list_speeds(speeds, lost)} the straight beam is unstable; the rotation bends it before: "
-            f"the answer is {OUTSIDE}"
-        )
+        end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
+        yield Statement("at ", list_speeds(speeds, lost), end, kind=OUTSIDE)
 
 
 def bends(model: Model) -> bool:

@@ -18,6 +18,7 @@ import numpy as np
 
 from beamdyn.accuracy.margins import EFFECTS
 from beamdyn.common.checks import InvalidValue, reason_of
+from beamdyn.common.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
 from beamdyn.modal.choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modal.error_estimate import EstimatedModes
@@ -171,13 +172,17 @@ def _rough_size(model: Model, speeds: np.ndarray) -> float:
     return math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
 
 
-def warn_of_peak(scene: Scene, deflection: float) -> Iterator[str]:
+def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
     """Yield a warning if large deflection, left out of chosen physics, matters at a deflection found [m]."""
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
-        yield (
+        yield Statement(
             f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
-            f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2"
+            f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2",
+            kind=TOLERANCE,
+            quantity="relative change by large deflection",
+            value=size,
+            limit=choice.tolerance,
         )
 
 
@@ -210,10 +215,11 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     return replace(bent, physics_choice=chosen)
 
 
-def warn_of_plain(scene: Scene) -> Iterator[str]:
+def warn_of_plain(scene: Scene) -> Iterator[Statement]:
     """Yield a warning if the physics was to be chosen by an analysis that knows the plain beam alone."""
     if scene.chooses_physics:
-        yield "physics = auto: nothing is added here, the answer is that of the plain beam"
+        said = "physics = auto: nothing is added here, the answer is that of the plain beam"
+        yield Statement(said, kind=INPUT, quantity="physics")
 
 
 # The choice ---------------------------------------------------------------------------------------

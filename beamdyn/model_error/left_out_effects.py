@@ -12,13 +12,13 @@ import numpy as np
 
 from beamdyn.common.digits import percent
 from beamdyn.common.results import plain
+from beamdyn.common.statements import MODEL_ERROR, Speeds, Statement, Words, joined
 from beamdyn.scene.physics_choice import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
 _NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
 _MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and all digits, say little
-MODEL_ERROR = "the model error"  # in each sentence that warns of it
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class LeftOutEffects:
 
     # In words -----------------------------------------------------------------------------------------
 
-    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> str:
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
         """One line: the largest change by each effect, what is not known, and what is not modelled.
 
         Parameters
@@ -83,21 +83,24 @@ class LeftOutEffects:
         speeds : ndarray, optional
             Speeds [rad/s] of the first axis: what holds elsewhere than `where` is said with its own.
         """
-        parts = [", ".join(self._say_changes(what, where, speeds)) or "nothing that can be computed"]
+        parts: list[str] = [
+            joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
+        ]
         if self.not_known:
-            parts.append(f"not known: {', '.join(self._say_not_known(where, speeds))}")
+            parts.append(Words("not known: ", joined(", ", self._say_not_known(where, speeds))))
         if self.not_modelled:
             parts.append(f"not modelled: {', '.join(self.not_modelled)}")
-        return f"left out{where and ' ' + where}: {'; '.join(parts)}"
+        begin = ("left out ", where) if where else ("left out",)
+        return Words(*begin, ": ", joined("; ", parts))
 
     def _say_not_known(self, where: str, speeds: np.ndarray | None) -> Iterator[str]:
         """The effects that are not known, those of one reason together."""
         reasons: dict[str, list[str]] = {}
         for name, why in self.not_known.items():
             place = self.where_unknown(name, speeds)
-            full = why if not place or place == where else f"{why}; {place}"
+            full = why if not place or place == where else Words(why, "; ", place)
             reasons.setdefault(full, []).append(name)
-        yield from (f"{', '.join(names)} ({why})" for why, names in reasons.items())
+        yield from (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
 
     def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
         """The speeds at which a change is not known; empty if these are not given, or none is known."""
@@ -105,22 +108,23 @@ class LeftOutEffects:
         if speeds is None or change is None or not len(speeds):
             return ""
         unknown = np.asarray(np.isnan(change).reshape(len(change), -1).any(axis=1))
-        return f"at {list_speeds(speeds, unknown)}" if unknown.any() else ""
+        return Words("at ", list_speeds(speeds, unknown)) if unknown.any() else ""
 
     def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:
         change = self.changes[name]
         if speeds is None or abs(_largest(change)) < _NEGLIGIBLE:
             return ""
         first = int(np.nanargmax(np.abs(change))) // (change.size // len(change))
-        return f"at {speeds[first]:.6g} rad/s"
+        return Words("at ", Speeds(speeds[first]))
 
     def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             place = self._where_largest(name, speeds)
             notes = [self._say_mode(name, what), place if place != where else "", self.assumed.get(name, "")]
-            note = ", ".join(filter(None, notes))
-            yield f"{name} {say_change(_largest(known[name]))}{note and f' ({note})'}"
+            note = joined(", ", filter(None, notes))
+            said = f"{name} {say_change(_largest(known[name]))}"
+            yield Words(said, " (", note, ")") if note else said
 
     def _say_mode(self, name: str, what: str) -> str:
         change = self.changes[name]
@@ -133,7 +137,7 @@ class LeftOutEffects:
         tolerance: float | None = None,
         where: str = "",
         where_unknown: Callable[[str], str] = lambda name: "",
-    ) -> Iterator[str]:
+    ) -> Iterator[Statement]:
         """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
 
         Parameters
@@ -148,16 +152,21 @@ class LeftOutEffects:
         limit = LARGE_MODEL_ERROR if tolerance is None else max(tolerance, _NEGLIGIBLE)
         at_least = float(self.total_of_known.max(initial=0.0))
         if at_least > limit:
-            begin = f"{where and where + ' '}{MODEL_ERROR}, {self._say_total(at_least)}, exceeds"
-            yield f"{begin} {say_size(limit)}: {self._say_largest()}"
+            begin = (where, " the model error") if where else ("the model error",)
+            said = *begin, f", {self._say_total(at_least)}, exceeds {say_size(limit)}: {self._say_largest()}"
+            yield Statement(*said, kind=MODEL_ERROR, quantity="model error", value=at_least, limit=limit)
             return
         unknown: dict[tuple[str, str], list[str]] = {}
         for name, why in self.not_known.items():
             if name in self.changes and np.isnan(self.changes[name]).any():
                 unknown.setdefault((where_unknown(name) or where, why), []).append(name)
         for (place, why), names in unknown.items():
-            what = f"what {', '.join(names)}, left out, changes is not known: {why}"
-            yield f"{place and place + ' '}{MODEL_ERROR} may exceed {say_size(limit)}: {what}"
+            begin = (place, " the model error") if place else ("the model error",)
+            end = (
+                f" may exceed {say_size(limit)}: what {', '.join(names)}, left out, changes is not known: ",
+                why,
+            )
+            yield Statement(*begin, *end, kind=MODEL_ERROR, quantity="model error", limit=limit)
 
     def _say_total(self, size: float) -> str:
         where = self.total_of_known == size
@@ -195,9 +204,9 @@ def say_size(size: float) -> str:
 class NotJudged(LeftOutEffects):
     """Stands for what the effects left out would change where that takes long and was not asked for."""
 
-    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> str:
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
         """Say how it is asked for."""
-        return (
+        return Words(
             "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
         )
 
@@ -234,7 +243,7 @@ class StatesModelError(OfChosenPhysics):
         """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
         return self.left_out_effects.total
 
-    def model_warnings(self, tolerance: float | None = None) -> list[str]:
+    def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
         """Warnings of a model error past a tolerance, or 1 %, and of one that is not known."""
         speeds = getattr(self, "left_out_speeds", None)
         effects = self.left_out_effects
@@ -257,6 +266,6 @@ def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
     """Where a model error over speeds (k,) is largest, "at 100 rad/s"; at which where it is not known."""
     total = effects.total
     if not np.isfinite(total).any():
-        return f"at {list_speeds(speeds, np.ones(len(speeds), bool))}" if len(speeds) else ""
+        return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""
     worst = np.nanargmax(total) // (total.size // len(total))
-    return f"at {speeds[worst]:.6g} rad/s"
+    return Words("at ", Speeds(speeds[worst]))

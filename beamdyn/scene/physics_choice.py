@@ -9,6 +9,7 @@ from typing import Any
 
 from beamdyn.common.digits import percent
 from beamdyn.common.results import Result, plain
+from beamdyn.common.statements import TOLERANCE, Statement
 from beamdyn.scene.physics import Physics
 
 
@@ -108,19 +109,24 @@ class PhysicsChoice:
         cost = f"; in all {self.time:.2g} times the time of the plain beam" if several else ""
         return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or "the plain beam"}{cost}'
 
-    def warnings(self) -> Iterator[str]:
+    def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
         why = "; ".join(f"{e.name}, left out, is worth {_say_size(e.size)}: {e.reason}" for e in large)
         if not self.is_met:
             reason = f": {why}" if why else ""
-            yield (
+            yield Statement(
                 f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "
-                f"{_say_size(self.model_error)}{reason}"
+                f"{_say_size(self.model_error)}{reason}",
+                kind=TOLERANCE,
+                quantity="model error",
+                value=self.model_error,
+                limit=self.tolerance,
             )
         if self.not_known:
             each = "; ".join(f"{name} ({why})" for name, why in self.not_known.items())
-            yield f"physics = auto: left out, as not known: {each}"
+            said = f"physics = auto: left out, as not known: {each}"
+            yield Statement(said, kind=TOLERANCE, quantity="model error", limit=self.tolerance)
 
 
 def _say_included(effect: JudgedEffect) -> str:

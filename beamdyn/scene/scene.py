@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from beamdyn.common.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.display_units import SI_UNITS, DisplayUnits
@@ -65,6 +65,8 @@ class Scene(OneLine):
     >>> scene.is_damped
     True
     """
+
+    field_units: ClassVar[dict[str, str]] = {"m/s2": "gravity"}
 
     beam: Beam
     mount: Mount = Mount()

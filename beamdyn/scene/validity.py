@@ -7,8 +7,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.checks import MOST, refuse
+from beamdyn.common.statements import (
+    EXCITATION,
+    INPUT,
+    LIMITS,
+    OUTSIDE,
+    Speeds,
+    Statement,
+    Words,
+    joined,
+)
 from beamdyn.scene.scene import Scene
 
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
@@ -24,61 +33,78 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
     refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
 
 
-def warn_of_left_out(scene: Scene) -> Iterator[str]:
+def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
     """Yield a warning for what is given for a second plane that is not modelled, or what a choice leaves."""
     if scene.physics_choice is not None:
         yield from scene.physics_choice.warnings()
         return
     if scene.physics.branch != "straight" and not scene.physics.large_deflection:
         branch = scene.physics.branch
-        yield (
-            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; "
-            f"Physics(large_deflection=True, branch='{branch}') bends it"
+        remedy = f"Physics(large_deflection=True, branch='{branch}') bends it"
+        said = (
+            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; {remedy}"
         )
+        yield Statement(said, kind=INPUT, quantity="physics.branch", remedy=remedy)
     given = {
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
     }
     for name, is_given in given.items():
         if is_given and scene.physics.planes == 1:
-            yield f"{name} is given, but physics.planes is 1: it is left out; Physics(planes=2) models it"
+            remedy = "Physics(planes=2) models it"
+            said = f"{name} is given, but physics.planes is 1: it is left out; {remedy}"
+            yield Statement(said, kind=INPUT, quantity=name, remedy=remedy)
 
 
-def warn_of_strain(strain: float) -> Iterator[str]:
+def warn_of_strain(strain: float) -> Iterator[Statement]:
     """Yield a warning if the static axial strain is not small."""
     if strain > LARGE_STRAIN:
-        yield f"static axial strain reaches {strain:.2g}: above 1 % stretch is not negligible"
+        said = f"static axial strain reaches {strain:.2g}: above 1 % stretch is not negligible"
+        yield Statement(said, kind=LIMITS, quantity="static axial strain", value=strain, limit=LARGE_STRAIN)
 
 
-def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[str]:
+def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[Statement]:
     """Yield a warning if strains, of which there may be none (nan), pass what linear elasticity describes."""
     largest = np.abs(strain[np.isfinite(strain)]).max(initial=0.0)
     if largest > LARGE_STRAIN:
-        yield f"strain reaches {largest:.2g}: past {LARGE_STRAIN:g} few materials are linearly elastic"
+        said = f"strain reaches {largest:.2g}: past {LARGE_STRAIN:g} few materials are linearly elastic"
+        yield Statement(said, kind=LIMITS, quantity="strain", value=largest, limit=LARGE_STRAIN)
 
 
-def warn_of_static_deflection(deflection: np.ndarray, length: float, speeds: np.ndarray) -> Iterator[str]:
+def warn_of_static_deflection(
+    deflection: np.ndarray, length: float, speeds: np.ndarray
+) -> Iterator[Statement]:
     """Yield a warning if the static tip deflection [m] at a speed [rad/s] exceeds linear theory."""
     bent = np.abs(deflection) > LARGE_DEFLECTION * length
     if bent.any():
         first, worst = np.abs(speeds[bent]).argmin(), np.abs(deflection[bent]).argmax()
-        most, at = _say_lengths(abs(deflection[bent][worst]) / length), f"{speeds[bent][worst]:.6g} rad/s"
-        begin = f"from {speeds[bent][first]:.6g} rad/s on the rotation bends the tip by up to {most}, at {at}"
-        one = f"at {at} the rotation bends the tip by {most}"
-        said = begin if bent.sum() > 1 else one
-        yield f"{said}: past {LARGE_DEFLECTION:g} of the length the answer is {OUTSIDE}"
+        ratio, at = abs(deflection[bent][worst]) / length, Speeds(speeds[bent][worst])
+        most = _say_lengths(ratio)
+        begin = (
+            "from ",
+            Speeds(speeds[bent][first]),
+            f" on the rotation bends the tip by up to {most}, at ",
+            at,
+        )
+        said = begin if bent.sum() > 1 else ("at ", at, f" the rotation bends the tip by {most}")
+        end = f": past {LARGE_DEFLECTION:g} of the length the answer is {OUTSIDE}"
+        yield _bent_too_far(ratio, *said, end)
+
+
+def _bent_too_far(ratio: float, *words: str) -> Statement:
+    quantity = "tip deflection over the length"
+    return Statement(*words, kind=OUTSIDE, quantity=quantity, value=ratio, limit=LARGE_DEFLECTION)
 
 
 def warn_of_deflection(
     deflection: np.ndarray, length: float, speeds: np.ndarray | None = None
-) -> Iterator[str]:
+) -> Iterator[Statement]:
     """Yield a warning if a tip deflection [m], at some speed if speeds are given, exceeds linear theory."""
     large = deflection > LARGE_DEFLECTION * length
     if large.any():
-        yield (
-            f"the tip moves by {_say_lengths(deflection[large].max() / length)}"
-            f"{_at_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} of the length it is {OUTSIDE}"
-        )
+        ratio, at = deflection[large].max() / length, _at_speeds(speeds, large)
+        end = f": past {LARGE_DEFLECTION:g} of the length it is {OUTSIDE}"
+        yield _bent_too_far(ratio, f"the tip moves by {_say_lengths(ratio)}", at, end)
 
 
 def _say_lengths(ratio: float) -> str:
@@ -86,23 +112,28 @@ def _say_lengths(ratio: float) -> str:
     return f"{ratio:.2g} of the length" if ratio < 1 else f"{ratio:.{1 if ratio < 10 else 0}f} lengths"
 
 
-def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> Iterator[str]:
+def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> Iterator[Statement]:
     """Yield a warning if the road accelerates the wheel [m/s2] by more than gravity, as above."""
     excessive = acceleration > STANDARD_GRAVITY
     if excessive.any():
-        yield (
-            f"the road accelerates the wheel by {acceleration.max():.4g} m/s2, more than gravity"
-            f"{_at_speeds(speeds, excessive)}: the wheel leaves the road; "
-            "was a velocity amplitude given as a height?"
+        largest = acceleration.max()
+        yield Statement(
+            f"the road accelerates the wheel by {largest:.4g} m/s2, more than gravity",
+            _at_speeds(speeds, excessive),
+            ": the wheel leaves the road; was a velocity amplitude given as a height?",
+            kind=EXCITATION,
+            quantity="acceleration of the wheel [m/s2]",
+            value=largest,
+            limit=STANDARD_GRAVITY,
         )
 
 
 def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
     """The words " at ..." for the selected speeds; empty if there are no speeds."""
-    return "" if speeds is None else f" at {list_speeds(speeds, selected)}"
+    return "" if speeds is None else Words(" at ", list_speeds(speeds, selected))
 
 
-def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> str:
+def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> Words:
     """Text of the selected speeds [rad/s], of which there is one: "20 to 35 rad/s and 50 rad/s".
 
     Neighbours in ascending order make a range; of many ranges the first are named, and how many follow up
@@ -111,14 +142,11 @@ def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> str:
     ascending = np.argsort(speeds, kind="stable")
     speeds, selected = speeds[ascending], selected[ascending]
     changes = np.flatnonzero(np.diff(np.concatenate(([False], selected, [False])).astype(int)))
-    ranges = [_spell_range(*speeds[[first, after - 1]].tolist()) for first, after in changes.reshape(-1, 2)]
+    ranges: list[Words] = [
+        Speeds(speeds[first], speeds[after - 1]) for first, after in changes.reshape(-1, 2)
+    ]
     if len(ranges) > _MOST_RANGES:
-        last = f"{speeds[selected][-1]:.6g} rad/s"
-        ranges[_MOST_RANGES - 1 :] = [f"{len(ranges) - _MOST_RANGES + 1} more ranges up to {last}"]
+        more = len(ranges) - _MOST_RANGES + 1
+        ranges[_MOST_RANGES - 1 :] = [Words(f"{more} more ranges up to ", Speeds(speeds[selected][-1]))]
     *most, end = ranges
-    return f"{', '.join(most)} and {end}" if most else end
-
-
-def _spell_range(first: float, last: float) -> str:
-    """Two speeds [rad/s] in words, or one: "20 to 35 rad/s"."""
-    return " to ".join(dict.fromkeys((f"{first:.6g}", f"{last:.6g}"))) + " rad/s"
+    return Words(joined(", ", most), " and ", end) if most else end

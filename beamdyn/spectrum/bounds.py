@@ -17,6 +17,7 @@ from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import count, real
 from beamdyn.common.one_line import listed, spanned, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.statements import GROWING, NO_ANSWER, Statement
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
@@ -192,7 +193,7 @@ def _check_input(scene: Scene, speed: float, modes: int) -> None:
         )
 
 
-def _warn_of_bending(scene: Scene, speed: float) -> Iterator[str]:
+def _warn_of_bending(scene: Scene, speed: float) -> Iterator[Statement]:
     """Yield a warning if rotation bends the beam too far for the model whose frequencies are bounded."""
     speeds = np.array([speed])
     tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
@@ -209,17 +210,19 @@ def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
     return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
 
 
-def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
+def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
     missing, unstable, undecided = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
     if missing.any():
-        yield (
-            f"no lower bound of mode(s) {_list_modes(missing)}: the functions left out could not be bounded, "
-            "even with the largest basis"
-        )
+        why = "the functions left out could not be bounded, even with the largest basis"
+        yield Statement(f"no lower bound of mode(s) {_list_modes(missing)}: {why}", kind=NO_ANSWER)
     if unstable.any():
-        yield f"mode(s) {_list_modes(unstable)} are unstable: see the bounds of the squares"
+        said = f"mode(s) {_list_modes(unstable)} are unstable: see the bounds of the squares"
+        yield Statement(said, kind=GROWING)
     if undecided.any():
-        yield f"mode(s) {_list_modes(undecided)} may be stable or not: the bounds of the squares enclose zero"
+        said = (
+            f"mode(s) {_list_modes(undecided)} may be stable or not: the bounds of the squares enclose zero"
+        )
+        yield Statement(said, kind=GROWING)
 
 
 def _list_modes(mask: np.ndarray) -> str:

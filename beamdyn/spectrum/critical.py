@@ -13,10 +13,11 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
-from beamdyn.common.announced import OUTSIDE, announce
+from beamdyn.common.announced import announce
 from beamdyn.common.checks import within
 from beamdyn.common.one_line import error_at_most
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import INPUT, NO_ANSWER, OUTSIDE, TOLERANCE, Speeds, Statement, kind_of
 from beamdyn.modal.choice import (
     DEFAULT_TARGET,
     TOLERANCES,
@@ -149,7 +150,7 @@ def critical_speed(
     point = critical_point(scene, discretization, tolerance)
     announce(point.warnings)
     for text in point.warnings:
-        if OUTSIDE not in text:
+        if kind_of(text) != OUTSIDE:
             warnings.warn(text, stacklevel=2)
     return point.speed
 
@@ -388,25 +389,25 @@ def _critical_warnings(
     tolerance: float | None,
 ) -> Iterator[str]:
     if discretization == "fem" and found.model.discretization.order is None:
-        yield f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
+        said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
+        yield Statement(said, kind=INPUT, quantity="discretization")
     if np.isinf(found.speed):
         exists = (
             "a critical speed exists" if buckling.exists else "whether there is a critical speed is unknown"
         )
-        yield (
-            f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
-            f"there is certainly none below {none_below:.4g} rad/s"
-        )
+        said = f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
+        yield Statement(said, "there is certainly none below ", Speeds(none_below, digits=4), kind=NO_ANSWER)
     elif tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)
     elif found.error > 1e-6:
-        yield f"the estimated relative error of the critical speed is {found.error:.1g}"
+        said = f"the estimated relative error of the critical speed is {found.error:.1g}"
+        yield Statement(
+            said, kind=TOLERANCE, quantity="estimated relative error", value=found.error, limit=1e-6
+        )
 
 
-def _warn_of_bending(scene: Scene, critical: float) -> Iterator[str]:
+def _warn_of_bending(scene: Scene, critical: float) -> Iterator[Statement]:
     """Yield a warning for a critical speed of a beam that has bent long before."""
     if np.isfinite(critical) and _is_loaded_across(scene):
-        yield (
-            "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
-            f"{critical:.6g} rad/s is {OUTSIDE}"
-        )
+        said = "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
+        yield Statement(said, Speeds(critical), f" is {OUTSIDE}", kind=OUTSIDE)

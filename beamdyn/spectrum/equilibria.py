@@ -13,6 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.checks import InvalidValue, one_of, positive, real, within
 from beamdyn.common.one_line import error_at_most, listed, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.statements import GROWING, Speeds, Statement
 from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, choose_model, solve_to_tolerance
 from beamdyn.modal.continuation import (
     NotConverged,
@@ -182,10 +183,17 @@ def equilibrium(
     )
 
 
-def _describe_unstable(growth: float, speed: float) -> str:
-    return (
-        f"the equilibrium is unstable at {speed:.6g} rad/s: a small motion grows at {growth:.3g} 1/s; "
-        'branch="bent" asks for the stable one beside it'
+def _describe_unstable(growth: float, speed: float) -> Statement:
+    remedy = 'branch="bent" asks for the stable one beside it'
+    return Statement(
+        "the equilibrium is unstable at ",
+        Speeds(speed),
+        f": a small motion grows at {growth:.3g} 1/s; {remedy}",
+        kind=GROWING,
+        quantity="growth rate [1/s]",
+        value=growth,
+        limit=0.0,
+        remedy=remedy,
     )
 
 

@@ -16,6 +16,7 @@ from beamdyn.common.announced import announced
 from beamdyn.common.checks import count, real, within
 from beamdyn.common.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import GROWING, TOLERANCE, Speeds, Statement
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modal.choice import (
     TOLERANCES,
@@ -294,14 +295,22 @@ def warn_of_modes(
     error: np.ndarray,
     growth_rate: np.ndarray,
     tolerance: float | None,
-) -> Iterator[str]:
+) -> Iterator[Statement]:
     """Yield what limits the answer, by errors and growth rates (S, m) at speeds (S,), and static loads."""
     scene = model.scene
     yield from warn_of_left_out(scene)
     unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
-        yield f"unstable at {speeds[s]:.6g} rad/s: {unstable[s].sum()} mode(s) grow; see growth_rate"
+        yield Statement(
+            "unstable at ",
+            Speeds(speeds[s]),
+            f": {unstable[s].sum()} mode(s) grow; see growth_rate",
+            kind=GROWING,
+            quantity="growth rate [1/s]",
+            value=growth_rate[s].max(),
+            limit=0.0,
+        )
     yield from warn_of_strain(strain.max(initial=0))
     if not scene.physics.large_deflection:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
@@ -309,7 +318,9 @@ def warn_of_modes(
     if tolerance is not None:
         yield from warn_of_missed_tolerance(error.max(), tolerance)
     elif error.max() > 1e-6:
-        yield f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
+        said = f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
+        quantity = "estimated relative error"
+        yield Statement(said, kind=TOLERANCE, quantity=quantity, value=error.max(), limit=1e-6)
 
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:

@@ -11,10 +11,11 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, positive
 from beamdyn.common.one_line import error_at_most, listed, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.statements import NO_ANSWER, OUTSIDE, Statement
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modal.choice import (
     DiscretizationChoice,
@@ -213,12 +214,20 @@ def _static_deflection(scene: Scene, phi: float, top_speed: float, model: Model)
     return float(abs(deflection[0]) / scene.beam.length)
 
 
-def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[str]:
+def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[Statement]:
     if np.isnan(first):
-        yield "no first limit: at rest the first frequency changes the same way at every setting angle"
+        said = "no first limit: at rest the first frequency changes the same way at every setting angle"
+        yield Statement(said, kind=NO_ANSWER)
     if np.isnan(second):
-        yield "no second limit: at the top speed the frequency changes the same way at every setting angle"
+        said = "no second limit: at the top speed the frequency changes the same way at every setting angle"
+        yield Statement(said, kind=NO_ANSWER)
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        yield f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}"
+        yield Statement(
+            f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}",
+            kind=OUTSIDE,
+            quantity="static tip deflection over the length",
+            value=deflection,
+            limit=LARGE_DEFLECTION,
+        )

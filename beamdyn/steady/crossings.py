@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn.common.one_line import error_at_most, listed, warned
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import Speeds, Words
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
@@ -144,19 +145,19 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     @property
     def extent(self) -> str:
         """Extent of the search, and crossings left out, as a sentence."""
-        sought = f"Sought to order {self.order} up to {self.speeds[-1]:.6g} rad/s"
+        sought = f"Sought to order {self.order} up to ", Speeds(self.speeds[-1])
         if not self.unlisted:
-            return f"{sought}; there are none of order {self.order + 1}."
+            return Words(*sought, f"; there are none of order {self.order + 1}.")
         crossings = f"{self.unlisted} crossing{'s' * (self.unlisted != 1)} of order {self.order + 1}"
-        weaker = f"{sought}; {crossings}, and those of higher order, are weaker and left out"
+        weaker = *sought, f"; {crossings}, and those of higher order, are weaker and left out"
         if not self.may_peak:
-            return f"{weaker}."
+            return Words(*weaker, ".")
         forced = (
             "it is"
             if self.unlisted == 1
             else f"{self.may_peak} of them {'is' if self.may_peak == 1 else 'are'}"
         )
-        return f"{weaker}: {forced} forced, where the steady response may have a peak."
+        return Words(*weaker, f": {forced} forced, where the steady response may have a peak.")
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""

@@ -13,6 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.announced import announced
 from beamdyn.common.checks import InvalidValue, count, positive
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
 from beamdyn.modal.choice import DiscretizationChoice, choose_model
 from beamdyn.modal.eigensolver import Eigensolver
 from beamdyn.modal.error_estimate import solve_with_error
@@ -208,10 +209,11 @@ def _list_resonances(
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]
 
 
-def _warn_of_replacement(discretization: DiscretizationChoice, model: Model) -> Iterator[str]:
+def _warn_of_replacement(discretization: DiscretizationChoice, model: Model) -> Iterator[Statement]:
     """Say that other functions than finite elements were taken."""
     if discretization == "fem" and model.discretization.order is None:
-        yield f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
+        said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
+        yield Statement(said, kind=INPUT, quantity="discretization")
 
 
 def _warnings(
@@ -221,22 +223,22 @@ def _warnings(
     order: int,
     top: float,
     critical: float,
-) -> Iterator[str]:
+) -> Iterator[Statement]:
     yield from warn_of_left_out(scene)
     if top >= critical:
-        yield f"searched up to the critical speed, {critical:.6g} rad/s"
+        yield Statement("searched up to the critical speed, ", Speeds(critical), kind=GROWING)
     names = ", ".join(dict.fromkeys(line.name for kind in lines for line in kind))
     if not names:
         motion = "has no motion" if scene.motion is None else f"has a {type(scene.motion).__name__}"
-        yield (
-            f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
-            "a RollingWheel with a road, or gravity, excites the beam"
-        )
+        remedy = "a RollingWheel with a road, or gravity, excites the beam"
+        said = f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
+        yield Statement(said, remedy, kind=EXCITATION, remedy=remedy)
     elif not found:
-        yield f"no mode meets a line of order {order} up to {min(top, critical):.6g} rad/s; lines: {names}"
+        begin, end = f"no mode meets a line of order {order} up to ", f"; lines: {names}"
+        yield Statement(begin, Speeds(min(top, critical)), end, kind=NO_ANSWER)
 
 
-def _warn_of_bending(model: Model, crossings: Sequence[Crossing]) -> Iterator[str]:
+def _warn_of_bending(model: Model, crossings: Sequence[Crossing]) -> Iterator[Statement]:
     """Yield a warning if rotation bends a linear beam too far at a speed of resonance."""
     if crossings and not model.scene.physics.large_deflection:
         speeds = np.array(sorted(c.speed for c in crossings))

@@ -17,6 +17,7 @@ from beamdyn.common.checks import ascending, count, positive
 from beamdyn.common.one_line import error_at_most, states, warned
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance, plain
+from beamdyn.common.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
@@ -410,36 +411,48 @@ def _warnings(
     vibration: np.ndarray,
     error: np.ndarray,
     undecided: np.ndarray,
-) -> Iterator[str]:
+) -> Iterator[Statement]:
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
     for name in (UNSTABLE, *WITHOUT_STABLE_MEAN):
         if (at := status == name).any():
-            yield f"{name} at {at.sum()} speed(s), {list_speeds(speeds, at)}: no steady response"
+            where = list_speeds(speeds, at)
+            yield Statement(f"{name} at {at.sum()} speed(s), ", where, ": no steady response", kind=GROWING)
     if (at := vibration == 0).any():
-        yield (
-            f"nothing excites the beam at {list_speeds(speeds, at)}, so that it does not move: "
-            "that takes gravity, or a wavy road and a speed other than 0"
+        remedy = "that takes gravity, or a wavy road and a speed other than 0"
+        said = (
+            "nothing excites the beam at ",
+            list_speeds(speeds, at),
+            f", so that it does not move: {remedy}",
         )
+        yield Statement(*said, kind=EXCITATION, remedy=remedy)
     yield from warn_of_vibration(vibration, scene, speeds)
     motion = check_steady_state(scene.motion)
     yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := error > tolerance).any():
-        yield f"the harmonics are not resolved to {tolerance:g} at {list_speeds(speeds, at)}; see error"
+        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
+        yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
     if undecided.any():
         where = list_speeds(speeds, undecided)
-        yield f"stability is not decided at {where}: growth_rate is within growth_rate_error"
+        end = ": growth_rate is within growth_rate_error"
+        yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")
 
 
-def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[str]:
+def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[Statement]:
     """Yield a warning if the tip vibrates too far [m] for equations linear about the equilibrium."""
     if not scene.physics.large_deflection:
         yield from warn_of_deflection(vibration, scene.beam.length, speeds)
         return
     large = vibration > LARGE_DEFLECTION * scene.beam.length
     if large.any():
-        yield (
-            f"the tip vibrates by {vibration[large].max() / scene.beam.length:.2g} of the length about the "
-            f"equilibrium at {list_speeds(speeds, large)}: past {LARGE_DEFLECTION:g} vibration is not linear"
+        ratio = vibration[large].max() / scene.beam.length
+        yield Statement(
+            f"the tip vibrates by {ratio:.2g} of the length about the equilibrium at ",
+            list_speeds(speeds, large),
+            f": past {LARGE_DEFLECTION:g} vibration is not linear",
+            kind=LIMITS,
+            quantity="tip deflection over the length",
+            value=ratio,
+            limit=LARGE_DEFLECTION,
         )

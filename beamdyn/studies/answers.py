@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.statements import after
+
 REFUSED = "refused"  # status of a design without an answer
 NO_ANSWERS = (
     *(REFUSED, "failed", "not found", "divergence", "flutter"),
@@ -28,7 +30,7 @@ class Caution:
     weight : float
         How bad the worst is.
     said : str
-        What is said of it, after the number of designs.
+        What is said of it, after the number of designs; a statement where programs may ask for its kind.
     """
 
     kind: str
@@ -126,7 +128,7 @@ class AnswerArrays:
         """Yield a sentence for each kind of caution: of how many designs it is, and of the worst."""
         total = self.shape[0] * self.shape[1]
         for kind in sorted(self._cautions):
-            yield f"at {self._counts[kind]} of {total} designs{self._cautions[kind][0][2].said}"
+            yield after(f"at {self._counts[kind]} of {total} designs", self._cautions[kind][0][2].said)
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from beamdyn.common.statements import OUTSIDE, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.mass import moments_about_root
 from beamdyn.modal.many_designs import speeds_of_meeting
@@ -45,7 +46,7 @@ def critical_speeds_of(
     value[found, 0, 0], error[found, 0, 0], status[found] = speed[met], relative[met], BUCKLES
     bent = np.zeros((len(value), 1), dtype=bool)
     bent[found] = (designs.across[found] != 0).any(axis=1)[:, None]
-    said = f": {_BENT}: the answer is outside linear theory"
+    said = Statement(f": {_BENT}: the answer is {OUTSIDE}", kind=OUTSIDE)
     cautions = [*cautions_of_error(error, refinement.tolerance), *caution_where(bent, "f", 0.0, said)]
     if left.size:
         alone = single(left)

@@ -10,6 +10,7 @@ import numpy as np
 
 from beamdyn.common.checks import InvalidValue
 from beamdyn.common.designs import Designs, rows_of
+from beamdyn.common.statements import EXCITATION, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modal.many_designs import speeds_of_meeting
@@ -25,6 +26,7 @@ from beamdyn.studies.refinement import BasisAnswers, Refinement
 from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
+_NOTHING_EXCITES = Statement(" nothing excites the beam", kind=EXCITATION)
 _FEW = Ritz(6)  # in which the lines of a scene are found: they do not depend on the functions
 _PROBED = 16  # designs whose lines are looked for, beside the extremes
 _MOST_EXTREMES = 4  # inputs of which all extremes are looked at
@@ -158,7 +160,7 @@ def crossings_of(
     cautions = (
         *cautions_of_refused(status),
         *cautions_of_error(error, refinement.tolerance),
-        *caution_where((status == NO_LINE).all(axis=2), "g", 0.0, " nothing excites the beam"),
+        *caution_where((status == NO_LINE).all(axis=2), "g", 0.0, _NOTHING_EXCITES),
     )
     speed = np.where(status == RESONATES, speed, np.nan)
     return DesignAnswers(speed, error, status, cautions, f"Ritz, at most {functions} functions, batched")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.statements import GROWING, NO_ANSWER, TOLERANCE, Statement, after
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modal.choice import warn_of_missed_tolerance
 from beamdyn.modal.many_designs import PencilStack, solve_many
@@ -105,29 +106,31 @@ def _cautions_of_theory(
 ) -> Iterator[Caution]:
     """Yield where linear theory ends, as `natural_modes` warns of it."""
     unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
-    yield from caution_where(unstable, "a", 0.0, ": the beam diverges; see status")
+    diverges = Statement(": the beam diverges; see status", kind=GROWING)
+    yield from caution_where(unstable, "a", 0.0, diverges)
     strain = designs.strains(speeds)
     large, bent = strain > LARGE_STRAIN, deflection > LARGE_DEFLECTION
     if large.any():
-        yield from caution_where(large, "b", strain, f": {next(warn_of_strain(float(np.nanmax(strain))))}")
+        said = after(": ", next(warn_of_strain(float(np.nanmax(strain)))))
+        yield from caution_where(large, "b", strain, said)
     if bent.any():
         at = np.unravel_index(np.nanargmax(deflection), bent.shape)
         said = next(warn_of_static_deflection(deflection[at][None], 1.0, speeds[at][None]))
-        yield from caution_where(bent, "c", deflection, f": {said}")
+        yield from caution_where(bent, "c", deflection, after(": ", said))
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
     """A caution of designs whose answers (R, S, k) rounding leaves unsolved, if there are any."""
-    said = " there is no answer: rounding of the matrices leaves none"
+    said = Statement(" there is no answer: rounding of the matrices leaves none", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
 
 
 def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
     """Yield a caution of errors (R, S, k) past a tolerance, or past what is promised without one."""
     worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
-    said = f" the estimated relative error is above {limit:g}: see error"
+    said: str = Statement(f" the estimated relative error is above {limit:g}: see error", kind=TOLERANCE)
     if tolerance is not None and worst.max() > tolerance:
-        said = f": {next(warn_of_missed_tolerance(float(worst.max()), tolerance))}"
+        said = after(": ", next(warn_of_missed_tolerance(float(worst.max()), tolerance)))
     yield from caution_where(worst > limit, "e", worst, said)
 
 

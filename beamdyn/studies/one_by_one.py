@@ -14,6 +14,16 @@ import numpy as np
 from beamdyn.common.announced import unannounced
 from beamdyn.common.designs import rows_of
 from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.statements import (
+    NO_ANSWER,
+    OUTSIDE,
+    InputValue,
+    Speeds,
+    Statement,
+    Words,
+    joined,
+    kind_of,
+)
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
@@ -99,8 +109,11 @@ def _caution(
     """Yield of how many answers something holds, and why of the first."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
-        at = ", ".join(f"{name} = {v:.6g} {unit_of(name)}".rstrip() for name, v in designs[first].items())
-        yield Caution(words, sum(counts), 0.0, f" {words}{at and '; at ' + at}: {'; '.join(reasons[first])}")
+        at = joined(", ", (InputValue(name, v, unit_of(name) or "") for name, v in designs[first].items()))
+        said = f" {words}", *(("; at ", at) if at else ()), ": ", joined("; ", reasons[first])
+        kinds = {*map(kind_of, reasons[first])} - {""}
+        kind = OUTSIDE if OUTSIDE in kinds else min(kinds, default=NO_ANSWER)
+        yield Caution(words, sum(counts), 0.0, Statement(*said, kind=kind))
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
@@ -206,7 +219,11 @@ def _read_crossings(asked: _Asked, found: Crossings) -> SpeedAnswer:
         if crossing is not None:
             value[0, i], error[0, i], status[0, i] = crossing.speed, crossing.error, RESONATES
     more = [
-        f"there is also one at {c.speed:.6g} rad/s: {label_crossing(c.line, c.kind, c.mode, c.second_mode)}"
+        Words(
+            "there is also one at ",
+            Speeds(c.speed),
+            f": {label_crossing(c.line, c.kind, c.mode, c.second_mode)}",
+        )
         for c in lowest.values()
     ]
     return SpeedAnswer(value, error, status, (*found.warnings, *more))

@@ -12,6 +12,7 @@ import numpy as np
 from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import InputValue, Statement, Words, joined
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JUDGED = 8  # designs at which the model error is computed, beside the extremes
+_DIGITS = 4  # of the inputs of a design in words
 _MOST_AXES = 3  # inputs of which all extremes are combined
 
 
@@ -156,7 +158,7 @@ class Study(StatesModelError):
     def _numbers(self) -> int:
         return len(self.labels) or 1
 
-    def model_warnings(self, tolerance: float | None = None) -> list[str]:
+    def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
         """Warnings of a model error past a tolerance, or 1 %, with the design where it is largest."""
         return [*self.left_out_effects.warnings(tolerance, self.left_out_where, self._where_unknown)]
 
@@ -176,11 +178,12 @@ class Study(StatesModelError):
         if not unknown.size:
             return ""
         more = f", and at {len(unknown) - 1} more of the {len(refused)} designs judged,"
-        return f"{self._say_place(int(unknown[0]))}{more if len(unknown) > 1 else ''}"
+        return Words(self._say_place(int(unknown[0])), more if len(unknown) > 1 else "")
 
-    def _say_place(self, i: int) -> str:
+    def _say_place(self, i: int) -> Words:
         design = self.design(*self.left_out_places[i])
-        return "at " + ", ".join(_at(each, design[each.name]) for each in self.inputs)
+        each = (InputValue(one.name, design[one.name], one.unit, _DIGITS) for one in self.inputs)
+        return Words("at ", joined(", ", each))
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
@@ -230,4 +233,4 @@ class Study(StatesModelError):
 
 
 def _at(given: VariedInput, value: float) -> str:
-    return f"{given.name} = {value:.4g} {given.unit}".rstrip()
+    return InputValue(given.name, value, given.unit, _DIGITS)

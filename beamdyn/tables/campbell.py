@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns, columns_of_rows
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.equations.directions import first_drawn
@@ -138,29 +138,34 @@ def _name_below(result: Campbell, label: str, speed: float, high: float) -> str:
     return result.names[i][near[distance[near].argmin()]] if near.size else "-"
 
 
-def campbell_csv(result: Campbell) -> Iterator[Sequence[object]]:
-    """Natural frequencies of all scenes over speed, one row a speed, then the crossings, one row each."""
+def campbell_csv(result: Campbell) -> Columns:
+    """Natural frequencies of all scenes over speed, one row a speed."""
     names = [
         f"{label}: {name}" if label else name
         for label, modes in zip(result.labels, result.names, strict=True)
         for name in modes
     ]
-    heads = [f"{name} [Hz]" for name in names], [f"{name}, confidence" for name in names]
-    yield "speed_rad_per_s", "speed_rpm", *heads[0], *heads[1]
     speeds = result.loci[0].speeds
     frequency = np.concatenate([locus.frequency for locus in result.loci], axis=1)
     confidence = np.concatenate([locus.confidence for locus in result.loci], axis=1)
-    for speed, *row in zip(speeds.tolist(), frequency.tolist(), confidence.tolist(), strict=True):
-        yield speed, speed * _RPM, *row[0], *row[1]
+    return Columns(
+        Column("speed", speeds, "rad/s"),
+        Column("speed", speeds * _RPM, "rpm"),
+        *(Column(f"{name} [Hz]", each) for name, each in zip(names, frequency.T, strict=True)),
+        *(Column(f"{name}, confidence", each) for name, each in zip(names, confidence.T, strict=True)),
+    )
 
 
-def crossings_of_lines_csv(result: Campbell) -> Iterator[Sequence[object]]:
+def crossings_of_lines_csv(result: Campbell) -> Columns:
     """Crossings, one row each."""
-    yield (
-        "scene", "line", "multiple", "mode", "name", "speed_rad_per_s", "speed_rpm", "frequency_Hz",
-        "relative_error", "tracking_confidence", "share_bending", "share_across", "operating",
+    rows = (
+        (c.label, c.line.name, c.line.multiple, c.mode, c.name, c.speed, c.speed * _RPM, c.frequency,
+         c.error, c.confidence, *c.plane_share, c.operating)
+        for c in result.crossings
     )  # fmt: skip
-    for c in result.crossings:
-        rpm = c.speed * _RPM
-        row = c.label, c.line.name, c.line.multiple, c.mode, c.name, c.speed, rpm, c.frequency
-        yield *row, c.error, c.confidence, *c.plane_share, c.operating
+    heads = (
+        "scene", "line", "multiple", "mode", "name", ("speed", "rad/s"), ("speed", "rpm"),
+        ("frequency", "Hz"), "relative_error", "tracking_confidence", "share_bending", "share_across",
+        "operating",
+    )  # fmt: skip
+    return columns_of_rows(heads, rows)

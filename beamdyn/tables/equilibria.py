@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 
+from beamdyn.common.columns import Columns, columns_of_rows
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 
@@ -32,10 +32,11 @@ def equilibrium_table(result: Equilibrium) -> Group:
     return table(title, ("", f"[{unit.name}]", "over the length"), rows, (0,))
 
 
-def equilibrium_csv(result: Equilibrium) -> Iterator[Sequence[object]]:
+def equilibrium_csv(result: Equilibrium) -> Columns:
     """Position of the tip, stability and growth rate."""
-    yield "speed_rad_per_s", "branch", *(f"tip_{axis}_m" for axis in _AXES), "stable", "growth_rate_per_s"
-    yield result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
+    heads = ("speed", "rad/s"), "branch", *((f"tip_{axis}", "m") for axis in _AXES)
+    row = result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
+    return columns_of_rows((*heads, "stable", ("growth_rate", "1/s")), [row])
 
 
 def branches_table(result: EquilibriumBranches) -> Group:
@@ -60,9 +61,12 @@ def _range(speeds: np.ndarray) -> str:
     return f"{speeds.min():.6g} to {speeds.max():.6g}"
 
 
-def branches_csv(result: EquilibriumBranches) -> Iterator[Sequence[object]]:
+def branches_csv(result: EquilibriumBranches) -> Columns:
     """Speed, position of the tip and stability along each branch."""
-    yield "branch", "speed_rad_per_s", *(f"tip_{axis}_m" for axis in _AXES), "stable"
-    for branch in result.branches:
-        for speed, tip, stable in zip(branch.speeds, branch.tip, branch.stable, strict=True):
-            yield branch.name, float(speed), *tip.tolist(), bool(stable)
+    rows = (
+        (branch.name, float(speed), *tip.tolist(), bool(stable))
+        for branch in result.branches
+        for speed, tip, stable in zip(branch.speeds, branch.tip, branch.stable, strict=True)
+    )
+    heads = "branch", ("speed", "rad/s"), *((f"tip_{axis}", "m") for axis in _AXES), "stable"
+    return columns_of_rows(heads, rows)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
 from math import isfinite
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns, columns_of_rows
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 from beamdyn.common.one_line import rounded_up
@@ -19,7 +18,6 @@ from beamdyn.linear_models.random_response import RandomResponse
 from beamdyn.linear_models.resonance_peaks import ResonancePeaks
 
 _MOST_PEAKS = 8  # of a table
-_LETTERS = re.compile(r"([A-Za-z]+)(\d?)")  # of a unit: a factor with its power
 _NO_WIDTH = "-"  # in place of a width that a peak does not have
 _DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
 
@@ -58,16 +56,16 @@ def _width(peaks: ResonancePeaks, k: int) -> str:
     return _NO_WIDTH if np.isnan(width) else supported(width, error, _DIGITS_OF_WIDTH)
 
 
-def response_csv(result: FrequencyResponse) -> Iterator[Sequence[object]]:
+def response_csv(result: FrequencyResponse) -> Columns:
     """Real and imaginary part, and error, of each harmonic, a row a frequency."""
-    numbers = [f"_{h:+d}" if h else "" for h in result.harmonics.tolist()]
-    unit = _in_head(result.unit)
-    columns = "answer_Hz", f"real{unit}", f"imaginary{unit}", f"error{unit}"
-    names = [f"{name}{n}" for n in numbers for name in columns]
-    yield "frequency_Hz", *names
-    each = [result.response_frequencies, np.real(result.response), np.imag(result.response), result.error]
-    for frequency, row in zip(result.frequencies.tolist(), np.stack(each, axis=-1), strict=True):
-        yield frequency, *row.ravel().tolist()
+    parts = np.real(result.response), np.imag(result.response), result.error
+    each = [Column("frequency", result.frequencies, "Hz")]
+    for k, harmonic in enumerate(result.harmonics.tolist()):
+        number = f"{harmonic:+d}" if harmonic else ""
+        each.append(Column("answer", result.response_frequencies[:, k], "Hz", number))
+        named = zip(("real", "imaginary", "error"), parts, strict=True)
+        each += (Column(name, part[:, k], result.unit, number) for name, part in named)
+    return Columns(*each)
 
 
 def random_table(result: RandomResponse) -> Group:
@@ -90,18 +88,24 @@ def random_table(result: RandomResponse) -> Group:
     return Group(table(title, ("quantity", "value"), rows, (0,)), Text(note))
 
 
-def random_csv(result: RandomResponse) -> Iterator[Sequence[object]]:
+def random_csv(result: RandomResponse) -> Columns:
     """Density of the response and its error, a row a frequency."""
-    squared = _in_head(_LETTERS.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", result.unit))
-    yield "frequency_Hz", f"psd{squared}_per_Hz", f"psd_error{squared}_per_Hz"
-    columns = result.frequencies, result.psd, result.psd_error
-    yield from zip(*(column.tolist() for column in columns), strict=True)
+    unit = f"{squared(result.unit)} per Hz"
+    return Columns(
+        Column("frequency", result.frequencies, "Hz"),
+        Column("psd", result.psd, unit),
+        Column("psd_error", result.psd_error, unit),
+    )
 
 
-def _in_head(unit: str) -> str:
-    """A unit at the end of a column's head, such as _m_per_N; none of a pure number."""
-    words = unit.removeprefix("1 ").replace("/", " per ").split()
-    return "".join(f"_{word}" for word in words)
+def squared(unit: str) -> str:
+    """The square of a unit of the project, a product of names with powers: "m2/s4" of "m/s2"."""
+    return "/".join(" ".join(map(_square, part.split())) for part in unit.split("/"))
+
+
+def _square(factor: str) -> str:
+    name = factor.rstrip("0123456789")
+    return factor if not name else f"{name}{2 * int(factor[len(name) :] or 1)}"
 
 
 _MATRICES = (
@@ -133,12 +137,13 @@ def matrices_table(result: Matrices) -> Group:
     return Group(table(title, heads, rows, (1,)), Text(inputs))
 
 
-def matrices_csv(result: Matrices) -> Iterator[Sequence[object]]:
+def matrices_csv(result: Matrices) -> Columns:
     """Every entry of every matrix, a row an entry; rows and columns count from 1."""
-    yield "matrix", "row", "column", "value"
-    for name in _MATRICES:
-        for (row, column), value in np.ndenumerate(getattr(result, name)):
-            yield name, row + 1, column + 1, float(value)
-    for name in ("static_load", "error"):
-        for row, value in enumerate(getattr(result, name).tolist(), 1):
-            yield name, row, 1, value
+    parts = {name: getattr(result, name) for name in _MATRICES}
+    parts |= {name: getattr(result, name)[:, None] for name in ("static_load", "error")}
+    rows = (
+        (name, row + 1, column + 1, float(value))
+        for name, matrix in parts.items()
+        for (row, column), value in np.ndenumerate(matrix)
+    )
+    return columns_of_rows(("matrix", "row", "column", "value"), rows)

@@ -9,10 +9,12 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
+from beamdyn.common.statements import said_in
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.loads.span_loads import REMEDIES
+from beamdyn.loads.span_loads import REMEDIES, UNITS
 
 if TYPE_CHECKING:
     from beamdyn.common.display_units import ShownUnit
@@ -128,9 +130,11 @@ def _say_what_strains_need(known: Sequence[str]) -> list[Text]:
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
     scale, unit = _SCALES[found.quantity]
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    case = f"{found.case:.6g} {result.case.partition('[')[2].rstrip(']')}"
+    name, unit_of_case = result.case
+    case = f"{found.case:.6g} {unit_of_case}"
+    if name == "speed":
+        case = result.display_units.speed_unit().say(found.case)
     what, place = _say_component(result, found), _length_unit(result).say(found.x)
-    case = result.display_units.in_sentence(case)
     return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {case}."
 
 
@@ -146,6 +150,7 @@ def _say_component(result: SpanLoads, found: LargestLoad) -> str:
 
 def random_loads_table(result: RandomLoads) -> Group:
     """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
+    units = result.display_units
     columns = {f"position\n[{_length_unit(result).name}]": _positions(result)}
     for name in ("moment", "strain", "stress"):
         scale, unit = _SCALES[name]
@@ -159,9 +164,8 @@ def random_loads_table(result: RandomLoads) -> Group:
             ]
     title = (
         f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
-        f"at {result.speed:.6g} rad/s, by {result.provenance.method}"
+        f"at {units.speed_unit().say(result.speed)}, by {said_in(units, result.provenance.method)}"
     )
-    title = result.display_units.in_sentence(title)  # the speeds of the modes, too
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
     lines = [Text(_say_expected(result, result.largest(name))) for name in reversed(known)]
     lines += _say_what_strains_need(known)
@@ -237,31 +241,36 @@ def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
 
 # CSV ----------------------------------------------------------------------------------------------
 
-CSV_UNITS = {"force": "_N", "moment": "_N_m", "curvature": "_per_m", "strain": "", "stress": "_Pa"}
 
-
-def loads_csv(result: SpanLoads) -> Iterator[Sequence[object]]:
+def loads_csv(result: SpanLoads) -> Columns:
     """A row a case and station: the place, all loads, strains and stresses, and their errors."""
-    heads = [head for name in CSV_UNITS for head in _csv_heads(result, name)]
-    first = result.case.replace(" [", "_").rstrip("]").replace("/", "_per_")
-    yield first, "position_m", "side", *heads, *(f"error_of_{head}" for head in heads)
-    values = np.concatenate([result.values(name) for name in CSV_UNITS], axis=-1)
-    errors = np.concatenate([result.error_of(name) for name in CSV_UNITS], axis=-1)
+    values = np.concatenate([result.values(name) for name in UNITS], axis=-1)
+    errors = np.concatenate([result.error_of(name) for name in UNITS], axis=-1)
+    cases, stations, _ = values.shape
     errors = np.broadcast_to(errors, values.shape)
-    for case, of_case, error in zip(result.cases.tolist(), values, errors, strict=True):
-        for place, row, more in zip(_csv_places(result), of_case.tolist(), error.tolist(), strict=True):
-            yield case, *place, *row, *more
+    return Columns(
+        Column(result.case[0], np.repeat(result.cases, stations), result.case[1]),
+        *_places(result, cases),
+        *_of_components(result, "", values.reshape(cases * stations, -1)),
+        *_of_components(result, "error_of_", errors.reshape(cases * stations, -1)),
+    )
 
 
-def _csv_places(result: SpanLoads) -> list[tuple[float, str]]:
-    """Position and side of each station."""
-    sides = ["inboard" if inboard else "outboard" for inboard in result.inboard]
-    return [*zip(result.x.tolist(), sides, strict=True)]
+def _places(result: SpanLoads, times: int = 1) -> tuple[Column, Column]:
+    """Position and side of each station, some times over."""
+    sides = np.where(result.inboard, "inboard", "outboard")
+    return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
 
 
-def random_loads_csv(result: RandomLoads) -> Iterator[Sequence[object]]:
+def _of_components(result: SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
+    """A column for each component of all quantities, from values (rows, components)."""
+    named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
+    for (name, unit), column in zip(named, values.T, strict=True):
+        yield Column(f"{part}{name}", column, unit)
+
+
+def random_loads_csv(result: RandomLoads) -> Columns:
     """A row a station: the place, and of each component the largest expected and what it is made of."""
-    heads = [head for name in CSV_UNITS for head in _csv_heads(result, name)]
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],
@@ -271,19 +280,18 @@ def random_loads_csv(result: RandomLoads) -> Iterator[Sequence[object]]:
         "gravity": result.gravity,
         "crossings_per_s": result.crossings,
     }
-    yield "position_m", "side", *(f"{part}_{head}" for part in parts for head in heads)
-    values = [np.concatenate([of(name) for name in CSV_UNITS], axis=-1) for of in parts.values()]
-    for place, row in zip(_csv_places(result), np.concatenate(values, axis=-1).tolist(), strict=True):
-        yield *place, *row
+    values = {part: np.concatenate([of(name) for name in UNITS], axis=-1) for part, of in parts.items()}
+    each = (column for part in parts for column in _of_components(result, f"{part}_", values[part]))
+    return Columns(*_places(result), *each)
 
 
-def _csv_heads(result: SpanLoads, quantity: str) -> list[str]:
-    unit = CSV_UNITS[quantity]
+def _components(result: SpanLoads, quantity: str) -> list[str]:
+    """Names of the components of a quantity in files."""
     if quantity in ("strain", "stress"):
-        return [f"{quantity}_{k + 1}{unit}" for k in range(result.points.shape[1])]
+        return [f"{quantity}_{k + 1}" for k in range(result.points.shape[1])]
     both = result.scene.physics.planes == 2
     words = ("_first", "_second") if quantity == "curvature" else ("_bending", "_across")
     ends = words if both else ("",)
     if quantity == "force":
-        return [f"axial_force{unit}", *(f"shear_force{end}{unit}" for end in ends)]
-    return [f"{quantity}{end}{unit}" for end in ends]
+        return ["axial_force", *(f"shear_force{end}" for end in ends)]
+    return [f"{quantity}{end}" for end in ends]

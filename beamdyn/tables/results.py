@@ -10,10 +10,10 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.announced import OUTSIDE
 from beamdyn.common.digits import supported, supported_or_range
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.common.statements import OUTSIDE, of_kind, said_in
 from beamdyn.equations.directions import (
     first_drawn,
     modelled_directions,
@@ -72,7 +72,7 @@ def modes_table(result: Modes) -> Group:
 
 def _model_line(result: Result, sentence: str) -> Text:
     """The line on the model below a table."""
-    return Text(as_in_files(result.display_units.in_sentence(sentence)))
+    return Text(as_in_files(said_in(result.display_units, sentence)))
 
 
 def _speed_unit(result: Result) -> ShownUnit:
@@ -245,7 +245,7 @@ def _describe_critical(result: CriticalPoint) -> Text:
         speed = unit.of(result.speed)
         value = supported_or_range(speed, result.error * speed, _CRITICAL_DIGITS)
         shown = set_apart(value, float(result.model_error) * speed)
-        straight = any(OUTSIDE in warning for warning in result.warnings)
+        straight = of_kind(result.warnings, OUTSIDE)
         which = "a straight beam would buckle" if straight else "the beam buckles"
         return Text.assemble("critical speed: ", shown, f" {unit.name}; above it {which}: {result.reason}")
     if math.isinf(result.none_below):
@@ -344,7 +344,7 @@ def crossings_table(result: Crossings) -> Group:
         for c, beyond in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False)
     ]
     number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
-    title = f"{number}, by {result.provenance.method}. {result.display_units.in_sentence(result.extent)}"
+    title = f"{number}, by {result.provenance.method}. {said_in(result.display_units, result.extent)}"
     plane = [f"{', '.join(words)} [%]"] if (words := words_of_directions(result.scene)) else []
     heads = (_speed_head(result), "line", "mode", *plane, "frequency [Hz]", "kind")
     shown = table(title, heads, rows, (1, len(heads) - 1))

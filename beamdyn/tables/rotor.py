@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 
+from beamdyn.common.columns import Columns, columns_of_rows
 from beamdyn.common.edge.tables import table
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def rotor_table(result: RotorDrawing) -> Group:
     return table("Rotor as drawn: undeformed, turned by 180 deg", ("", "value", "unit"), rows, (0, 2))
 
 
-def rotor_csv(result: RotorDrawing) -> Iterator[Sequence[object]]:
+def rotor_csv(result: RotorDrawing) -> Columns:
     """Edge of the beam as drawn, in the plane of rotation, and how much its depth is drawn larger."""
-    yield "x_m", "y_m", "depth_magnification"
-    yield from ((x, y, result.magnification) for x, y in result.outline.tolist())
+    rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
+    return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.columns import Column, Columns, columns_of_rows
 from beamdyn.tables.results import largest_by_direction, model_error_at
 
 if TYPE_CHECKING:
@@ -34,76 +34,96 @@ def _directions_of_csv(scene: Scene) -> tuple[str, ...]:
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 
-def modes_csv(result: Modes) -> Iterator[Sequence[object]]:
+def modes_csv(result: Modes) -> Columns:
     """Frequency, errors, growth rate and status of each mode; of two planes the share of each."""
-    names, shares = _share_columns(result)
-    errors = "relative_error", "model_error"
-    yield "mode", "speed_rad_per_s", "frequency_Hz", *errors, "growth_rate_per_s", "status", *names
-    error = result.error, result.model_error
-    columns = result.frequency, *error, result.growth_rate, result.status, *shares
-    for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
-        yield mode, result.speed, *row
+    count = len(result.frequency)
+    return Columns(
+        Column("mode", np.arange(1, count + 1)),
+        Column("speed", [result.speed] * count, "rad/s"),
+        Column("frequency", result.frequency, "Hz"),
+        Column("relative_error", result.error),
+        Column("model_error", result.model_error),
+        Column("growth_rate", result.growth_rate, "1/s"),
+        Column("status", result.status),
+        *(Column(name, share) for name, share in _shares(result).items()),
+    )
 
 
-def _share_columns(result: Modes | Locus) -> tuple[list[str], list[np.ndarray]]:
-    """Names and values of the shares of the two directions of bending; none where one plane is modelled."""
-    names = [f"share_{direction}" for direction in _directions_of_csv(result.scene)]
-    return names, [result.plane_share[..., direction] for direction in range(len(names))]
+def _shares(result: Modes | Locus) -> dict[str, np.ndarray]:
+    """Shares of the two directions of bending by name; none where one plane is modelled."""
+    each = enumerate(_directions_of_csv(result.scene))
+    return {f"share_{direction}": result.plane_share[..., k] for k, direction in each}
 
 
-def locus_csv(result: Locus) -> Iterator[Sequence[object]]:
+def locus_csv(result: Locus) -> Columns:
     """Frequency, errors, growth rate, status, confidence, shares of planes of each mode, a row a speed."""
-    names = ("frequency_Hz", "relative_error", "model_error", "growth_rate_per_s", "status", "confidence")
-    errors = result.error, model_error_at(result, np.arange(len(result.speeds)))
-    columns = [result.frequency, *errors, result.growth_rate, result.status, result.confidence]
-    further, shares = _share_columns(result)
-    names, columns = (*names, *further), [*columns, *shares]
-    numbers = range(1, result.frequency.shape[1] + 1)
-    yield "speed_rad_per_s", *(f"{name}_{mode}" for name in names for mode in numbers)
-    for speed, *rows in zip(result.speeds.tolist(), *(column.tolist() for column in columns), strict=True):
-        yield speed, *(value for row in rows for value in row)
+    of_modes = {
+        ("frequency", "Hz"): result.frequency,
+        ("relative_error", ""): result.error,
+        ("model_error", ""): model_error_at(result, np.arange(len(result.speeds))),
+        ("growth_rate", "1/s"): result.growth_rate,
+        ("status", ""): result.status,
+        ("confidence", ""): result.confidence,
+        **{(name, ""): share for name, share in _shares(result).items()},
+    }
+    each = (
+        Column(name, values, unit, mode)
+        for (name, unit), of_all in of_modes.items()
+        for mode, values in enumerate(of_all.T, 1)
+    )
+    return Columns(Column("speed", result.speeds, "rad/s"), *each)
 
 
-def transient_csv(run: Transient) -> Iterator[Sequence[object]]:
+def transient_csv(run: Transient) -> Columns:
     """Tip deflection over time, in both directions where two are modelled, and the largest's model error."""
-    names = [f"tip_deflection_{direction}_m" for direction in _directions_of_csv(run.scene)]
-    yield "time_s", *(names or ["tip_deflection_m"]), "model_error_of_largest"
+    names = [f"tip_deflection_{direction}" for direction in _directions_of_csv(run.scene)]
+    tips = zip(names or ["tip_deflection"], (run.tip, run.tip_across), strict=False)
     error = np.full(len(run.t), float(f"{float(run.model_error):.2g}"))
-    columns = run.t, *(run.tip, run.tip_across)[: run.scene.physics.planes], error
-    yield from zip(*(column.tolist() for column in columns), strict=True)
+    return Columns(
+        Column("time", run.t, "s"),
+        *(Column(name, tip, "m") for name, tip in tips),
+        Column("model_error_of_largest", error),
+    )
 
 
-def sweep_csv(result: Sweep) -> Iterator[Sequence[object]]:
+def sweep_csv(result: Sweep) -> Columns:
     """Largest deflection, where two directions are modelled also in each, and its errors."""
-    names = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
-    yield "speed_rad_per_s", "largest_deflection_m", *names, "time_error_m", "mode_error_m", _WHERE_COMPUTED
-    each = result.peaks_by_direction.T if names else ()
-    errors = result.time_error, result.peak_error - result.time_error, _model_error_of(result)
-    columns = result.speeds, result.peaks, *each, *errors
-    yield from zip(*(column.tolist() for column in columns), strict=True)
+    each = zip(_directions_of_csv(result.scene), result.peaks_by_direction.T, strict=False)
+    return Columns(
+        Column("speed", result.speeds, "rad/s"),
+        Column("largest_deflection", result.peaks, "m"),
+        *(Column(f"largest_{direction}", peaks, "m") for direction, peaks in each),
+        Column("time_error", result.time_error, "m"),
+        Column("mode_error", result.peak_error - result.time_error, "m"),
+        Column(_WHERE_COMPUTED, _model_error_of(result)),
+    )
 
 
-def crossings_csv(result: Crossings) -> Iterator[Sequence[object]]:
+def crossings_csv(result: Crossings) -> Columns:
     """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
-    first = "speed_rad_per_s", "relative_error", "model_error", "frequency_Hz"
     directions = _directions_of_csv(result.scene)
     shares = [f"{mode}share_{direction}" for mode in ("", "second_") for direction in directions]
-    yield *first, "line", "multiple", "mode", "second_mode", "kind", *shares
+    rows = []
     for c, model_error in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False):
         second = "" if c.second_mode is None else c.second_mode
         values = *c.plane_share, *(c.second_plane_share or ("", ""))
         row = c.speed, c.error, model_error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
-        yield *row, *values[: len(shares)]
+        rows.append((*row, *values[: len(shares)]))
+    first = ("speed", "rad/s"), "relative_error", "model_error", ("frequency", "Hz")
+    return columns_of_rows((*first, "line", "multiple", "mode", "second_mode", "kind", *shares), rows)
 
 
-def steady_csv(result: SteadyResponse) -> Iterator[Sequence[object]]:
+def steady_csv(result: SteadyResponse) -> Columns:
     """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
-    growth = "growth_rate_per_s", "growth_rate_error_per_s"
-    by_direction = largest_by_direction(result)
-    largest = [f"largest_{direction}_m" for direction in _directions_of_csv(result.scene)]
-    heads = "amplitude_m", *largest, "sum_of_lines_m"
-    yield "speed_rad_per_s", *heads, "relative_error", _WHERE_COMPUTED, *growth, "status"
-    errors = result.error, _model_error_of(result)
-    sizes = result.speeds, result.amplitude, *by_direction, result.bound, *errors
-    columns = *sizes, result.growth_rate, result.growth_rate_error, result.status
-    yield from zip(*(column.tolist() for column in columns), strict=True)
+    each = zip(_directions_of_csv(result.scene), largest_by_direction(result), strict=True)
+    return Columns(
+        Column("speed", result.speeds, "rad/s"),
+        Column("amplitude", result.amplitude, "m"),
+        *(Column(f"largest_{direction}", size, "m") for direction, size in each),
+        Column("sum_of_lines", result.bound, "m"),
+        Column("relative_error", result.error),
+        Column(_WHERE_COMPUTED, _model_error_of(result)),
+        Column("growth_rate", result.growth_rate, "1/s"),
+        Column("growth_rate_error", result.growth_rate_error, "1/s"),
+        Column("status", result.status),
+    )

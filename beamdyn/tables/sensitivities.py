@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Columns, columns_of_rows
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.tables import table
 from beamdyn.sensitivities.result import Sensitivities
@@ -45,10 +46,12 @@ def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
     return [supported(value, error, _DIGITS) for value, error in zip(values, errors, strict=True)]
 
 
-def sensitivities_csv(result: Sensitivities) -> Iterator[Sequence[object]]:
+def sensitivities_csv(result: Sensitivities) -> Columns:
     """A row for each number and answer: values in SI, derivative, its error, relative change."""
-    yield "input", "unit", "value", "answer", "answer_value", "derivative", "error", "relative"
+    rows = []
     for k, each in enumerate(result.inputs):
         columns = (result.answers, result.value, result.derivative[k], result.error[k], result.relative[k])
         for answer, *numbers in zip(*columns, strict=True):
-            yield each.name, each.unit, each.value, answer, *map(float, numbers)
+            rows.append((each.name, each.unit, each.value, answer, *map(float, numbers)))
+    heads = "input", "unit", "value", "answer", "answer_value", "derivative", "error", "relative"
+    return columns_of_rows(heads, rows)

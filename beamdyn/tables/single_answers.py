@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns, columns_of_rows
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
-from beamdyn.tables.loads import CSV_UNITS
+from beamdyn.loads.span_loads import UNITS
 
 if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from beamdyn.spectrum.setting_angles import SettingAngleLimits
 
 
-def critical_csv(result: CriticalPoint) -> Iterator[Sequence[object]]:
+def critical_csv(result: CriticalPoint) -> Columns:
     """Critical speed, its error, and the speed below which there is none."""
-    yield "speed_rad_per_s", "relative_error", "none_below_rad_per_s", "reason"
-    yield result.speed, result.error, result.none_below, result.reason
+    heads = ("speed", "rad/s"), "relative_error", ("none_below", "rad/s"), "reason"
+    return columns_of_rows(heads, [(result.speed, result.error, result.none_below, result.reason)])
 
 
-def limits_csv(result: SettingAngleLimits) -> Iterator[Sequence[object]]:
+def limits_csv(result: SettingAngleLimits) -> Columns:
     """Both limits with their error and the top speed of the second."""
-    yield "limit", "angle_rad", "error_rad", "top_speed_rad_per_s"
-    for name, angle in zip(("first", "second"), result, strict=True):
-        yield name, angle, result.error, result.top_speed
+    names = zip(("first", "second"), result, strict=True)
+    rows = ((name, angle, result.error, result.top_speed) for name, angle in names)
+    return columns_of_rows(("limit", ("angle", "rad"), ("error", "rad"), ("top_speed", "rad/s")), rows)
 
 
 def bounds_table(result: FrequencyBounds) -> Group:
@@ -48,12 +48,15 @@ def bounds_table(result: FrequencyBounds) -> Group:
     return Group(table(title, heads, rows, ()), Text(f"{result.how[:1].upper()}{result.how[1:]}."))
 
 
-def bounds_csv(result: FrequencyBounds) -> Iterator[Sequence[object]]:
+def bounds_csv(result: FrequencyBounds) -> Columns:
     """Bounds of each frequency, one row a mode."""
-    yield "mode", "speed_rad_per_s", "lower_Hz", "upper_Hz", "relative_width"
-    columns = result.lower, result.upper, result.width
-    for mode, row in enumerate(zip(*(column.tolist() for column in columns), strict=True), 1):
-        yield mode, result.speed, *row
+    return Columns(
+        Column("mode", range(1, len(result.lower) + 1)),
+        Column("speed", [result.speed] * len(result.lower), "rad/s"),
+        Column("lower", result.lower, "Hz"),
+        Column("upper", result.upper, "Hz"),
+        Column("relative_width", result.width),
+    )
 
 
 def backbone_table(result: Backbone) -> Group:
@@ -70,10 +73,11 @@ def backbone_table(result: Backbone) -> Group:
     return Group(table(title, ("", ""), rows, (0,)), Text(note))
 
 
-def backbone_csv(result: Backbone) -> Iterator[Sequence[object]]:
+def backbone_csv(result: Backbone) -> Columns:
     """Frequency of small vibration and coefficient, with its error."""
-    yield "speed_rad_per_s", "mode", "frequency_Hz", "coefficient", "error"
-    yield result.speed, result.mode, result.frequency, result.coefficient, result.error
+    heads = ("speed", "rad/s"), "mode", ("frequency", "Hz"), "coefficient", "error"
+    row = result.speed, result.mode, result.frequency, result.coefficient, result.error
+    return columns_of_rows(heads, [row])
 
 
 def terms_table(result: Terms) -> Group:
@@ -84,17 +88,19 @@ def terms_table(result: Terms) -> Group:
     return Group(shown, *map(Text, (result.excited(), *left_out)))
 
 
-def terms_csv(result: Terms) -> Iterator[Sequence[object]]:
+def terms_csv(result: Terms) -> Columns:
     """One row a term."""
-    yield "term", "symbol", "fields", "quantity", "present", "largest", "reason"
-    for each in result:
-        fields = " ".join(each.fields)
-        yield each.name, each.symbol, fields, each.quantity, each.present, each.largest, each.reason
+    rows = (
+        (t.name, t.symbol, " ".join(t.fields), t.quantity, t.present, t.largest, t.reason) for t in result
+    )
+    return columns_of_rows(("term", "symbol", "fields", "quantity", "present", "largest", "reason"), rows)
 
 
-def cycles_csv(result: LoadCycles) -> Iterator[Sequence[object]]:
+def cycles_csv(result: LoadCycles) -> Columns:
     """Range, mean and count of each cycle."""
-    unit = CSV_UNITS[result.quantity]
-    yield f"range_of_{result.quantity}{unit}", f"mean{unit}", "cycles"
-    columns = result.ranges, result.means, result.counts
-    yield from zip(*(column.tolist() for column in columns), strict=True)
+    unit = UNITS[result.quantity]
+    return Columns(
+        Column(f"range_of_{result.quantity}", result.ranges, unit),
+        Column("mean", result.means, unit),
+        Column("cycles", result.counts),
+    )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns, column_named, name_in_heads
 from beamdyn.common.digits import supported
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
@@ -16,7 +16,6 @@ from beamdyn.studies.result import Study
 
 _MOST_ROWS = 30  # of a table for reading
 _DIGITS = 10  # most digits of a number
-_PER_UNIT = {"/": "_per_", " ": "_"}
 
 
 def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None) -> Group:
@@ -63,30 +62,23 @@ def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterat
     yield f"{known.max():.1g}" if known.size else "-"
 
 
-def study_csv(result: Study) -> Iterator[Sequence[object]]:
+def study_csv(result: Study) -> Columns:
     """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
     columns, value, error, status = _flat(result)
-    numbers = [f"_{_plain_name(label)}" for label in result.labels] or [""]
+    numbers = [_plain_name(label) for label in result.labels] or [""]
     units = {each.name: each.unit for each in result.inputs}
-    heads = [_head(name.replace(".", "_"), units[name]) for name in columns]
-    answer = _head(result.question.kind.word.replace(" ", "_"), result.unit)
-    answers = [f"{answer}{n}" for n in numbers]
-    yield *heads, *answers, *(f"relative_error{n}" for n in numbers), *(f"status{n}" for n in numbers)
-    inputs = np.array([*columns.values()]).T.tolist()
-    for row in zip(inputs, value.tolist(), error.tolist(), status.tolist(), strict=True):
-        yield [cell for cells in row for cell in cells]
+    inputs = (column_named(name.replace(".", "_"), each, units[name]) for name, each in columns.items())
+    word = result.question.kind.word.replace(" ", "_")
+    answers = (column_named(word, each, result.unit, n) for each, n in zip(value.T, numbers, strict=True))
+    errors = (Column("relative_error", each, "", n) for each, n in zip(error.T, numbers, strict=True))
+    states = (Column("status", each, "", n) for each, n in zip(status.T, numbers, strict=True))
+    return Columns(*inputs, *answers, *errors, *states)
 
 
 def _plain_name(label: str) -> str:
     """A label as a part of a head: a mode by its number, signs of combination frequencies in words."""
     label = label.replace("+", " plus ").replace("-", " minus ")
-    return re.sub(r"[^0-9A-Za-z.]+", "_", label.removeprefix("mode ")).strip("_")
-
-
-def _head(name: str, unit: str) -> str:
-    for sign, word in _PER_UNIT.items():
-        unit = unit.replace(sign, word)
-    return f"{name}_{unit}" if unit else name
+    return name_in_heads(label.removeprefix("mode "))
 
 
 def _flat(result: Study) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]:

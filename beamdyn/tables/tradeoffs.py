@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Columns, columns_of_rows
 from beamdyn.common.edge.tables import table
 from beamdyn.common.pictures import figure_of
 
@@ -34,17 +35,21 @@ def diagram_table(diagram: Diagram) -> Group:
     )
 
 
-def tradeoff_csv(result: Tradeoff) -> Iterator[Sequence[object]]:
+def tradeoff_csv(result: Tradeoff) -> Columns:
     """All measurements, one row each."""
-    yield "diagram", "family", "setting", "size", "relative_error", "time_s", "in_front"
-    for diagram in result.diagrams:
-        _, *rows = diagram_csv(diagram)
-        yield from ((diagram.title, *row) for row in rows)
+    rows = ((each.title, *row) for each in result.diagrams for row in _measurements(each))
+    return columns_of_rows(("diagram", *_MEASUREMENT), rows)
 
 
-def diagram_csv(diagram: Diagram) -> Iterator[Sequence[object]]:
+def diagram_csv(diagram: Diagram) -> Columns:
     """The measurements of one diagram, one row each."""
-    yield "family", "setting", "size", "relative_error", "time_s", "in_front"
+    return columns_of_rows(_MEASUREMENT, _measurements(diagram))
+
+
+_MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in_front"
+
+
+def _measurements(diagram: Diagram) -> Iterator[Sequence[object]]:
     for m in diagram.measurements:
         yield m.family, m.setting, m.size, m.error, m.time, m in diagram.front
 

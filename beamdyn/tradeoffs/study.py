@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import OUTSIDE, announced_of_plain_beam
+from beamdyn.common.announced import announced_of_plain_beam
 from beamdyn.common.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.one_line import counted, warned
 from beamdyn.common.results import Provenance, Result
+from beamdyn.common.statements import OUTSIDE, of_kind
 from beamdyn.modal.choice import choose_model
 from beamdyn.model_error.choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
@@ -159,7 +160,7 @@ def tradeoff(
             progress(done, len(tasks))
         diagrams.append(task())
     judged = natural_modes(scene, speed, modes)
-    of_model = (*(said for said in judged.warnings if OUTSIDE in said), *judged.model_warnings())
+    of_model = (*of_kind(judged.warnings, OUTSIDE), *judged.model_warnings())
     return Tradeoff(
         speed=speed,
         t_end=end,

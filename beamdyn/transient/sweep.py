@@ -34,6 +34,7 @@ from beamdyn.common.one_line import counted, error_at_most, states, warned
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import NO_ANSWER, TOLERANCE, Statement
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice
 from beamdyn.modal.modal_basis import (
@@ -443,16 +444,18 @@ def _assemble_result(
     return replace(result, warnings=tuple(_warnings(result, request.tolerance)))
 
 
-def _warnings(sweep: Sweep, tolerance: float) -> Iterator[str]:
+def _warnings(sweep: Sweep, tolerance: float) -> Iterator[Statement]:
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))
     if (failed := np.array([s != DONE for s in sweep.status])).any():
-        yield f"{failed.sum()} of {len(speeds)} cases failed, at {list_speeds(speeds, failed)}: see status"
+        begin = f"{failed.sum()} of {len(speeds)} cases failed, at "
+        yield Statement(begin, list_speeds(speeds, failed), ": see status", kind=NO_ANSWER)
     if not sweep.scene.physics.large_deflection:
         yield from warn_of_deflection(sweep.largest, sweep.scene.beam.length, speeds)
     if motion is not None:
         yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (missed := sweep.time_error > tolerance * sweep.largest).any():
         where = list_speeds(speeds, missed)
-        yield f"the time-integration error exceeds the tolerance {tolerance:g} at {where}"
+        begin = f"the time-integration error exceeds the tolerance {tolerance:g} at "
+        yield Statement(begin, where, kind=TOLERANCE, quantity="time-integration error", limit=tolerance)

@@ -18,6 +18,7 @@ from beamdyn.common.checks import InvalidValue, real, real_array
 from beamdyn.common.one_line import error_at_most, number, warned
 from beamdyn.common.pickling import FieldsOnly
 from beamdyn.common.results import Provenance
+from beamdyn.common.statements import Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import SPEED_SAMPLES, ModalBasis
@@ -493,7 +494,7 @@ class TransientRequest(FieldsOnly):
         return path, np.nan, name
 
 
-def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[str]:
+def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[Statement]:
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, largest)
     if not scene.physics.large_deflection:

@@ -15,6 +15,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.app.folded_parts import FoldedDrawings
 from beamdyn.common.app.screens import Slider
+from beamdyn.common.columns import Column, Columns
 from beamdyn.common.described import descriptions
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
@@ -243,17 +244,22 @@ class CaliperAnswer(PlanarAnswer):
             f"cable {friction.tension:.5g} N without friction, {squeezing} squeezing, {releasing} releasing"
         )
 
-    def rows(self) -> Iterator[Sequence[object]]:
+    def rows(self) -> Columns:
         """The stroke: travels, pads, reactions."""
-        run, joints = self.run, list(self.run.reactions)
-        yield (
-            *("cable_m", "finger_m", "right_pad_m", "left_pad_m"),
-            *("right_pad_N", "left_pad_N", "right_advantage", "left_advantage"),
-            *(f"{name} {axis} N" for name in joints for axis in "xy"),
+        run, sides = self.run, ("right", "left")
+        reactions = (
+            Column(f"{name} {axis} N", force[:, k])
+            for name, force in run.reactions.items()
+            for k, axis in enumerate("xy")
         )
-        reactions = [run.reactions[name] for name in joints]
-        columns = (run.cable[:, None], run.finger[:, None], run.pad_travel, run.pad_force, run.advantage)
-        yield from np.concatenate((*columns, *reactions), axis=1).tolist()
+        return Columns(
+            Column("cable", run.cable, "m"),
+            Column("finger", run.finger, "m"),
+            *(Column(f"{side}_pad", run.pad_travel[:, k], "m") for k, side in enumerate(sides)),
+            *(Column(f"{side}_pad", run.pad_force[:, k], "N") for k, side in enumerate(sides)),
+            *(Column(f"{side}_advantage", run.advantage[:, k]) for k, side in enumerate(sides)),
+            *reactions,
+        )
 
     def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -62,6 +62,11 @@ class CaliperStroke(Result):
     >>> float(abs(run.virtual_work).max()) < 1e-9  # what the finger does, the pads do
     True
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "N": "finger_force tension pad_force reactions",
+        "m": "cable finger pad_travel",
+    }
 
     caliper: str
     status: str
@@ -151,6 +156,11 @@ class PivotFriction(Result):
     True
     """
 
+    field_units: ClassVar[dict[str, str]] = {
+        "m": "cable",
+        "N": "tension squeezing_tension releasing_tension",
+    }
+
     coefficient: float
     cable: float
     tension: float
@@ -193,6 +203,8 @@ class PadWear(Result):
     >>> worn.lost.shape
     (2,)
     """
+
+    field_units: ClassVar[dict[str, str]] = {"m": "lost cable finger"}
 
     lost: np.ndarray
     cable: np.ndarray

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -152,6 +152,13 @@ class StoppingDistance(Result):
     >>> found.status, round(found.energy)  # J
     ('stops', 2778)
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "m": "distance",
+        "J": "energy",
+        "m/s2": "deceleration grip_limit pitch_limit",
+        "N": "pad_limit",
+    }
 
     distance: float
     energy: float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -113,6 +114,12 @@ class BrakeResult(SlidesOrLocks):
     >>> found.shoes[0].leading, found.shoes[1].leading
     (True, False)
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "N": "force",
+        "N m": "torque",
+        "Pa": "peak_pressure",
+    }
 
     brake: DrumBrake
     reverse: bool

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -297,6 +297,13 @@ class ShoeResult(SlidesOrLocks):
     >>> bool(found.locked), round(float(found.locking_friction), 3)
     (False, 0.999)
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "N": "force normal tangential pin_reaction",
+        "N m": "torque",
+        "Pa": "peak_pressure",
+        "m": "effective_arm",
+    }
 
     shoe: Shoe
     leading: bool

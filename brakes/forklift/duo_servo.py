@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -271,6 +271,12 @@ class ShoeMotion(Result):
     >>> round(float(np.degrees(motion.seating_turn)), 2)  # until the linings touch
     5.23
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "m": "clearance seating_travel right_travel left_travel right_tip left_tip tip_gap "
+        "lining_penetration",
+        "rad": "seating_turn drum_turn penetration_angle",
+    }
 
     geometry: DuoServo
     clearance: Numbers

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -89,6 +89,11 @@ class InternalForces(Result):
     >>> round(float(forces.leading_share + forces.trailing_share), 9)
     1.0
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "N m": "torque",
+        "N": "piston_force A B C D Q P_L A_vector B_vector C_vector D_vector bolt_force",
+    }
 
     levers: Levers
     torque: Numbers

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -69,6 +69,11 @@ class Stage:
     >>> bool((stage.rank == stage.constraints).all())  # no redundant constraint on the way
     True
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "m": "travel",
+        "rad": "turn",
+    }
 
     mechanism: Mechanism = field(repr=False)
     position: Position = field(repr=False)
@@ -125,6 +130,8 @@ class Kinematics(Result):
     >>> followed.clearance
     0.0106
     """
+
+    field_units: ClassVar[dict[str, str]] = {"m": "clearance"}
 
     geometry: DuoServo
     clearance: float

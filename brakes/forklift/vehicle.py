@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -253,6 +253,15 @@ class Stop(Result):
     >>> bool(forklift.stop(truck, conditions).stops)  # on 27 deg it does not
     False
     """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "m/s2": "acceleration",
+        "m": "distance reaction_distance rise_distance braking_distance",
+        "s": "time",
+        "m/s": "speed_lost_in_rise speed_gained_coasting",
+        "N m": "torque_per_brake",
+        "N": "front_load rear_load standing_front_load standing_rear_load",
+    }
 
     truck: Truck
     conditions: StopConditions

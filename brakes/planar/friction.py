@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamdyn.common.statements import IN_LINE, Statement
 from brakes.planar.kinematics import assemble
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import (
@@ -214,13 +215,17 @@ def _rounding(system: System) -> float:
     return max(_NOTHING, 100 * system.rounding)
 
 
-def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> str:
+def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> Statement:
     names = [name for k, name in enumerate(mechanism.friction) if unpressed[:, k].any()]
     press = "press" if len(names) > 1 else "presses"
-    return (
+    remedy = "reduce friction, or guide it over a greater length"
+    return Statement(
         f"{join_names(map(repr, names))} {press} with no force{tell_where(jams)} because "
-        "the loads act exactly in line; any offset of a load, however small, jams the mechanism: "
-        "reduce friction, or guide it over a greater length"
+        "the loads act exactly in line; any offset of a load, however small, jams the mechanism: ",
+        remedy,
+        kind=IN_LINE,
+        quantity=", ".join(names),
+        remedy=remedy,
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -41,6 +42,8 @@ class NewtonResult(Result):
     condition_number : float
         Of the Jacobian at the end, in the units of the iteration.
     """
+
+    field_units: ClassVar[dict[str, str]] = {"N": "unknowns"}
 
     unknowns: np.ndarray
     converged: bool

@@ -378,7 +378,7 @@ def test_a_short_beam_is_also_drawn_by_itself_to_a_larger_scale():
 def test_the_edge_of_a_rotor_as_csv_says_how_much_it_is_magnified():
     made = rotor()
     head, *rows = rotor_csv(made)
-    assert head == ("x_m", "y_m", "depth_magnification")
+    assert head == ["x_m", "y_m", "depth_magnification"]
     assert np.array_equal(np.array(rows)[:, :2], made.outline)
     assert {row[2] for row in rows} == {made.magnification}
 

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import main
-from beamdyn.common.display_units import DisplayUnits, in_display_units
+from beamdyn.common.columns import Column, Columns
+from beamdyn.common.display_units import DisplayUnits
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of, text_of, view_of
@@ -318,7 +319,7 @@ def test_a_file_in_rpm_and_mm_is_answered_in_them(tmp_path, capsys):
     assert scene.units == DisplayUnits("rpm", "mm")
     response = bd.steady_response(scene, [50.0, 55.0], 2)
     assert "speed [rpm]" in response.to_table() and "[mm]" in response.to_table()
-    assert next(rows_of(response))[:2] == ["speed_rpm", "amplitude_mm"]
+    assert next(iter(rows_of(response)))[:2] == ["speed_rpm", "amplitude_mm"]
     assert response.plot(Figure().subplots()).get_xlabel() == "angular speed [rpm]"
     assert response.to_dict()["speeds"] == [50.0, 55.0]  # SI
     assert main(["critical", str(path)]) == 0
@@ -339,7 +340,7 @@ def test_a_blade_in_metres_is_answered_in_metres():
     loads = bd.static_loads(blade, [6.0])
     assert "position [m]" in loads.to_table() and "at 0 m" in loads.to_table()
     assert "position [mm]" in loads.to_table(units={"length": "mm"})
-    assert "_m" in str([*next(rows_of(loads))][1])
+    assert "_m" in str([*next(iter(rows_of(loads)))][1])
 
 
 def test_numbers_in_other_units_are_the_same_numbers():
@@ -364,20 +365,16 @@ def test_loads_and_drawings_speak_in_the_units_of_the_scene():
     assert " mm" not in drawn
 
 
-def test_heads_that_only_look_like_lengths_or_speeds_stay():
-    heads = ["moment_N_m", "curvature_per_m", "inertia_kg_m", "speed_rad_per_s", "speed_rpm", "x_m", "m"]
-    units = DisplayUnits("rpm", "mm")
-    assert next(in_display_units([heads], units)) == [*heads[:5], "x_mm", "m"]
-    assert [*in_display_units([["x_m", "v_rad_per_s_2"], [1.0, pi]], units)] == [
-        ["x_mm", "v_rpm_2"],
-        [1e3, pytest.approx(30.0)],
-    ]
-
-
-def test_speeds_in_sentences():
-    units = DisplayUnits("rpm")
-    said = units.in_sentence("at 10 to 20 rad/s, mode 2, at 5e-3 rad/s and 3 rad/s2")
-    assert said == "at 95.493 to 190.986 rpm, mode 2, at 0.0477465 rpm and 3 rad/s2"
+def test_quantities_that_only_look_like_lengths_or_speeds_stay():
+    names = {"moment": "N m", "curvature": "1/m", "inertia": "kg m", "speed": "rad/s", "x": "m", "m": ""}
+    columns = Columns(
+        *(Column(name, [1.0], unit) for name, unit in names.items()), Column("speed", [1.0], "rpm")
+    )
+    heads, _ = columns.in_units(units := DisplayUnits("rpm", "mm"))
+    stay = ["moment_N_m", "curvature_per_m", "inertia_kg_m", "speed_rad_per_s"]
+    assert heads == [*stay, "x_mm", "m", "speed_rpm"]
+    shown = Columns(Column("x", [1.0], "m"), Column("v", np.array([pi]), "rad/s", 2)).in_units(units)
+    assert [*shown] == [["x_mm", "v_rpm_2"], (1e3, pytest.approx(30.0))]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.columns import Column, Columns, column_named
 from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import unknown
@@ -186,13 +187,14 @@ def _warn_of_refused(designs: Designs, refused: Mapping[int, str]) -> Iterator[s
 # Rows of files and tables --------------------------------------------------------------------------------
 
 
-def sweep_csv(swept: InputSweep) -> Iterator[Sequence[object]]:
-    """Yield the rows of a sweep's CSV file, heads first."""
-    heads = [f"{n}_{u.replace(' ', '_').replace('/', '_per_')}" if u else n for n, u in columns(swept)]
-    why = dict(swept.refused)
-    yield heads + ["no_answer"] * bool(why)
-    for row, cells in enumerate(sweep_rows(swept)):
-        yield cells + [why.get(row, "")] * bool(why)
+def sweep_csv(swept: InputSweep) -> Columns:
+    """Inputs and results of each design, a row each, and why some have none."""
+    rows, why = [*sweep_rows(swept)], dict(swept.refused)
+    cells = [*zip(*rows, strict=True)]
+    named = zip(columns(swept), cells, strict=True)
+    each = [column_named(name, values, unit) for (name, unit), values in named]
+    reasons = [Column("no_answer", [why.get(row, "") for row in range(len(rows))])] if why else []
+    return Columns(*each, *reasons)
 
 
 def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:

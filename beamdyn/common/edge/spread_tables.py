@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.columns import Column, Columns, column_named, name_in_heads
 from beamdyn.common.digits import percent, supported
 from beamdyn.common.edge.tables import table
 from beamdyn.common.spreading.result import Spread
@@ -17,6 +17,7 @@ from beamdyn.common.spreading.tolerances import Normal
 _DIGITS = 6  # most of an answer
 _WIDTH, _GAP, _OF_SHARES = 119, 3, 20  # characters of a table, between columns, of two shares
 _HEADLINES = 6
+_SIGNS = "+-."  # that heads of inputs and answers keep
 _SMALL = 0.01  # share of a variance that is not told from others below it
 
 
@@ -198,19 +199,19 @@ def _source_of_slopes(result: Spread) -> str:
     return f"derivatives, but by {', '.join(others)} from designs about it"
 
 
-def spread_csv(result: Spread) -> Iterator[Sequence[object]]:
+def spread_csv(result: Spread) -> Columns:
     """Inputs in SI and answers of the random designs, a row each."""
-    inputs = [_head(each.name.replace(".", "_"), each.unit) for each in result.inputs]
-    yield *inputs, *map(_answer_head, result.answers, result.units)
-    yield from np.hstack([result.sampled_inputs, result.sampled_answers]).tolist()
+    inputs = (
+        column_named(name_in_heads(each.name.replace(".", "_"), _SIGNS), values, each.unit)
+        for each, values in zip(result.inputs, result.sampled_inputs.T, strict=True)
+    )
+    named = zip(result.answers, result.sampled_answers.T, result.units, strict=True)
+    return Columns(*inputs, *(_answer(*each) for each in named))
 
 
-def _answer_head(name: str, unit: str) -> str:
-    """Head of an answer's column; for the frequency of a mode "frequency_Hz_1", as in all tables."""
-    mode = re.fullmatch(r"mode (\d+)", name)
-    return f"{_head('frequency', unit)}_{mode[1]}" if mode else _head(name, unit)
-
-
-def _head(name: str, unit: str) -> str:
-    plain = re.sub(r"[^0-9A-Za-z+.-]+", "_", name).strip("_")
-    return f"{plain}_{unit.replace('/', '_per_').replace(' ', '_')}" if unit else plain
+def _answer(name: str, values: np.ndarray, unit: str) -> Column:
+    """Column of an answer; for the frequency of a mode "frequency_Hz_1", as in all tables."""
+    word, _, number = name.partition(" ")
+    if word == "mode" and number.isdecimal():
+        return Column("frequency", values, unit, number)
+    return column_named(name_in_heads(name, _SIGNS), values, unit)

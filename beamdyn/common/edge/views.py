@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import dataclasses
 import io
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -16,8 +15,8 @@ import numpy as np
 from rich.console import Console, Group, RenderableType
 
 from beamdyn.common.checks import reason_of
+from beamdyn.common.columns import in_display_units
 from beamdyn.common.described import descriptions
-from beamdyn.common.display_units import in_display_units
 from beamdyn.common.edge.rendering import html, png
 from beamdyn.common.edge.tables import table
 from beamdyn.common.one_line import brief, spanned
@@ -31,11 +30,10 @@ if TYPE_CHECKING:
 _PLACES = {"beamdyn": "beamdyn.views", "brakes": "brakes.views"}  # modules of `VIEWS`, by package
 _MOST_ROWS = 30  # rows of a table in a notebook
 _WIDTH = 120  # characters of a table as text
-_UNIT = re.compile(r"\[([^\[\]]*)\]")
 _NOT_SHOWN = ("provenance", "warnings")
 _DEEPEST = 1  # deepest level of objects within a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]
+Rows = Iterable[Sequence[object]]  # or columns, which are in display units, too
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,7 @@ def tables_of(result: Result) -> RenderableType:
     return _fields_table(result) if view.rows is None else _rows_table(result)
 
 
-def rows_of(result: Result) -> Iterator[Sequence[object]]:
+def rows_of(result: Result) -> Rows:
     """Rows of the CSV file of a result, heads first, in its display units."""
     made = view_of(result).rows
     return in_display_units(_fields_rows(result) if made is None else made(result), result.display_units)
@@ -237,22 +235,9 @@ def _parts(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _units_of(kind: type) -> dict[str, str]:
-    """Units of the fields of a class, which stand in brackets in its docstring (numpydoc), by their names."""
-    found: dict[str, str] = {}
-    for base in kind.__mro__:
-        parts = re.split(r"^ {4}(\w+(?:, \w+)*) : .*$", base.__doc__ or "", flags=re.MULTILINE)
-        for names, text in zip(parts[1::2], parts[2::2], strict=True):
-            found = dict(_units_in(text, names.split(", "))) | found
-    return found
-
-
-def _units_in(text: str, names: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """The unit of each name: that in brackets, or one for each; none where it is not clear which is whose."""
-    units = [unit.strip() for bracket in _UNIT.findall(text) for unit in bracket.split(",")]
-    if len(units) == len(names):
-        yield from zip(names, units, strict=True)
-    elif len(set(units)) == 1:
-        yield from ((name, units[0]) for name in names)
+    """Units of the fields of a class by their names, as the class and its bases state them."""
+    stated = (vars(base).get("field_units", {}) for base in reversed(kind.__mro__))
+    return {name: unit for units in stated for unit, names in units.items() for name in names.split()}
 
 
 def _cell(value: Any) -> str:

@@ -21,6 +21,7 @@ from beamdyn.common.spreading.slopes import KnownDerivatives, slopes_from
 from beamdyn.common.spreading.statistics import Scatter, indices_of, scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
+from beamdyn.common.statements import after
 
 _FEW = 3  # reasons that a warning lists
 _NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")
@@ -194,7 +195,7 @@ class _FurtherAnswers:
         for sentence in self._said:
             if (words := _NUMBER.sub("", sentence)) not in said:
                 said.add(words)
-                yield f"worst cases: {sentence}"
+                yield after("worst cases: ", sentence)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
