@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
 from rich.console import Group
 
-from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.input_sweep import sweep_csv as sweep_of_inputs_csv
 from beamdyn.common.edge.spread_tables import spread_csv, spread_table
 from beamdyn.common.edge.views import View
@@ -60,6 +58,8 @@ from beamdyn.tables.studies import study_csv, study_table
 from beamdyn.tables.tradeoffs import diagram_csv, diagram_table, tradeoff_csv, tradeoff_figure
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from beamdyn.tradeoffs import Tradeoff
 
 
@@ -71,7 +71,15 @@ def _campbell_tables(result: Any) -> Group:
     return Group(*campbell_tables(result))
 
 
+def _sweep_figure(result: Any) -> Figure:
+    from beamdyn.common.curves import sweep_figure  # here, because matplotlib is slow to import
+
+    return sweep_figure(result)
+
+
 def _campbell_figure(result: Any) -> Figure:
+    from matplotlib.figure import Figure  # here, because it is slow to import
+
     figure = Figure(figsize=(8.5, 6.0), layout="constrained")
     result.plot(figure.subplots())
     return figure
@@ -89,7 +97,7 @@ VIEWS = {
     "EquilibriumBranches": View(branches_table, branches_csv, 2),
     "FrequencyBounds": View(bounds_table, bounds_csv, 1),
     "FrequencyResponse": View(response_table, response_csv, 1),
-    "InputSweep": View(None, sweep_of_inputs_csv, 0, sweep_figure),
+    "InputSweep": View(None, sweep_of_inputs_csv, 0, _sweep_figure),
     "LoadCycles": View(cycles_table, cycles_csv),
     "Locus": View(locus_table, locus_csv, 1),
     "Matrices": View(matrices_table, matrices_csv, 3),
