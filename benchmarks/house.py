@@ -49,12 +49,12 @@ TESTS = {"startswith", "endswith", "find", "count", "index"}
 PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
 # Modules whose patterns read what a person or another program wrote: options, entries of forms, files.
 READERS = {
+    "beamdyn/analyses/cycles.py",
+    "beamdyn/analyses/excitations.py",
+    "beamdyn/analyses/linear_models.py",
+    "beamdyn/analyses/values.py",
     "beamdyn/app/inputs.py",
     "beamdyn/cli/campbell_diagram.py",
-    "beamdyn/cli/cycles.py",
-    "beamdyn/cli/excitations.py",
-    "beamdyn/cli/linear_models.py",
-    "beamdyn/cli/values.py",
     "beamdyn/common/app/examples.py",
     "beamdyn/common/app/form_entries.py",
     "beamdyn/common/app/open_document.py",
