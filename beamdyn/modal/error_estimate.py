@@ -19,7 +19,7 @@ UNRESOLVED = 0.3  # relative error above which the comparison of two models esti
 # Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
-_OF_ENTRIES = np.finfo(float).eps  # rounding of entries of the stiffness, which are sums of several
+_OF_ENTRIES = 3 * np.finfo(float).eps  # three deviations of the rounding of the stiffness's entries
 _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
 _SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
 _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
