@@ -19,7 +19,6 @@ _BENT = "The scene; large deflection is modelled in any case."
     'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"',
     about_scene=_BENT,
     physics=None,
-    screen="Equilibrium",
 )
 def equilibrium(
     scene: Scene, *, speed: AtSpeed, branch: Text | None = None, discretization: Discretization = "ritz"

@@ -96,9 +96,3 @@ def test_the_manual_tells_every_option_of_every_analysis():
         assert f"`beamdyn {analysis.name}`" in page
         assert all(analysis.meaning(name) for name in analysis.texts)
     assert "| `--top-speed` | Largest speed to search" in page
-
-
-def test_the_equilibrium_is_a_screen_of_the_program():
-    assert "Equilibrium" in [screen.name for screen in SCENE.screens]
-    answer = SCENE.screens[-1].solve(tables_of(SCENE.base_entries, inputs_of({}), SCENE.screens[-1].needs))
-    assert answer.result.speed == 50.0

@@ -14,7 +14,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.scene.physics import Physics
 
-FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20, "Equilibrium": 2}  # of an outline, of modes, ..
+FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20}  # of an outline, of modes, ..
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
