@@ -43,7 +43,8 @@ def test_nothing_keeps_people_out(pages, width, program, name):
     sync_api.expect(shown(page, "Up to date.")).to_be_visible()
     for scheme in SCHEMES:
         page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(300)  # colours change gradually
+        page.wait_for_timeout(300)  # colours change gradually, on a busy machine for longer
+        page.wait_for_function("() => !document.getAnimations().some(it => it instanceof CSSTransition)")
         assert {kind: said for kind, said in faults(page, width).items() if said} == {}, scheme
 
 
