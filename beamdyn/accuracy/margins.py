@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Margin(NamedTuple):
+class ErrorMargin(NamedTuple):
     """A factor between a distance, or a tolerance, and the error that is stated or aimed at.
 
     Parameters
@@ -31,55 +31,55 @@ class Margin(NamedTuple):
     evidence: str
 
 
-SLOW_BASES = Margin(
+SLOW_BASES = ErrorMargin(
     3.0,
     "frequencies of two Ritz bases, where convergence is slow",
     "further functions together may change a mode more than the last ones did",
     "stated_frequency_errors",
 )
-BASES_OF_FIELDS = Margin(
+BASES_OF_FIELDS = ErrorMargin(
     12.0,
     "the same with two planes, shear or springs at the root",
     "a mode may lack functions of one field only, which both bases lack",
     "stated_physics_errors",
 )
-LINEAR_MESHES = Margin(
+LINEAR_MESHES = ErrorMargin(
     2.0,
     "responses and poles of two discretizations",
     "they converge as fast as the frequencies, of which peaks magnify the errors",
     "responses",
 )
-LINEAR_MODES = Margin(
+LINEAR_MODES = ErrorMargin(
     4.0,
     "responses with all modes and with half as many",
     "the two may agree by chance at a frequency",
     "responses",
 )
-BASES_OF_STATIC_LOADS = Margin(
+BASES_OF_STATIC_LOADS = ErrorMargin(
     1.5,
     "loads along the span of two discretizations",
     "loads in equilibrium converge regularly, at stations unlike at others",
     "stated_load_errors",
 )
-MODES_OF_MOMENTS = Margin(
+MODES_OF_MOMENTS = ErrorMargin(
     3.0,
     "moments and strains with half as many modes more",
     "after a sudden load modes fall as k^-3: those left out are up to 2.2 times those added",
     "stated_load_errors",
 )
-MODES_OF_FORCES = Margin(
+MODES_OF_FORCES = ErrorMargin(
     4.0,
     "shear forces with half as many modes more",
     "they fall as k^-2: those left out are up to 3 times those added",
     "stated_load_errors",
 )
-STEPS = Margin(
+STEPS = ErrorMargin(
     1.5,
     "motion by steps with two more stages",
     "local errors of a sample of all steps are added up",
     "stated_transient_errors",
 )
-EFFECTS = Margin(
+EFFECTS = ErrorMargin(
     0.5,
     "tolerance of a physics that is chosen, over the sizes of what it leaves out",
     "the size of an effect may be estimated too low by a factor of two",

@@ -74,7 +74,7 @@ class Words(str):
         return self.worded(lambda part: part.in_units(units))
 
 
-class _Quantity(Words):
+class _Number(Words):
     """A part that is a number with its unit."""
 
     def worded(self, word: Callable[[Words], str]) -> str:
@@ -82,7 +82,7 @@ class _Quantity(Words):
         return word(self)
 
 
-class Speeds(_Quantity):
+class Speeds(_Number):
     """Speeds in a text: "20 rad/s", or from where to where they go, "20 to 35 rad/s".
 
     Parameters
@@ -112,7 +112,7 @@ class Speeds(_Quantity):
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
 
-class InputValue(_Quantity):
+class InputValue(_Number):
     """An input and its value in a text: "beam.thickness = 0.0002 m".
 
     Parameters

@@ -20,7 +20,7 @@ STRAIGHT = "as of the straight beam"
 _ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
 
 
-class Answer(NamedTuple):
+class SolvedValues(NamedTuple):
     """Values that an effect may change, nan where there is none; why there is none; what they rest on."""
 
     values: np.ndarray
@@ -28,7 +28,9 @@ class Answer(NamedTuple):
     assumed: str = ""
 
 
-Solve: TypeAlias = Callable[[Scene, str], Answer]  # of a scene with the effect of a name more, or with ""
+Solve: TypeAlias = Callable[
+    [Scene, str], SolvedValues
+]  # of a scene with the effect of a name more, or with ""
 
 
 def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
@@ -69,23 +71,23 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     )
 
 
-def _change(without: Answer, within: Answer) -> Answer:
+def _change(without: SolvedValues, within: SolvedValues) -> SolvedValues:
     """Relative change of values, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
     change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
     unknown = ~np.isfinite(change)
     reason = (without.reason or within.reason or "there is nothing to compare") if unknown.any() else ""
-    return Answer(np.where(unknown, np.nan, change), reason, within.assumed)
+    return SolvedValues(np.where(unknown, np.nan, change), reason, within.assumed)
 
 
-def _with_large_deflection(scene: Scene, without: Answer, solve: Solve) -> Answer:
+def _with_large_deflection(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedValues:
     unknown = np.full(np.shape(without.values), np.nan)
     if scene.physics.planes == 2:
-        return Answer(unknown, TWO_PLANES)
+        return SolvedValues(unknown, TWO_PLANES)
     try:
         straight, bent = comparable(scene)
     except InvalidValue as error:
-        return Answer(unknown, REFUSED.get(error.field, str(error)))
+        return SolvedValues(unknown, REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
     return _change(without, solve(bent, LARGE_DEFLECTION.name))

@@ -22,7 +22,7 @@ from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modal.choice import DiscretizationChoice, ensure_size
 from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modal.model import Model
-from beamdyn.model_error.by_solving import Answer, left_out_by_solving
+from beamdyn.model_error.by_solving import SolvedValues, left_out_by_solving
 from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
 from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.model_error.of_modes import nothing_known
@@ -356,7 +356,7 @@ class ResponseRequest(FieldsOnly):
         estimated = "without the harmonics of the last interaction"
         return Provenance(__version__, method, estimated, perf_counter() - start)
 
-    def solve_with(self, scene: Scene, _: str = "") -> Answer:
+    def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
         """Amplitudes of another scene with as many modes, or more if only one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
@@ -366,7 +366,7 @@ class ResponseRequest(FieldsOnly):
         response = other.run()
         lost = [status for status in response.status.tolist() if status != "stable"]
         note = _LINEAR if scene.physics.large_deflection else ""
-        return Answer(response.amplitude, lost[0] if lost else "", note)
+        return SolvedValues(response.amplitude, lost[0] if lost else "", note)
 
     def run_refined(self) -> SteadyResponse | None:
         """Solve with more modes; None if there is no larger model."""

@@ -159,7 +159,7 @@ def _own_effects(_: _Asked, found: Any) -> LeftOutEffects:
 
 
 @dataclass(frozen=True)
-class _Analysis:
+class _SingleCall:
     """How a kind of question is answered: by an analysis, from whose result answer and model error are read.
 
     Parameters
@@ -282,14 +282,14 @@ def _read_responses(
     return SpeedAnswer(*columns, warnings=(*found.warnings, *failed), warned=where)
 
 
-_ANALYSES: dict[str, _Analysis] = {
-    "frequencies": _Analysis(_solve_modes, _read_modes, lambda _, found: found[0].left_out_effects),
-    "critical_speed": _Analysis(
+_ANALYSES: dict[str, _SingleCall] = {
+    "frequencies": _SingleCall(_solve_modes, _read_modes, lambda _, found: found[0].left_out_effects),
+    "critical_speed": _SingleCall(
         _solve_critical_point, _read_critical_point, lambda _, found: found.left_out_effects.at(np.newaxis)
     ),
-    "crossings": _Analysis(_solve_crossings, _read_crossings, _effects_of_crossings),
-    "amplitude": _Analysis(_solve_response, _read_amplitudes),
-    "peak": _Analysis(_solve_sweep, _read_peaks),
+    "crossings": _SingleCall(_solve_crossings, _read_crossings, _effects_of_crossings),
+    "amplitude": _SingleCall(_solve_response, _read_amplitudes),
+    "peak": _SingleCall(_solve_sweep, _read_peaks),
 }
 
 

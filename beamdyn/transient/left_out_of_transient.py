@@ -19,7 +19,7 @@ from beamdyn.modal.choice import ensure_size
 from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
 from beamdyn.modal.modal_basis import find_speed_range
 from beamdyn.modal.model import Model
-from beamdyn.model_error.by_solving import Answer, left_out_by_solving
+from beamdyn.model_error.by_solving import SolvedValues, left_out_by_solving
 from beamdyn.model_error.left_out_effects import LeftOutEffects
 from beamdyn.model_error.of_modes import left_out_of_modes, without_large_deflection
 from beamdyn.scene.scene import Scene
@@ -65,18 +65,18 @@ def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -
     straight = without_large_deflection(request.model)
     shifts = _shifts_of_frequencies(straight, speed, request.t_end)
 
-    def find_without() -> Answer:
+    def find_without() -> SolvedValues:
         if straight is request.model:
-            return Answer(np.array(largest))
+            return SolvedValues(np.array(largest))
         return _run_again(request, straight.scene, window)
 
     without = find_without()  # of the straight beam: effects are not compared with a bent one
 
-    def solve(scene: Scene, name: str) -> Answer:
+    def solve(scene: Scene, name: str) -> SolvedValues:
         if scene.physics == straight.scene.physics:
             return without
         if (shift := shifts.get(name)) is not None:
-            return Answer(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
+            return SolvedValues(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
         if name == LARGE_DEFLECTION.name and len(run.path.samples[0]) > _SHORT_RUN:
             return _estimate_bent(run, largest, scene, speed)
         return _run_again(request, scene, window)
@@ -97,7 +97,7 @@ def _peak(run: Run, window: tuple[float, float] | None) -> float:
     return run.largest if window is None else run.peak(*window)
 
 
-def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Answer:
+def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> SolvedValues:
     """Largest deflection by what large deflection changes at rest in rotating axes, and over amplitude.
 
     The part that does not vary is that of the equilibrium at the largest speed; the rest changes as the
@@ -108,26 +108,26 @@ def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Answ
         k = FreeVibration.of(bent, speed, 1).coefficient(SMALL)
         static = float(np.abs(bent.static_tips(np.array([speed]))).max())
     except (ArithmeticError, InvalidValue) as error:
-        return Answer(np.array(np.nan), reason_of(error))
+        return SolvedValues(np.array(np.nan), reason_of(error))
     linear = float(np.abs(straight.static_tips(np.array([speed]))).max())
     varying = max(largest - linear, 0.0)
     amplitude = largest if linear < varying else varying
     stiffer = 2 * k * (amplitude / scene.beam.length) ** 2
     share = min(linear / largest, 1.0) if largest else 0.0
     ratio = share * (static / linear if linear else 1.0) + (1 - share) * (1 - stiffer)
-    return Answer(np.array(largest * ratio), "", _BY_BACKBONE)
+    return SolvedValues(np.array(largest * ratio), "", _BY_BACKBONE)
 
 
-def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -> Answer:
+def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
     """Largest deflection by a run of another scene with the same number of modes."""
     if not isinstance(request.initial, str):
-        return Answer(np.array(np.nan), "the initial coordinates are those of this model")
+        return SolvedValues(np.array(np.nan), "the initial coordinates are those of this model")
     modes = request.basis.modes
     discretization = (
         request.discretization if modes is None else ensure_size(scene, request.discretization, modes)
     )
     again = replace(request, scene=scene, discretization=discretization, method="auto", t_eval=None)
     try:
-        return Answer(np.array(_peak(again.run(), window)))
+        return SolvedValues(np.array(_peak(again.run(), window)))
     except (ArithmeticError, InvalidValue, np.linalg.LinAlgError) as error:
-        return Answer(np.array(np.nan), reason_of(error))
+        return SolvedValues(np.array(np.nan), reason_of(error))

@@ -9,7 +9,7 @@ from beamdyn.accuracy.refinement import refine
 from beamdyn.equations.effects import EFFECTS
 from beamdyn.scene.physics import Physics
 
-MARGINS = [value for value in vars(margins).values() if isinstance(value, margins.Margin)]
+MARGINS = [value for value in vars(margins).values() if isinstance(value, margins.ErrorMargin)]
 
 
 def test_refines_until_the_tolerance_is_met() -> None:
@@ -27,7 +27,7 @@ def test_keeps_what_meets_the_tolerance_and_the_last_where_nothing_does() -> Non
 
 
 @pytest.mark.parametrize("margin", MARGINS, ids=lambda margin: margin.distance)
-def test_evidence_of_a_margin_is_a_benchmark(margin: margins.Margin) -> None:
+def test_evidence_of_a_margin_is_a_benchmark(margin: margins.ErrorMargin) -> None:
     """A reader can measure each margin again."""
     assert find_spec(f"benchmarks.{margin.evidence}") is not None
 

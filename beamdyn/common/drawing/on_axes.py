@@ -136,7 +136,7 @@ def _draw(ax: Axes, stroke: Stroke, fit: Fit) -> Patch:
     return ax.add_patch(PathPatch(_path(stroke, fit), **style))
 
 
-def _path(stroke: strokes.Path, fit: Fit) -> Path:
+def _path(stroke: strokes.Polylines, fit: Fit) -> Path:
     from matplotlib.path import Path
 
     ways = [fit.from_paper(run) for run in stroke.runs]

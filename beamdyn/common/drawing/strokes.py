@@ -32,7 +32,7 @@ class Pen(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class Polylines:
     """Lines through points, each an array of shape (k, 2); each ends where it begins if they are closed."""
 
     runs: Sequence[np.ndarray]
@@ -60,7 +60,7 @@ class Letters(NamedTuple):
     colour: str
 
 
-Stroke = Path | Circle
+Stroke = Polylines | Circle
 
 
 def strokes_of(layout: Layout) -> Iterator[Stroke]:
@@ -68,7 +68,7 @@ def strokes_of(layout: Layout) -> Iterator[Stroke]:
     for shape in layout.drawing.shapes:
         yield from _SHAPES[type(shape)](shape, layout.fit)
     for rule in layout.rules:
-        yield Path([rule.ends], Pen(rule.role, rule.width))
+        yield Polylines([rule.ends], Pen(rule.role, rule.width))
 
 
 def letters_of(text: Text) -> list[Letters]:
@@ -92,7 +92,7 @@ def _outline(shape: Outline, fit: Fit) -> Iterator[Stroke]:
     breaks = np.flatnonzero(~np.isfinite(points).all(axis=1))
     runs = (run[np.isfinite(run).all(axis=1)] for run in np.split(points, breaks))
     if whole := [run for run in runs if len(run)]:
-        yield Path(whole, _pen(shape), shape.closed)
+        yield Polylines(whole, _pen(shape), shape.closed)
 
 
 def _disc(shape: Disc, fit: Fit) -> Iterator[Stroke]:
@@ -108,8 +108,8 @@ def _arrow(shape: Arrow, fit: Fit) -> Iterator[Stroke]:
     head = min(_HEAD, 0.6 * length)
     start = foot + head * along if shape.both else foot
     ends = [(tip, along), (foot, -along)] if shape.both else [(tip, along)]
-    yield Path([np.array([start, tip - 0.8 * head * along])], Pen(shape.role, shape.width))
-    yield Path([_arrowhead(end, to, head) for end, to in ends], Pen(fill=shape.role), closed=True)
+    yield Polylines([np.array([start, tip - 0.8 * head * along])], Pen(shape.role, shape.width))
+    yield Polylines([_arrowhead(end, to, head) for end, to in ends], Pen(fill=shape.role), closed=True)
 
 
 def _arrowhead(tip: np.ndarray, along: np.ndarray, head: float) -> np.ndarray:
@@ -123,7 +123,7 @@ def _symbol(shape: Symbol, fit: Fit) -> Iterator[Stroke]:
         yield Circle(at, half, _ROUND[shape.kind](line))
     else:
         ways, closed, pen = _ANGULAR[shape.kind]
-        yield Path([at + half * np.array(way) for way in ways], pen(line), closed)
+        yield Polylines([at + half * np.array(way) for way in ways], pen(line), closed)
 
 
 _ROUND: dict[str, Callable[[str], Pen]] = {
