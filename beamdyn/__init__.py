@@ -12,19 +12,19 @@ from beamdyn._version import __version__ as __version__
 
 # The public names by their module.
 _NAMES = {
-    "campbell_diagram.crossings": ("LineCrossing",),
-    "campbell_diagram.diagram": ("Campbell", "campbell"),
-    "campbell_diagram.margins": ("Margin",),
-    "common.announced": ("OutsideLinearTheory",),
-    "common.results": ("load",),
-    "rotor": ("RotorDrawing", "draw"),
-    "common.display_units": ("DisplayUnits",),
+    "studies.campbell.crossings": ("LineCrossing",),
+    "studies.campbell.diagram": ("Campbell", "campbell"),
+    "studies.campbell.margins": ("Margin",),
+    "common.results.announced": ("OutsideLinearTheory",),
+    "common.results.result": ("load",),
+    "scene.rotor": ("RotorDrawing", "draw"),
+    "common.results.display_units": ("DisplayUnits",),
     "common.edge.config": ("ConfigError",),
-    "config.scenes": ("load_scene",),
-    "decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
-    "decks.blade": ("IgnoredProperty",),
-    "decks.deck": ("Deck", "read_deck"),
-    "decks.mode_shapes": ("ModePolynomial",),
+    "files.scenes": ("load_scene",),
+    "files.decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
+    "files.decks.blade": ("IgnoredProperty",),
+    "files.decks.deck": ("Deck", "read_deck"),
+    "files.decks.mode_shapes": ("ModePolynomial",),
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
@@ -53,53 +53,53 @@ _NAMES = {
         "SteadyRotation",
         "UserMotion",
     ),
-    "linear_models.excitations": ("BaseMotion", "PointForce"),
-    "linear_models.frequency_response": ("FrequencyResponse", "frequency_response"),
-    "linear_models.matrices": ("Matrices", "matrices"),
-    "linear_models.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
-    "linear_models.parametric": ("ParametricTerm",),
-    "linear_models.random_response": ("RandomResponse", "random_response"),
-    "linear_models.spectra": ("PowerSpectrum", "RoadRoughness"),
-    "linear_models.state_space": ("state_space",),
-    "modal.equilibrium": ("NoEquilibrium",),
+    "linear.excitations": ("BaseMotion", "PointForce"),
+    "linear.frequency_response": ("FrequencyResponse", "frequency_response"),
+    "linear.matrices": ("Matrices", "matrices"),
+    "linear.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
+    "linear.parametric": ("ParametricTerm",),
+    "linear.random_response": ("RandomResponse", "random_response"),
+    "linear.spectra": ("PowerSpectrum", "RoadRoughness"),
+    "linear.state_space": ("state_space",),
+    "modes.modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
     "scene.physics": ("Physics",),
     "scene.physics_choice": ("JudgedEffect", "PhysicsChoice"),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
-    "spectrum.backbone": ("Backbone", "backbone"),
-    "spectrum.bounds": ("FrequencyBounds", "frequency_bounds"),
-    "spectrum.critical": ("CriticalPoint", "critical_point", "critical_speed"),
-    "spectrum.equilibria": (
+    "modes.backbone": ("Backbone", "backbone"),
+    "modes.bounds": ("FrequencyBounds", "frequency_bounds"),
+    "modes.critical": ("CriticalPoint", "critical_point", "critical_speed"),
+    "modes.equilibria": (
         "Equilibrium",
         "EquilibriumBranch",
         "EquilibriumBranches",
         "equilibrium",
         "equilibrium_branches",
     ),
-    "sensitivities.result": ("Sensitivities",),
-    "sensitivities.scene_numbers": ("SceneNumber",),
-    "sensitivities.sensitivities": (
+    "studies.sensitivities.result": ("Sensitivities",),
+    "studies.sensitivities.scene_numbers": ("SceneNumber",),
+    "studies.sensitivities.sensitivities": (
         "critical_speed_sensitivities",
         "crossing_sensitivities",
         "frequency_sensitivities",
     ),
-    "spectrum.locus": ("Locus", "frequency_locus"),
-    "spectrum.modes": ("Modes", "natural_modes"),
-    "spectrum.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
+    "modes.locus": ("Locus", "frequency_locus"),
+    "modes.modes": ("Modes", "natural_modes"),
+    "modes.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
     "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
     "steady.response": ("SteadyResponse", "steady_response"),
-    "common.designs": ("VariedInput",),
+    "common.inputs.designs": ("VariedInput",),
     "common.parallel.tasks": ("StudyInterrupted",),
     "common.spreading.first_order": ("FirstOrderRange",),
     "common.spreading.result": ("Spread",),
     "common.spreading.statistics": ("Scatter", "SobolIndices"),
     "common.spreading.tolerances": ("Normal", "SpreadInput", "Uniform"),
     "common.spreading.worst_case": ("WorstCases",),
-    "spreads.spread": ("spread",),
+    "studies.spreads.spread": ("spread",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
-    "tradeoffs": ("Tradeoff", "tradeoff"),
+    "studies.tradeoffs": ("Tradeoff", "tradeoff"),
     "transient.gauss_solver": ("GaussCollocation",),
     "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
@@ -111,46 +111,55 @@ __all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
-    from beamdyn.campbell_diagram.crossings import LineCrossing
-    from beamdyn.campbell_diagram.diagram import Campbell, campbell
-    from beamdyn.campbell_diagram.margins import Margin
-    from beamdyn.common.announced import OutsideLinearTheory
-    from beamdyn.common.designs import VariedInput
-    from beamdyn.common.display_units import DisplayUnits
     from beamdyn.common.edge.config import ConfigError
+    from beamdyn.common.inputs.designs import VariedInput
     from beamdyn.common.parallel.tasks import StudyInterrupted
-    from beamdyn.common.results import load
+    from beamdyn.common.results.announced import OutsideLinearTheory
+    from beamdyn.common.results.display_units import DisplayUnits
+    from beamdyn.common.results.result import load
     from beamdyn.common.spreading.first_order import FirstOrderRange
     from beamdyn.common.spreading.result import Spread
     from beamdyn.common.spreading.statistics import Scatter, SobolIndices
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
-    from beamdyn.config.scenes import load_scene
-    from beamdyn.decks.audit import DeckAudit, PropertyStep, ShapeCheck
-    from beamdyn.decks.blade import IgnoredProperty
-    from beamdyn.decks.deck import Deck, read_deck
-    from beamdyn.decks.mode_shapes import ModePolynomial
     from beamdyn.equations.discretization import Discretization
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
-    from beamdyn.linear_models.excitations import BaseMotion, PointForce
-    from beamdyn.linear_models.frequency_response import FrequencyResponse, frequency_response
-    from beamdyn.linear_models.matrices import Matrices, matrices
-    from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
-    from beamdyn.linear_models.parametric import ParametricTerm
-    from beamdyn.linear_models.random_response import RandomResponse, random_response
-    from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
-    from beamdyn.linear_models.state_space import state_space
+    from beamdyn.files.decks.audit import DeckAudit, PropertyStep, ShapeCheck
+    from beamdyn.files.decks.blade import IgnoredProperty
+    from beamdyn.files.decks.deck import Deck, read_deck
+    from beamdyn.files.decks.mode_shapes import ModePolynomial
+    from beamdyn.files.scenes import load_scene
+    from beamdyn.linear.excitations import BaseMotion, PointForce
+    from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
+    from beamdyn.linear.matrices import Matrices, matrices
+    from beamdyn.linear.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
+    from beamdyn.linear.parametric import ParametricTerm
+    from beamdyn.linear.random_response import RandomResponse, random_response
+    from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+    from beamdyn.linear.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
     from beamdyn.loads.random_loads import RandomLoads, RandomStatistics, random_loads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads
-    from beamdyn.modal.equilibrium import NoEquilibrium
-    from beamdyn.rotor import RotorDrawing, draw
+    from beamdyn.modes.backbone import Backbone, backbone
+    from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
+    from beamdyn.modes.critical import CriticalPoint, critical_point, critical_speed
+    from beamdyn.modes.equilibria import (
+        Equilibrium,
+        EquilibriumBranch,
+        EquilibriumBranches,
+        equilibrium,
+        equilibrium_branches,
+    )
+    from beamdyn.modes.locus import Locus, frequency_locus
+    from beamdyn.modes.modal.equilibrium import NoEquilibrium
+    from beamdyn.modes.modes import Modes, natural_modes
+    from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.damping import Damping
     from beamdyn.scene.motion import (
@@ -172,34 +181,25 @@ if TYPE_CHECKING:
     from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
     from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table
+    from beamdyn.scene.rotor import RotorDrawing, draw
     from beamdyn.scene.scene import Scene
-    from beamdyn.sensitivities.result import Sensitivities
-    from beamdyn.sensitivities.scene_numbers import SceneNumber
-    from beamdyn.sensitivities.sensitivities import (
+    from beamdyn.steady.crossings import Crossing, Crossings
+    from beamdyn.steady.resonance import resonance_speeds
+    from beamdyn.steady.response import SteadyResponse, steady_response
+    from beamdyn.studies.campbell.crossings import LineCrossing
+    from beamdyn.studies.campbell.diagram import Campbell, campbell
+    from beamdyn.studies.campbell.margins import Margin
+    from beamdyn.studies.result import Study
+    from beamdyn.studies.sensitivities.result import Sensitivities
+    from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
+    from beamdyn.studies.sensitivities.sensitivities import (
         critical_speed_sensitivities,
         crossing_sensitivities,
         frequency_sensitivities,
     )
-    from beamdyn.spectrum.backbone import Backbone, backbone
-    from beamdyn.spectrum.bounds import FrequencyBounds, frequency_bounds
-    from beamdyn.spectrum.critical import CriticalPoint, critical_point, critical_speed
-    from beamdyn.spectrum.equilibria import (
-        Equilibrium,
-        EquilibriumBranch,
-        EquilibriumBranches,
-        equilibrium,
-        equilibrium_branches,
-    )
-    from beamdyn.spectrum.locus import Locus, frequency_locus
-    from beamdyn.spectrum.modes import Modes, natural_modes
-    from beamdyn.spectrum.setting_angles import SettingAngleLimits, setting_angle_limits
-    from beamdyn.spreads.spread import spread
-    from beamdyn.steady.crossings import Crossing, Crossings
-    from beamdyn.steady.resonance import resonance_speeds
-    from beamdyn.steady.response import SteadyResponse, steady_response
-    from beamdyn.studies.result import Study
+    from beamdyn.studies.spreads.spread import spread
     from beamdyn.studies.study import study
-    from beamdyn.tradeoffs import Tradeoff, tradeoff
+    from beamdyn.studies.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient.gauss_solver import GaussCollocation
     from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep

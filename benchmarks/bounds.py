@@ -12,7 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn.spectrum.bounds import frequency_bounds
+from beamdyn.modes.bounds import frequency_bounds
 from benchmarks.cases.enclosure import encloses, random_nondimensional_scene, relative_width
 from benchmarks.rows import Row, show
 

@@ -21,12 +21,12 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.app.handles import draw_sheet
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
 from beamdyn.common.drawing.shapes import Arrow, Drawing, Label
 from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
+from beamdyn.common.screens.handles import draw_sheet
+from beamdyn.common.screens.open_document import OpenDocument
 from benchmarks.hostile_entries import children_of
 from benchmarks.rows import Row, show
 from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start, stop, up_to_date

@@ -25,9 +25,9 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import _nondimensional
-from beamdyn.spectrum.flexibility import bound_flexibility
-from beamdyn.spectrum.split import Split
+from beamdyn.modes.bounds import _nondimensional
+from beamdyn.modes.flexibility import bound_flexibility
+from beamdyn.modes.split import Split
 from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, exact_critical_speed, relative_errors
 from benchmarks.cases.scenes import time_unit

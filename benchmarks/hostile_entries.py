@@ -23,12 +23,12 @@ from typing import Any
 
 from beamdyn.app.program import BEAMDYN
 from beamdyn.cli.interactive import make_program as make_beamdyn
-from beamdyn.common.app import tasks
-from beamdyn.common.app.open_document import Answered, OpenDocument
-from beamdyn.common.app.processes import Processes
-from beamdyn.common.app.refusals import outcome_of
-from beamdyn.common.app.screens import Document, Program, Screen
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.processes import Processes
+from beamdyn.common.screens.refusals import outcome_of
+from beamdyn.common.screens.screens import Document, Program, Screen
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES

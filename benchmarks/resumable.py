@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from beamdyn.common.files import write_text
+from beamdyn.common.results.files import write_text
 from benchmarks.rows import Row
 
 Answer = TypeVar("Answer")

@@ -13,13 +13,13 @@ from time import perf_counter, process_time
 from typing import Any
 
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app import tasks
-from beamdyn.common.app.chart_options import options_of
-from beamdyn.common.app.document_report import drawn
-from beamdyn.common.app.form_entries import Entries
-from beamdyn.common.app.handles import draw_sheet
-from beamdyn.common.app.open_document import Answered, OpenDocument
-from beamdyn.common.app.screens import Document, Program, Screen
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.chart_options import options_of
+from beamdyn.common.screens.document_report import drawn
+from beamdyn.common.screens.form_entries import Entries
+from beamdyn.common.screens.handles import draw_sheet
+from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.screens import Document, Program, Screen
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app.screens import Program
+from beamdyn.common.screens.screens import Program
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES

@@ -26,8 +26,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.common.announced import unannounced
-from beamdyn.sensitivities.scene_numbers import SceneNumber
+from beamdyn.common.results.announced import unannounced
+from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
 from benchmarks.cases.random_inputs import random_inputs_scene
 from benchmarks.cases.random_scenes import random_scene
 from benchmarks.cases.reference.many_digits.differences import Number, frequency_derivatives

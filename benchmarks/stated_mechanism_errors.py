@@ -15,7 +15,7 @@ from typing import NamedTuple
 import mpmath
 import numpy as np
 
-from beamdyn.common.statements import IN_LINE, of_kind
+from beamdyn.common.results.statements import IN_LINE, of_kind
 from benchmarks.cases import mechanisms
 from benchmarks.cases.mechanism_digits import exact_forces
 from benchmarks.invariant_verdicts import draw_mechanism, transform

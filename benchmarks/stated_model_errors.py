@@ -24,8 +24,8 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.modal.model import Model
-from beamdyn.model_error.effects import Addition, list_effects
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.effects import Addition, list_effects
 from benchmarks.cases.random_physics import (
     random_mount,
     random_physics_beam,

@@ -22,9 +22,9 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.modal.error_estimate import solve_with_error
-from beamdyn.modal.model import Model
-from beamdyn.tradeoffs import (
+from beamdyn.modes.modal.error_estimate import solve_with_error
+from beamdyn.modes.modal.model import Model
+from beamdyn.studies.tradeoffs import (
     Diagram,
     frequency_diagram,
     harmonics_diagram,
@@ -32,7 +32,7 @@ from beamdyn.tradeoffs import (
     steady_modes_diagram,
     transient_modes_diagram,
 )
-from beamdyn.tradeoffs.transients import OURS
+from beamdyn.studies.tradeoffs.transients import OURS
 from benchmarks import rows
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
 from benchmarks.cases.table_3 import handwritten, modal_system

@@ -18,7 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 

@@ -14,9 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.comparison import Comparison
-from beamdyn.common.digits import supported
-from beamdyn.common.one_line import rounded_up
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.one_line import rounded_up
+from beamdyn.modes.equilibria import equilibrium
+from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables, sections
 from beamdyn.reproduce.entries import PrintedValue, half_unit
@@ -24,8 +26,6 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.equilibria import equilibrium
-from beamdyn.spectrum.modes import natural_modes
 from benchmarks.cases import measured, single_answers, statics, textbooks
 from benchmarks.sources import page_of_sources
 from brakes.planar import solve

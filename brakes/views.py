@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from rich.console import Group
 
-from beamdyn.common.curves import sweep_figure
 from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.views import View
+from beamdyn.common.plots.curves import sweep_figure
 from brakes.answers.base import Answer, BrakeSweep
 from brakes.answers.planar import MechanismFriction
 from brakes.answers.tables import sweep_table

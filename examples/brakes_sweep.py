@@ -6,7 +6,7 @@ Writes brakes_sweep.png into the current directory.
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.pictures import save_figure
+from beamdyn.common.results.pictures import save_figure
 from brakes import drum, forklift
 from brakes.drawings.drum import factors
 from brakes.drawings.forklift import distances

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import beamdyn as bd
-from beamdyn.output.export import write_shapes
-from beamdyn.output.plots import mark_points, plot_growth, plot_locus, save_figure
+from beamdyn.common.plots.export import write_shapes
+from beamdyn.common.plots.plots import mark_points, plot_growth, plot_locus, save_figure
 from beamdyn.published import load
 
 paper = load("lee_yoo_2019")

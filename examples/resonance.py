@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import beamdyn as bd
-from beamdyn.output.plots import save_figure
+from beamdyn.common.plots.plots import save_figure
 
 beam = bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0)
 road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)

@@ -6,8 +6,8 @@ Writes transient.png (Fig. 5) and, for ParaView, transient.xdmf into the current
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.output.export import write_series
-from beamdyn.output.plots import save_figure
+from beamdyn.common.plots.export import write_series
+from beamdyn.common.plots.plots import save_figure
 from beamdyn.transient.simulate import simulate
 
 beam = bd.Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.results import Result
+    from beamdyn.common.results.result import Result
     from beamdyn.scene.scene import Scene
 
 Physics = Annotated[
@@ -267,7 +267,7 @@ class Analysis:
 
     def _load(self, file: Path, given: Mapping[str, Any]) -> Scene:
         """The scene with the physics of the option, to be shown in the unit of the speeds that are given."""
-        from beamdyn.config.scenes import load_scene
+        from beamdyn.files.scenes import load_scene
 
         scene = load_scene(file)
         if self.moving(given):
@@ -304,10 +304,10 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     NoAnswer
         With the refusal, after everything has been written.
     """
-    from beamdyn.cautions import describe_choice, noted, warnings_of
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
     from beamdyn.common.edge.views import picture_of, rows_of, tables_of
+    from beamdyn.results.cautions import describe_choice, noted, warnings_of
 
     result, refusal = answer.result, answer.refusal
     draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)

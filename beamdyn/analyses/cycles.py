@@ -14,7 +14,7 @@ from beamdyn.analyses.analysis import WRITTEN
 from beamdyn.analyses.options import LoadQuantity, Text
 from beamdyn.analyses.values import naming_option
 from beamdyn.common.edge.outputs import write_table
-from beamdyn.common.files import write_text
+from beamdyn.common.results.files import write_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -63,7 +63,7 @@ class CycleOptions:
         self._check_equivalents()
 
     def _check_equivalents(self) -> None:
-        from beamdyn.common.checks import positive
+        from beamdyn.common.inputs.checks import positive
 
         with naming_option("exponent", "--woehler", self.woehler or ""):
             for exponent in self.exponents:
@@ -88,14 +88,14 @@ class CycleOptions:
 
     def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
         """Counted cycles, and the equal cycles that do the same damage."""
-        from beamdyn.tables.loads import cycles_table, equivalents_table
+        from beamdyn.results.tables.loads import cycles_table, equivalents_table
 
         made: list[RenderableType] = [cycles_table(cycles)]
         return [*made, equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
-        from beamdyn.tables.single_answers import cycles_csv
+        from beamdyn.results.tables.single_answers import cycles_csv
 
         if self.cycles_file is None:
             return

@@ -9,8 +9,8 @@ from beamdyn.analyses.analysis import analysis
 from beamdyn.analyses.options import AtSpeed, Discretization, PositiveSpeed, Text
 
 if TYPE_CHECKING:
+    from beamdyn.modes.equilibria import Equilibrium, EquilibriumBranches
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.equilibria import Equilibrium, EquilibriumBranches
 
 _BENT = "The scene; large deflection is modelled in any case."
 

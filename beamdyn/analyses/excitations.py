@@ -13,9 +13,9 @@ from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed
 
 if TYPE_CHECKING:
-    from beamdyn.linear_models.excitations import Excitation
-    from beamdyn.linear_models.observations import Observation
-    from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
+    from beamdyn.linear.excitations import Excitation
+    from beamdyn.linear.observations import Observation
+    from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.scene.scene import Scene
 
 Axes = Literal["log", "linear"]
@@ -77,7 +77,7 @@ class RandomInput:
         ValueError
             If not exactly one of the three is given, or the end of a road without a road.
         """
-        from beamdyn.linear_models.spectra import RoadRoughness
+        from beamdyn.linear.spectra import RoadRoughness
 
         if sum(given is not None for given in (self.psd, self.road, self.roughness)) != 1:
             raise ValueError("--psd, --road, --roughness: give one of the three")
@@ -118,7 +118,7 @@ NO_RANDOM_INPUT = RandomInput()
 
 def parse_input(text: str) -> Excitation:
     """The excitation of ``--input``: a word, or a force at a position with its unit."""
-    from beamdyn.linear_models.excitations import PointForce, as_excitation
+    from beamdyn.linear.excitations import PointForce, as_excitation
 
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
@@ -128,7 +128,7 @@ def parse_input(text: str) -> Excitation:
 
 def parse_output(text: str) -> Observation:
     """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
-    from beamdyn.linear_models.observations import AccelerationAt, DeflectionAt, as_observation
+    from beamdyn.linear.observations import AccelerationAt, DeflectionAt, as_observation
 
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
@@ -154,11 +154,11 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
     InvalidValue
         If the frequencies do not ascend, or a density is negative, or 0 on logarithmic axes.
     """
-    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.csv_columns import read_csv
     from beamdyn.common.edge.data_text import read_data
     from beamdyn.common.edge.inputs import Quantity
-    from beamdyn.linear_models.spectra import PowerSpectrum
+    from beamdyn.common.inputs.checks import InvalidValue
+    from beamdyn.linear.spectra import PowerSpectrum
 
     text = read_data(path)
 

@@ -20,14 +20,14 @@ from beamdyn.analyses.options import (
     Speeds,
 )
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
-from beamdyn.common.statements import GROWING, OUTSIDE, of_kind
+from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from beamdyn.modes.locus import Locus
+    from beamdyn.modes.modes import Modes
     from beamdyn.scene.scene import Scene
-    from beamdyn.spectrum.locus import Locus
-    from beamdyn.spectrum.modes import Modes
 
 _GROWING = "divergence", "flutter"  # states of modes
 _PLAIN = "auto: the plain beam; the limits belong to linear theory, and nothing is added."
@@ -52,7 +52,7 @@ def modes(
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     """
-    from beamdyn.cautions import warnings_of
+    from beamdyn.results.cautions import warnings_of
 
     result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
     if shapes is not None:
@@ -77,7 +77,7 @@ def locus(
         Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50,
         100 rad/s".
     """
-    from beamdyn.cautions import warnings_of
+    from beamdyn.results.cautions import warnings_of
 
     result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
     return Answer(result, _never(result), warnings_of(result, tolerance), draw=partial(_draw_locus, result))
@@ -121,8 +121,8 @@ def limits(
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
-    from beamdyn.cautions import critical_label
-    from beamdyn.output.plots import mark_critical
+    from beamdyn.common.plots.plots import mark_critical
+    from beamdyn.results.cautions import critical_label
 
     critical = bd.critical_point(result.scene)
     mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
@@ -131,8 +131,8 @@ def _draw_locus(result: Locus, ax: Axes) -> None:
 def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     import numpy as np
 
-    from beamdyn.cautions import labels_of
-    from beamdyn.output.export import write_shapes
+    from beamdyn.common.plots.export import write_shapes
+    from beamdyn.results.cautions import labels_of
 
     x = np.linspace(0, result.scene.beam.length, 101)
     write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)

@@ -17,9 +17,9 @@ from beamdyn.common.edge.outputs import NO_FILES, Outputs
 if TYPE_CHECKING:
     import numpy as np
 
-    from beamdyn.linear_models.frequency_response import FrequencyResponse
-    from beamdyn.linear_models.matrices import Matrices
-    from beamdyn.linear_models.random_response import RandomResponse
+    from beamdyn.linear.frequency_response import FrequencyResponse
+    from beamdyn.linear.matrices import Matrices
+    from beamdyn.linear.random_response import RandomResponse
     from beamdyn.scene.scene import Scene
 
 _UNIT = re.compile(r"[A-Za-z][A-Za-z/ ]*$")

@@ -12,9 +12,9 @@ from beamdyn.common.edge.outputs import NO_ANSWER_FILES, AnswerFiles
 
 if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
-    from beamdyn.rotor import RotorDrawing
+    from beamdyn.scene.rotor import RotorDrawing
     from beamdyn.scene.scene import Scene
-    from beamdyn.tradeoffs import Tradeoff
+    from beamdyn.studies.tradeoffs import Tradeoff
 
 MeasuredEnd = Annotated[float | None, positive("s", absent=none_given, field="t_end")]
 Budget = Annotated[float, positive("s", default="60 s")]
@@ -62,7 +62,7 @@ def tradeoff(
         listed.
     """
     from beamdyn.common.edge.progress import at_work
-    from beamdyn.tradeoffs import tradeoff
+    from beamdyn.studies.tradeoffs import tradeoff
 
     at = None if speed is None else parse_speed("--speed", speed, scene)
     with at_work("measuring") as progress:

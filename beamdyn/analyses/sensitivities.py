@@ -13,7 +13,7 @@ from beamdyn.analyses.values import final_speed, parse_positive, parse_speed
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
-    from beamdyn.sensitivities.result import Sensitivities
+    from beamdyn.studies.sensitivities.result import Sensitivities
 
 Kind = Literal["frequencies", "critical_speed", "crossings"]
 _OPTIONS = {  # on which each answer depends
@@ -61,8 +61,8 @@ def sensitivities(
         Largest relative error of a frequency or critical speed: the cheapest discretization that
         meets it is chosen; 1e-11 if not given.
     """
-    from beamdyn.common.checks import check_used
     from beamdyn.common.edge.wording import of_file
+    from beamdyn.common.inputs.checks import check_used
 
     check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     named, count = inputs or None, 3 if modes is None else modes

@@ -20,7 +20,7 @@ from beamdyn.analyses.values import (
 )
 from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
 from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
-from beamdyn.common.statements import InputValue, Words
+from beamdyn.common.results.statements import InputValue, Words
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.inputs import Input
@@ -67,8 +67,8 @@ def study(
     window
         Beginning and end of the window of time of peaks; default: 20:30 s.
     """
-    from beamdyn.common.designs import MOST_DESIGNS, check_designs
     from beamdyn.common.edge.varied_inputs import designs_of, parse_axis
+    from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
 
     spreading.check(varying)
     if not varying.vary and not spreading.spread:
@@ -95,10 +95,10 @@ def study(
 
 def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
     """Answer all designs."""
-    from beamdyn.cautions import warnings_of
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
-    from beamdyn.tables.studies import study_table
+    from beamdyn.results.cautions import warnings_of
+    from beamdyn.results.tables.studies import study_table
 
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress, of_file({}):
@@ -114,7 +114,7 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
     from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
     from beamdyn.common.edge.wording import of_file
     from beamdyn.scene.numbers import unit_of
-    from beamdyn.spreads.spread import nominal_value
+    from beamdyn.studies.spreads.spread import nominal_value
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
@@ -162,7 +162,7 @@ def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
 @contextmanager
 def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[None]:
     """Within it, a refusal of an option shows its text, one of an input its value and bound as given."""
-    from beamdyn.common.checks import InvalidValue
+    from beamdyn.common.inputs.checks import InvalidValue
 
     try:
         with ExitStack() as named:
@@ -195,7 +195,7 @@ def _inputs(scene: Scene) -> list[Input]:
     """The numbers of a scene that a study varies, as files describe them, and the speed."""
     from beamdyn.common.edge.inputs import Input, Quantity, describe
     from beamdyn.common.edge.varied_inputs import numbers
-    from beamdyn.config.scene_inputs import SceneInput
+    from beamdyn.files.scene_inputs import SceneInput
     from beamdyn.scene.numbers import SCALE, paths_of, unit_of
 
     class ByWholeName(Input):

@@ -61,7 +61,7 @@ def simulate(
     animation
         Write an animation of the same: .gif.
     """
-    from beamdyn.tables.results import transient_table
+    from beamdyn.results.tables.results import transient_table
 
     span = None if window is None else parse_window(window, t_end)
     run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)
@@ -113,8 +113,8 @@ def sweep(
 def _write_close_up(
     run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
-    from beamdyn.cautions import notes_of
-    from beamdyn.output.export import animate, write_series
+    from beamdyn.common.plots.export import animate, write_series
+    from beamdyn.results.cautions import notes_of
 
     if series is None and animation is None:
         return
@@ -129,7 +129,7 @@ def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, 
     """Positions, times and deflections: a few periods around the largest deflection in a window."""
     import numpy as np
 
-    from beamdyn.tables.results import time_of_peak
+    from beamdyn.results.tables.results import time_of_peak
 
     middle, _ = time_of_peak(run, *window)
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0

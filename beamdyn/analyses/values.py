@@ -66,8 +66,8 @@ def parse_positive(option: str, text: str, unit: str, scene: Scene | None = None
 @contextmanager
 def naming_option(field: str, option: str, text: str) -> Iterator[None]:
     """Within it, a refusal of an argument of the core names the option and shows its value as given."""
-    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.units import InvalidInput
+    from beamdyn.common.inputs.checks import InvalidValue
 
     try:
         yield
@@ -82,7 +82,7 @@ def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
 
     If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
     """
-    from beamdyn.config.rolling_speeds import as_velocity
+    from beamdyn.files.rolling_speeds import as_velocity
     from beamdyn.scene.motion import RollingWheel
 
     if scene is not None and isinstance(scene.motion, RollingWheel):
@@ -201,7 +201,7 @@ def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]
 
 def unit_of_speed(*texts: str | None) -> str:
     """Unit of the first text with a speed that can be shown in its unit; empty if there is none."""
-    from beamdyn.common.display_units import known_unit
+    from beamdyn.common.results.display_units import known_unit
 
     found = (_UNIT.search(text.strip()) for text in texts if text is not None)
     return next(filter(None, (known_unit("speed", unit.group()) for unit in found if unit)), "")

@@ -13,12 +13,12 @@ from pydantic import Field, create_model
 from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.app.inputs import ASIDE, read_aside, read_scene
 from beamdyn.app.scene_screen import drawn, scene_screen
-from beamdyn.cautions import warnings_of
-from beamdyn.common.app.folded_parts import FoldedPicture
-from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.inputs import Section, parts_of
 from beamdyn.common.edge.wording import of_file
-from beamdyn.common.results import Result
+from beamdyn.common.results.result import Result
+from beamdyn.common.screens.folded_parts import FoldedPicture
+from beamdyn.common.screens.screens import Screen
+from beamdyn.results.cautions import warnings_of
 
 _KINDS = (str, int, float)  # of options on a form
 

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.app.screens import KeyResult
-from beamdyn.common.display_units import ShownUnit
-from beamdyn.common.one_line import number
-from beamdyn.model_error.left_out_effects import say_size
+from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.one_line import number
+from beamdyn.common.screens.screens import KeyResult
+from beamdyn.modes.critical import CriticalPoint
+from beamdyn.modes.locus import Locus
+from beamdyn.modes.model_error.left_out_effects import say_size
+from beamdyn.modes.modes import Modes
 from beamdyn.scene.validity import LARGE_DEFLECTION
-from beamdyn.spectrum.critical import CriticalPoint
-from beamdyn.spectrum.locus import Locus
-from beamdyn.spectrum.modes import Modes
 from beamdyn.steady.response import SteadyResponse
 
 

@@ -11,14 +11,14 @@ from typing import Annotated, Any, get_args
 from pydantic import BaseModel, Field, create_model
 
 from beamdyn import natural_modes
-from beamdyn.common.app.screens import Drag
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.display_units import known_unit
 from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, describe
 from beamdyn.common.edge.units import unit_as_written
-from beamdyn.config.scene_inputs import RectangularInput, SceneInput, StiffnessInput
-from beamdyn.config.scenes import scene_from_dict
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.display_units import known_unit
+from beamdyn.common.screens.screens import Drag
+from beamdyn.files.scene_inputs import RectangularInput, SceneInput, StiffnessInput
+from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.

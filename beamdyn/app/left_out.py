@@ -9,7 +9,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
-from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
 
 _LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
 _DECADE = 3  # letters of a bar for a decade

@@ -12,11 +12,11 @@ from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.headlines import of_modes, of_numbers
 from beamdyn.app.inputs import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
-from beamdyn.common.app.screens import Drag, Slider
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.screens.screens import Drag, Slider
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.spectrum.modes import Modes
+from beamdyn.modes.modes import Modes
 
 _PLACES = 41  # along the beam
 _LARGEST = 0.22  # deflection drawn, over the length

@@ -13,9 +13,9 @@ from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.app.screens import Document, Program
-from beamdyn.config.scene_inputs import with_physics_as_table
-from beamdyn.config.scenes import parse_scene
+from beamdyn.common.screens.screens import Document, Program
+from beamdyn.files.scene_inputs import with_physics_as_table
+from beamdyn.files.scenes import parse_scene
 
 SHOWN = [analysis for analysis in ANALYSES.values() if analysis.screen]
 SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE, *map(analysis_screen, SHOWN))

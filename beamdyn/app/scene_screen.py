@@ -11,12 +11,12 @@ from rich.console import RenderableType
 from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
-from beamdyn.cautions import describe_choice, notes_of, warnings_of
-from beamdyn.common.app.screens import Screen
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.results import Result
-from beamdyn.model_error.left_out_effects import StatesModelError
-from beamdyn.output.notes import note_below
+from beamdyn.common.plots.notes import note_below
+from beamdyn.common.results.result import Result
+from beamdyn.common.screens.screens import Screen
+from beamdyn.modes.model_error.left_out_effects import StatesModelError
+from beamdyn.results.cautions import describe_choice, notes_of, warnings_of
 
 
 def scene_screen(

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from beamdyn.campbell_diagram.margins import Margin
-from beamdyn.common.display_units import DisplayUnits
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.modes.locus import Locus
 from beamdyn.scene.motion import Line
-from beamdyn.spectrum.locus import Locus
+from beamdyn.studies.campbell.margins import Margin
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
 _HEADROOM = 1.08  # height of the chart over the highest frequency

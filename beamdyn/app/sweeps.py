@@ -13,21 +13,21 @@ from matplotlib.figure import Figure
 
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
-from beamdyn.cautions import warnings_of
-from beamdyn.common.app.form_entries import entries_of
-from beamdyn.common.app.screens import Sweeps
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.curves import sweep_figure
-from beamdyn.common.designs import check_designs
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen
 from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_cases
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
-from beamdyn.model_error.left_out_effects import LARGE_MODEL_ERROR
-from beamdyn.output.notes import note_below
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.designs import check_designs
+from beamdyn.common.plots.curves import sweep_figure
+from beamdyn.common.plots.notes import note_below
+from beamdyn.common.screens.form_entries import entries_of
+from beamdyn.common.screens.screens import Sweeps
+from beamdyn.modes.critical import CriticalPoint
+from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR
+from beamdyn.modes.modes import Modes
+from beamdyn.results.cautions import warnings_of
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.critical import CriticalPoint
-from beamdyn.spectrum.modes import Modes
 
 Kept = TypeVar("Kept")
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, about the largest amplitude, and refinements of these

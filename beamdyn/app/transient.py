@@ -15,20 +15,20 @@ from beamdyn.app.headlines import of_peak
 from beamdyn.app.inputs import first_frequency, read_aside, read_scene
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.scene_screen import scene_screen
-from beamdyn.cautions import describe_choice
-from beamdyn.common.app.courses import Onward
-from beamdyn.common.app.screens import KeyResult, Slider
-from beamdyn.common.checks import InvalidValue
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.wording import of_file
-from beamdyn.common.one_line import number
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.one_line import number
+from beamdyn.common.screens.courses import Onward
+from beamdyn.common.screens.screens import KeyResult, Slider
 from beamdyn.equations.directions import modelled_directions
+from beamdyn.results.cautions import describe_choice
+from beamdyn.results.tables.results import time_of_peak, transient_table
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
-from beamdyn.tables.results import time_of_peak, transient_table
 from beamdyn.transient.transient import Transient
 
 _TOLERANCE = 1e-4

@@ -88,7 +88,7 @@ def campbell(
     outputs
         Output files.
     """
-    from beamdyn.tables.campbell import crossings_of_lines_csv
+    from beamdyn.results.tables.campbell import crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
@@ -138,7 +138,7 @@ def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None)
 def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
     from beamdyn.cli.decks import read_with
     from beamdyn.common.edge.config import read
-    from beamdyn.config.scenes import load_scene
+    from beamdyn.files.scenes import load_scene
 
     if path.suffix.lower() == ".toml":
         return _BladeFile(path, load_scene(path), read(path), ())

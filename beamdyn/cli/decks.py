@@ -14,7 +14,7 @@ from beamdyn.common.edge.outputs import Flag, Outputs
 from beamdyn.common.edge.program import examples, warn
 
 if TYPE_CHECKING:
-    from beamdyn.decks.deck import Deck
+    from beamdyn.files.decks.deck import Deck
 
 DeckFile = Annotated[Path, Parameter(name="FILE")]
 Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
@@ -60,7 +60,7 @@ def import_deck(
         Overwrite a file that exists.
     """
     from beamdyn.common.edge.tables import show
-    from beamdyn.decks.deck_tables import deck_tables
+    from beamdyn.files.decks.deck_tables import deck_tables
 
     outputs = Outputs(force=force)
     outputs.check(file, output=output, polynomials=polynomials)
@@ -81,7 +81,7 @@ def import_deck(
 def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:
     """Write the polynomials, and say how well they fit."""
     from beamdyn.common.edge.tables import show, table
-    from beamdyn.common.files import check_writable, write_text
+    from beamdyn.common.results.files import check_writable, write_text
 
     fitted = deck.fit_mode_polynomials(speed)
     lines = [line for each in fitted for line in each.lines()]
@@ -92,7 +92,7 @@ def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool)
 
 def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
     """Read a deck with the options --length and --hub-radius."""
-    from beamdyn.decks.deck import read_deck
+    from beamdyn.files.decks.deck import read_deck
 
     given = {
         name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from beamdyn.cli.program import app
-from beamdyn.common.app.server import add_command
+from beamdyn.common.screens.server import add_command
 
 if TYPE_CHECKING:
-    from beamdyn.common.app.screens import Program
+    from beamdyn.common.screens.screens import Program
 
 
 def make_program() -> Program:

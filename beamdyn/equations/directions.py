@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 

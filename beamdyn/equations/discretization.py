@@ -119,7 +119,7 @@ class Discretization(Protocol):
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
        `converges_regularly` says whether the estimate needs no further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
-       in `beamdyn.modal.choice`.
+       in `beamdyn.modes.modal.choice`.
 
     Examples
     --------

@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations

@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
-from beamdyn.common.checks import count, one_of, set_fields
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.inputs.checks import count, one_of, set_fields
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import HINGED, RootConditions
 from beamdyn.scene.beam import Beam

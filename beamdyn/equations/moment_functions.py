@@ -32,7 +32,7 @@ import numpy as np
 from scipy.linalg.lapack import dgeqp3, dorgqr
 
 from beamdyn.common.legendre import legendre_series, legendre_values
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions

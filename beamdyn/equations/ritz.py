@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.checks import count, one_of, set_fields
+from beamdyn.common.inputs.checks import count, one_of, set_fields
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.equations.moment_functions import MomentSpaces

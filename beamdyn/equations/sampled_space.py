@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_rule
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.scene.profile import Profile
 

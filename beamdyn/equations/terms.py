@@ -10,8 +10,8 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.one_line import counted
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results.one_line import counted
+from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS

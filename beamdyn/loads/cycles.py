@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import count, kind, positive
-from beamdyn.common.one_line import number, warned
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.inputs.checks import count, kind, positive
+from beamdyn.common.results.one_line import number, warned
+from beamdyn.common.results.result import Provenance, Result
 from beamdyn.loads.equivalent_ranges import EquivalentRange
 from beamdyn.loads.span_loads import UNITS
 from beamdyn.loads.transient_loads import TransientLoads, window_in
@@ -116,7 +116,7 @@ class LoadCycles(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how many cycles exceed each range."""
-        from beamdyn.output.plots_along_span import plot_exceedance
+        from beamdyn.common.plots.plots_along_span import plot_exceedance
 
         unit = UNITS[self.quantity] or "-"
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)

@@ -21,10 +21,10 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.linear_models.excitations import BaseMotion, Excitation
-from beamdyn.linear_models.mean_square import damped_motion, pole_integrals, residues
-from beamdyn.linear_models.model_at_speed import HarmonicDrive, ModelAtSpeed
-from beamdyn.linear_models.spectra import PowerSpectrum
+from beamdyn.linear.excitations import BaseMotion, Excitation
+from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear.spectra import PowerSpectrum
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.section_points import StationOutputs
 from beamdyn.loads.stations import SpanStations

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.load_time_error import time_errors_of_rows
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours

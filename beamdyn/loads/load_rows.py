@@ -22,7 +22,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations

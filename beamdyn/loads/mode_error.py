@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.accuracy.margins import MODES_OF_FORCES, MODES_OF_MOMENTS
 from beamdyn.loads.section_points import StationOutputs
 from beamdyn.loads.stations import SpanStations
-from beamdyn.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.modal_basis import ModalBasis
 
 _LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
 _ROUNDING = 1e-12  # relative to the largest along the span

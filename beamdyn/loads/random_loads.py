@@ -21,27 +21,27 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced_of_plain_beam
-from beamdyn.common.checks import InvalidValue, ascending, positive, refuse, within
-from beamdyn.common.digits import percent, supported
-from beamdyn.common.one_line import counted, error_at_most, warned
-from beamdyn.common.results import Provenance
-from beamdyn.linear_models.choice import check_linear, model_of_few_modes, with_forces
-from beamdyn.linear_models.convergence import Refined, evaluate_accurately
-from beamdyn.linear_models.excitations import Excitation
-from beamdyn.linear_models.mean_square import partial_fractions
-from beamdyn.linear_models.model_at_speed import ModelAtSpeed
-from beamdyn.linear_models.observations import DeflectionAt
-from beamdyn.linear_models.parametric import ParametricTerm, parametric_term
-from beamdyn.linear_models.random_input import highest_frequency, random_input, warn_of_band
-from beamdyn.linear_models.spectra import PowerSpectrum, RoadRoughness
-from beamdyn.linear_models.transfer import check_stable
+from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refuse, within
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.digits import percent, supported
+from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.linear.choice import check_linear, model_of_few_modes, with_forces
+from beamdyn.linear.convergence import Refined, evaluate_accurately
+from beamdyn.linear.excitations import Excitation
+from beamdyn.linear.mean_square import partial_fractions
+from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.linear.observations import DeflectionAt
+from beamdyn.linear.parametric import ParametricTerm, parametric_term
+from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
+from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.transfer import check_stable
 from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
-from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_elastic_limit, warn_of_left_out
@@ -254,7 +254,7 @@ class RandomLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
         """Draw the largest magnitude expected of a quantity along the span."""
-        from beamdyn.output.plots_along_span import plot_along_span
+        from beamdyn.common.plots.plots_along_span import plot_along_span
 
         self.check_known(quantity)
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"

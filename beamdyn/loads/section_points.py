@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, as_floats, positive, refuse
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, positive, refuse
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, count, one_of
-from beamdyn.common.one_line import counted, error_at_most, number, warned
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.inputs.checks import InvalidValue, count, one_of
+from beamdyn.common.results.one_line import counted, error_at_most, number, warned
+from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.loads.section_points import QUANTITIES, Sections
 from beamdyn.loads.stations import SpanStations
@@ -211,7 +211,7 @@ class SpanLoads(Result):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw a quantity along the span: of few cases, else the range in which it lies."""
-        from beamdyn.output.plots_along_span import plot_along_span
+        from beamdyn.common.plots.plots_along_span import plot_along_span
 
         self.check_known(quantity)
         values, labels = self.values(quantity), self.components(quantity)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, as_floats, real_array, refuse
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, refuse
 from beamdyn.scene.beam import Beam
 
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import kind, one_of
-from beamdyn.common.results import Provenance
+from beamdyn.common.inputs.checks import kind, one_of
+from beamdyn.common.results.result import Provenance
 from beamdyn.loads.load_lines import LoadLines, lines_of_response
 from beamdyn.loads.mode_error import mode_error, with_neighbours
 from beamdyn.loads.section_points import QUANTITIES, SectionPoints, StationOutputs, sections_at
@@ -88,7 +88,7 @@ class SteadyLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw the largest magnitude of a quantity over all speeds along the span."""
-        from beamdyn.output.plots_along_span import plot_along_span
+        from beamdyn.common.plots.plots_along_span import plot_along_span
 
         self.check_known(quantity)
         largest = np.nanmax(self.values(quantity), axis=0, keepdims=True)

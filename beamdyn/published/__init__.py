@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from beamdyn.common import published
+from beamdyn.common.results import published
 
 
 def load(name: str) -> dict[str, Any]:

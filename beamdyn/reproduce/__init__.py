@@ -8,10 +8,10 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from rich.console import Console
 
-from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.tables import comparison_table
-from beamdyn.common.pictures import save_figure
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.pictures import save_figure
 from beamdyn.published import load
 from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables
 from beamdyn.reproduce.entries import Summary

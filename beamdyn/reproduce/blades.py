@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.comparison import Comparison
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce.entries import PrintedValue
 from beamdyn.scene.beam import Beam
@@ -16,7 +17,6 @@ from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.modes import Modes, natural_modes
 
 _NOT_MODELLED = "not all is modelled (10)"
 _TWO_PLANES = Physics(planes=2)

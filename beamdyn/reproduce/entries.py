@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from beamdyn.common.digits import supported
+from beamdyn.common.results.digits import supported
 
 
 @dataclass(frozen=True)

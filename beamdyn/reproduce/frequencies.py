@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.comparison import Comparison
+from beamdyn.common.plots.plots import mark_points, plot_loci_by_angle, plot_locus
+from beamdyn.common.results.comparison import Comparison
 from beamdyn.equations.ritz import Ritz
-from beamdyn.output.plots import mark_points, plot_loci_by_angle, plot_locus
+from beamdyn.modes.critical import critical_point
+from beamdyn.modes.locus import frequency_locus
+from beamdyn.modes.modes import natural_modes
+from beamdyn.modes.setting_angles import setting_angle_limits
 from beamdyn.published import load
 from beamdyn.reproduce.common import OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.reproduce.large_deflection import draw_first_frequencies
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.critical import critical_point
-from beamdyn.spectrum.locus import frequency_locus
-from beamdyn.spectrum.modes import natural_modes
-from beamdyn.spectrum.setting_angles import setting_angle_limits
 
 _ANSYS = "ANSYS (4)"
 _ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly

@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.optimize import brentq
 
-from beamdyn.common.comparison import Comparison
+from beamdyn.common.plots.plots import plot_loci_by_angle
+from beamdyn.common.results.comparison import Comparison
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.model import Model
-from beamdyn.output.plots import plot_loci_by_angle
+from beamdyn.modes.locus import frequency_locus
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, published_scene
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.locus import frequency_locus
-from beamdyn.spectrum.modes import natural_modes
 
 _LINEAR = "paper's model"
 _SPEEDS = (100.0, 400.0)  # at which the figures are judged [rad/s]: that of Table 2, and one beyond

@@ -11,16 +11,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from beamdyn.common.comparison import Comparison
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.pictures import COLOURS
 from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, rolling_scene
+from beamdyn.results.tables.results import sweep_peaks
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
-from beamdyn.tables.results import sweep_peaks
 from beamdyn.transient.simulate import simulate
 from beamdyn.transient.sweep import Sweep, sweep
 from beamdyn.transient.transient import Transient

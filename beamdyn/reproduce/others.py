@@ -10,6 +10,8 @@ from numpy.polynomial import Polynomial
 from rich.console import Group
 
 from beamdyn.common.edge.tables import table
+from beamdyn.modes.critical import critical_point
+from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce.common import decimals
 from beamdyn.reproduce.entries import Summary
@@ -17,8 +19,6 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.critical import critical_point
-from beamdyn.spectrum.modes import natural_modes
 
 
 def summarize_sources() -> Iterator[Summary]:

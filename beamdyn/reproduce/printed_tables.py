@@ -16,6 +16,8 @@ from beamdyn.equations.discretization import FIXED, Discretization
 from beamdyn.equations.equations_of_motion import assemble_over
 from beamdyn.equations.fem import Fem
 from beamdyn.equations.ritz import Ritz
+from beamdyn.modes.bounds import frequency_bounds
+from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce.blades import entries_of_blades, stations
 from beamdyn.reproduce.entries import PrintedValue, Summary, summarize_entries
@@ -24,8 +26,6 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.bounds import frequency_bounds
-from beamdyn.spectrum.modes import natural_modes
 
 PAPERS = ("bir_2009", "bir_2010", "hamza_cherif_houmat_2004", "ozdemir_kaya_2006", "code_aster")
 BLADES = ("iea_15", "nrel_5", "bmodes_test01")

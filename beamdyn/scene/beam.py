@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import (
+from beamdyn.common.inputs.checks import (
     InvalidValue,
     kind,
     positive,
@@ -18,8 +18,8 @@ from beamdyn.common.checks import (
     several,
     size,
 )
-from beamdyn.common.one_line import OneLine, counted, number, spanned
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.one_line import OneLine, counted, number, spanned
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.scene.direction import direction_of
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.points import PointMass, PointSpring, TipMass

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from beamdyn.common.checks import InvalidValue, amount, real_array, refuse, set_fields
-from beamdyn.common.described import Described, descriptions
+from beamdyn.common.inputs.checks import InvalidValue, amount, real_array, refuse, set_fields
+from beamdyn.common.inputs.described import Described, descriptions
 
 _RATIO: Any = {"least": 0, "below": 1, "remedy": "1 % is 0.01"}
 

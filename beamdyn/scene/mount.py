@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import Annotated, Any
 
-from beamdyn.common.checks import InvalidValue, angle, not_negative, refuse, set_fields
-from beamdyn.common.described import Described
-from beamdyn.common.one_line import OneLine, number
+from beamdyn.common.inputs.checks import InvalidValue, angle, not_negative, refuse, set_fields
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import OneLine, number
 from beamdyn.scene.doubts import warn_of_degrees
 
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}

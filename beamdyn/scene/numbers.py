@@ -14,9 +14,9 @@ from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from typing import Any, get_type_hints
 
-from beamdyn.common.checks import InvalidValue, positive
-from beamdyn.common.described import description, kinds_of
-from beamdyn.common.paths import part_at, with_parts
+from beamdyn.common.inputs.checks import InvalidValue, positive
+from beamdyn.common.inputs.described import description, kinds_of
+from beamdyn.common.inputs.paths import part_at, with_parts
 from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Motion

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from beamdyn.common.checks import InvalidValue, count, flag, one_of, set_fields
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, set_fields
+from beamdyn.common.inputs.described import Described
 
 
 @dataclass(frozen=True)

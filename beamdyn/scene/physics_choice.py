@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from beamdyn.common.digits import percent
-from beamdyn.common.results import Result, plain
-from beamdyn.common.statements import TOLERANCE, Statement
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.result import Result, plain
+from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.scene.physics import Physics
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, get_args
 
-from beamdyn.common.checks import amount, one_of, positive, real, refuse, set_fields
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.checks import amount, one_of, positive, real, refuse, set_fields
+from beamdyn.common.inputs.described import Described
 from beamdyn.scene.direction import ALONG_BENDING, Direction
 
 

@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
-from beamdyn.common.checks import MOST, InvalidValue, real, real_array, refuse
+from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, refuse
 from beamdyn.common.legendre import (
     gauss_points_on,
     integrate_series,
@@ -24,7 +24,7 @@ from beamdyn.common.legendre import (
     legendre_values,
     multiply_series,
 )
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import real, refuse, set_fields, size
+from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.scene.profile import Profile, as_profile
 
 SIDES = {"width": "m", "thickness": "m"}

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from beamdyn.common.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
-from beamdyn.common.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.one_line import OneLine, given_fields, number
+from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
+from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.direction import ACROSS

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile, combine
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.checks import MOST, refuse
-from beamdyn.common.statements import (
+from beamdyn.common.inputs.checks import MOST, refuse
+from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,
     LIMITS,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.one_line import error_at_most, listed, warned
-from beamdyn.common.results import Provenance
-from beamdyn.common.statements import Speeds, Words
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.common.results.one_line import error_at_most, listed, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import Speeds, Words
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
@@ -161,7 +161,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
-        from beamdyn.output.campbell import Curves, plot_campbell
+        from beamdyn.common.plots.campbell import Curves, plot_campbell
 
         lines = {line.name: line.multiple for line in self.lines}
         marked = {

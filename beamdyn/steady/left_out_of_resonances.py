@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from beamdyn.modal.choice import choose_model
-from beamdyn.modal.model import Model
-from beamdyn.model_error.left_out_effects import LeftOutEffects
-from beamdyn.model_error.of_modes import left_out_of_modes, nothing_known
+from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.model_error.of_modes import left_out_of_modes, nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 

@@ -12,20 +12,20 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
-from beamdyn.common.announced import announced
-from beamdyn.common.checks import ascending, count, positive
-from beamdyn.common.one_line import error_at_most, states, warned
-from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.results import Provenance, plain
-from beamdyn.common.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
+from beamdyn.common.inputs.checks import ascending, count, positive
+from beamdyn.common.results.announced import announced
+from beamdyn.common.results.one_line import error_at_most, states, warned
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.result import Provenance, plain
+from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modal.choice import DiscretizationChoice, ensure_size
-from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
-from beamdyn.modal.model import Model
-from beamdyn.model_error.by_solving import SolvedValues, left_out_by_solving
-from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.model_error.of_modes import nothing_known
+from beamdyn.modes.modal.choice import DiscretizationChoice, ensure_size
+from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
+from beamdyn.modes.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -229,7 +229,7 @@ class SteadyResponse(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the resonance curve, and where the beam bends in two directions also that in each."""
-        from beamdyn.output.plots import plot_response
+        from beamdyn.common.plots.plots import plot_response
 
         names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}

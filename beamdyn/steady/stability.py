@@ -26,7 +26,7 @@ import numpy as np
 import scipy.sparse
 from scipy.sparse.linalg import ArpackError, eigs
 
-from beamdyn.common.checks import NoModelAnswer
+from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.steady.harmonic_balance import convolution_matrix
 from beamdyn.steady.mean_modes import MeanModes
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics

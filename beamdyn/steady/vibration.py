@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.choice import DiscretizationChoice, choose_model
-from beamdyn.modal.deflected import DeflectedSolver
-from beamdyn.modal.eigen import Solver
-from beamdyn.modal.equilibrium import NoEquilibrium
-from beamdyn.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.equilibrium import NoEquilibrium
+from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.excitation_phases import periodic_system, periodic_system_of_each, split_uncoupled

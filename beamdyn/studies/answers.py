@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.statements import after
+from beamdyn.common.results.statements import after
 
 REFUSED = "refused"  # status of a design without an answer
 NO_ANSWERS = (

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.common.statements import OUTSIDE, Statement
+from beamdyn.common.results.statements import OUTSIDE, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.mass import moments_about_root
-from beamdyn.modal.many_designs import speeds_of_meeting
+from beamdyn.modes.modal.many_designs import speeds_of_meeting
 from beamdyn.studies.answers import DesignAnswers, caution_where
 from beamdyn.studies.frequencies import cautions_of_error
 from beamdyn.studies.refinement import BasisAnswers, Refinement
@@ -95,7 +95,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Whether the form F of `beamdyn.spectrum.buckling` is positive without a look at its string, (N,).
+    """Whether the form F of `beamdyn.modes.buckling` is positive without a look at its string, (N,).
 
     Parameters
     ----------

@@ -8,13 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.designs import Designs, rows_of
-from beamdyn.common.statements import EXCITATION, Statement
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.designs import Designs, rows_of
+from beamdyn.common.results.statements import EXCITATION, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modal.many_designs import speeds_of_meeting
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.many_designs import speeds_of_meeting
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Line
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.statements import GROWING, NO_ANSWER, TOLERANCE, Statement, after
+from beamdyn.common.results.statements import GROWING, NO_ANSWER, TOLERANCE, Statement, after
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modal.choice import warn_of_missed_tolerance
-from beamdyn.modal.many_designs import PencilStack, solve_many
+from beamdyn.modes.modal.choice import warn_of_missed_tolerance
+from beamdyn.modes.modal.many_designs import PencilStack, solve_many
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,
     LARGE_STRAIN,

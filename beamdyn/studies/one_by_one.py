@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.announced import unannounced
-from beamdyn.common.designs import rows_of
-from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.statements import (
+from beamdyn.common.inputs.designs import rows_of
+from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.statements import (
     NO_ANSWER,
     OUTSIDE,
     InputValue,
@@ -24,11 +24,11 @@ from beamdyn.common.statements import (
     joined,
     kind_of,
 )
-from beamdyn.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.critical import CriticalPoint, critical_point
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
-from beamdyn.spectrum.critical import CriticalPoint, critical_point
-from beamdyn.spectrum.modes import Modes, natural_modes
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import SteadyResponse, steady_response

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.designs import Designs, VariedInput
-from beamdyn.common.one_line import counted, error_at_most, spanned, warned
-from beamdyn.common.results import Provenance
-from beamdyn.common.statements import InputValue, Statement, Words, joined
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import InputValue, Statement, Words, joined
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.answers import NO_ANSWERS, REFUSED
@@ -196,7 +196,7 @@ class Study(StatesModelError):
 
         Crosses at the bottom stand where there is no number; inputs after the second have their first value.
         """
-        from beamdyn.output.plots_over_inputs import plot_over_input
+        from beamdyn.common.plots.plots_over_inputs import plot_over_input
 
         first, rest = self.inputs[0], self._rest()
         title, words = f"at {', '.join(rest)}" if rest else "", f"{self._words()} [{self.unit}]"

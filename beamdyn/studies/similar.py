@@ -25,12 +25,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modal.error_estimate import parts_of_distances
-from beamdyn.modal.many_designs import Estimate, PencilStack
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.error_estimate import parts_of_distances
+from beamdyn.modes.modal.many_designs import Estimate, PencilStack
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import RIGHT_ANGLE, ROUNDED_ANGLE, Mount
 from beamdyn.scene.numbers import SCALE

@@ -14,8 +14,7 @@ import numpy as np
 import scipy
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced
-from beamdyn.common.checks import (
+from beamdyn.common.inputs.checks import (
     InvalidValue,
     NoModelAnswer,
     as_floats,
@@ -27,11 +26,12 @@ from beamdyn.common.checks import (
     real_array,
     within,
 )
-from beamdyn.common.designs import Designs, VariedInput, check_designs, rows_of
+from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, rows_of
 from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance
-from beamdyn.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
+from beamdyn.common.results.announced import announced
+from beamdyn.common.results.result import Provenance
+from beamdyn.modes.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
 from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import reason_of
+from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.pickling import FieldsOnly
+from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate

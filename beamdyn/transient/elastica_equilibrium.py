@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.elastica import QUANTITIES
 from beamdyn.equations.root_motion import Quantity
-from beamdyn.modal.eigen import Solver
-from beamdyn.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
+from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
 from beamdyn.transient.elastica_system import ElasticaSystem
 
 _REMEDY = "give 'rest' or an array"

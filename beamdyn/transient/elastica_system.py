@@ -21,9 +21,9 @@ from beamdyn.equations.directions import check_direction
 from beamdyn.equations.elastica import Elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import RootMotion
-from beamdyn.modal.equilibrium import Branch
-from beamdyn.modal.modal_basis import ModalBasis
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.equilibrium import Branch
+from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 

@@ -19,7 +19,7 @@ from typing import Protocol
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.checks import MOST
+from beamdyn.common.inputs.checks import MOST
 from beamdyn.transient.limits import growth_without_bound
 
 BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, as_floats
+from beamdyn.common.inputs.checks import InvalidValue, as_floats
 from beamdyn.transient.elastica_equilibrium import find_equilibrium
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.system import ModalSystem

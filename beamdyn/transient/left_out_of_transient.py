@@ -13,15 +13,15 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, reason_of
+from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.modal.choice import ensure_size
-from beamdyn.modal.finite_amplitude import SMALL, FreeVibration
-from beamdyn.modal.modal_basis import find_speed_range
-from beamdyn.modal.model import Model
-from beamdyn.model_error.by_solving import SolvedValues, left_out_by_solving
-from beamdyn.model_error.left_out_effects import LeftOutEffects
-from beamdyn.model_error.of_modes import left_out_of_modes, without_large_deflection
+from beamdyn.modes.modal.choice import ensure_size
+from beamdyn.modes.modal.finite_amplitude import SMALL, FreeVibration
+from beamdyn.modes.modal.modal_basis import find_speed_range
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.model_error.of_modes import left_out_of_modes, without_large_deflection
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.trajectory import Path
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.checks import NoModelAnswer
-from beamdyn.modal.modal_basis import SPEED_SAMPLES
-from beamdyn.modal.model import Model
+from beamdyn.common.inputs.checks import NoModelAnswer
+from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 

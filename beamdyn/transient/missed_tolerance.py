@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.statements import TOLERANCE, Statement
+from beamdyn.common.results.statements import TOLERANCE, Statement
 
 
 def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:

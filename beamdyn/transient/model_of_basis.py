@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.modal.choice import DiscretizationChoice, choose_model
-from beamdyn.modal.modal_basis import ModalBasis
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
 
 

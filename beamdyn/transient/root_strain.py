@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene

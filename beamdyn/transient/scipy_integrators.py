@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import OdeSolver, solve_ivp
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss_solver import GaussCollocation
 from beamdyn.transient.integration import integrate

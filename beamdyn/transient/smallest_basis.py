@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from beamdyn.accuracy.refinement import refine
-from beamdyn.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.trajectory import SAMPLES
 from beamdyn.transient.transient import Transient, TransientRequest

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from beamdyn.accuracy.refinement import refine
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.gauss import Segment, propagate

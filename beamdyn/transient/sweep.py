@@ -18,8 +18,7 @@ import numpy as np
 import scipy
 
 from beamdyn._version import __version__
-from beamdyn.common.announced import announced, unannounced
-from beamdyn.common.checks import (
+from beamdyn.common.inputs.checks import (
     InvalidValue,
     NoModelAnswer,
     as_floats,
@@ -29,21 +28,22 @@ from beamdyn.common.checks import (
     real,
     within,
 )
-from beamdyn.common.digits import supported
-from beamdyn.common.one_line import counted, error_at_most, states, warned
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results import Provenance
-from beamdyn.common.statements import NO_ANSWER, TOLERANCE, Statement
+from beamdyn.common.results.announced import announced, unannounced
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.one_line import counted, error_at_most, states, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
 from beamdyn.equations.directions import modelled_directions
-from beamdyn.modal.choice import DiscretizationChoice
-from beamdyn.modal.modal_basis import (
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.modal_basis import (
     SPEED_SAMPLES,
     given_basis,
 )
-from beamdyn.model_error.choice import choose_for_motion, warn_of_peak
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.model_error.of_modes import nothing_known
+from beamdyn.modes.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
@@ -185,7 +185,7 @@ class Sweep(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
-        from beamdyn.output.plots import plot_sweep
+        from beamdyn.common.plots.plots import plot_sweep
 
         names = modelled_directions(self.scene)
         if len(names) == 1:

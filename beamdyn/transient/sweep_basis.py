@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
+from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
 from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.smallest_basis import run_smallest_basis
 from beamdyn.transient.transient import Transient

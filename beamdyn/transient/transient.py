@@ -14,17 +14,17 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.accuracy.margins import MODES_OF_MOMENTS
-from beamdyn.common.checks import InvalidValue, real, real_array
-from beamdyn.common.one_line import error_at_most, number, warned
-from beamdyn.common.pickling import FieldsOnly
-from beamdyn.common.results import Provenance
-from beamdyn.common.statements import Statement
+from beamdyn.common.inputs.checks import InvalidValue, real, real_array
+from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modal.choice import DiscretizationChoice, ensure_size
-from beamdyn.modal.modal_basis import SPEED_SAMPLES, ModalBasis
-from beamdyn.modal.model import Model
-from beamdyn.model_error.choice import warn_of_peak
-from beamdyn.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.modal.choice import DiscretizationChoice, ensure_size
+from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.choice import warn_of_peak
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
@@ -305,7 +305,7 @@ class Transient(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
-        from beamdyn.output.plots import plot_transient
+        from beamdyn.common.plots.plots import plot_transient
 
         names = modelled_directions(self.scene)
         tips = np.array([self.tip, self.tip_across][: len(names)])
@@ -315,7 +315,7 @@ class Transient(StatesModelError):
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
     ) -> None:
         """Write the deflected beam from start to end [s] as a time series for ParaView."""
-        from beamdyn.output.export import write_series
+        from beamdyn.common.plots.export import write_series
 
         _check_window(start, end, self.path)
         x = np.linspace(0, self.scene.beam.length, 41)

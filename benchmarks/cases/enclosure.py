@@ -10,7 +10,7 @@ from mpmath import mpf
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import FrequencyBounds
+from beamdyn.modes.bounds import FrequencyBounds
 from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import pi
 
 import beamdyn as bd
-from beamdyn.common.comparison import Comparison
+from beamdyn.common.results.comparison import Comparison
 from beamdyn.published import load
 from benchmarks.cases.textbooks import INCH, LBF
 from benchmarks.cases.two_planes import carnegie_scene

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 
 _FEWEST, _MOST = 10, 100  # stations
 _DECADES = 8.0  # by which a stiffness falls from the root to the tip, at most

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 
 # Places x/L between which a reference has functions of its own: layers at the ends are as short as 1e-3.
 _PLACES = (0.003, 0.02, 0.1, 0.9, 0.98, 0.997)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.common.comparison import Comparison
-from beamdyn.modal.model import Model
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.modes.modal.model import Model
 from beamdyn.published import load
 from beamdyn.transient.system import ModalSystem
 from benchmarks.cases.elastica import harvester_at, published

@@ -8,7 +8,7 @@ from math import cos, pi, sin
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from beamdyn.transient.system import ModalSystem
 from benchmarks.cases.scenes import ROLLING
 

@@ -15,10 +15,6 @@ from pydantic import BaseModel
 from rich.console import RenderableType
 
 from beamdyn._version import __version__
-from beamdyn.common.app.folded_parts import FoldedPart
-from beamdyn.common.app.screens import Handle, KeyResult, Slider
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.designs import Designs, VariedInput, check_designs
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
@@ -27,10 +23,14 @@ from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
-from beamdyn.common.one_line import counted, error_at_most
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
+from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
-from beamdyn.common.paths import with_parts
-from beamdyn.common.results import Provenance, Result, plain
+from beamdyn.common.results.one_line import counted, error_at_most
+from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.screens.folded_parts import FoldedPart
+from beamdyn.common.screens.screens import Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
 
 FileModel = TypeVar("FileModel", bound=BaseModel)

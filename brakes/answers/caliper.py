@@ -13,10 +13,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.folded_parts import FoldedDrawings
-from beamdyn.common.app.screens import Slider
-from beamdyn.common.columns import Column, Columns
-from beamdyn.common.described import descriptions
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
@@ -26,6 +22,10 @@ from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
+from beamdyn.common.inputs.described import descriptions
+from beamdyn.common.results.columns import Column, Columns
+from beamdyn.common.screens.folded_parts import FoldedDrawings
+from beamdyn.common.screens.screens import Slider
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (

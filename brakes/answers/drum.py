@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.screens import Handle
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.screens.screens import Handle
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
 from brakes.config.drum import DrumInput

@@ -12,15 +12,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.screens import Handle, Slider
-from beamdyn.common.array_checks import Numbers
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
-from beamdyn.common.results import plain
+from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.results.result import plain
+from beamdyn.common.screens.screens import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from

@@ -18,7 +18,7 @@ from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
-from beamdyn.common.results import plain
+from beamdyn.common.results.result import plain
 from brakes.answers.planar import (
     BRANCHES,
     WITHOUT,

@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import RenderableType
 
-from beamdyn.common.app.screens import Handle
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
-from beamdyn.common.one_line import error_at_most, rounded_up
-from beamdyn.common.results import Result, plain
+from beamdyn.common.results.one_line import error_at_most, rounded_up
+from beamdyn.common.results.result import Result, plain
+from beamdyn.common.screens.screens import Handle
 from brakes.answers.base import Answer
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
-from beamdyn.common.app.folded_parts import FoldedTable
 from beamdyn.common.edge.tables import table
+from beamdyn.common.screens.folded_parts import FoldedTable
 from brakes.answers import forklift
 from brakes.answers.forklift import ForkliftAnswer, stage_outputs
 from brakes.answers.tables import list_outputs

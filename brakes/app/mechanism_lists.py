@@ -9,10 +9,10 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from beamdyn.common.app.form_entries import Entries, entries_of, tables_of, toml_value
-from beamdyn.common.app.lists import Cell, Item, ListGroup, Lists
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.screens.form_entries import Entries, entries_of, tables_of, toml_value
+from beamdyn.common.screens.lists import Cell, Item, ListGroup, Lists
 from brakes.config.mechanism import SECTIONS, inputs_of_tables, mechanism_from_dict
 from brakes.planar import GROUND, JOINTS, LOADS, Mechanism, Part
 

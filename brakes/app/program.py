@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from beamdyn.common.app.screens import Program
+from beamdyn.common.screens.screens import Program
 from brakes.answers import STANDARD
 from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.forklift import FORKLIFT

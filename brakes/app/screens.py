@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from beamdyn.common.app.folded_parts import FoldedPart
-from beamdyn.common.app.screens import Document, Screen, Sweeps
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.input_sweep import InputSweep
+from beamdyn.common.screens.folded_parts import FoldedPart
+from beamdyn.common.screens.screens import Document, Screen, Sweeps
 from brakes.answers.base import BrakeType
 from brakes.app.bases import base
 

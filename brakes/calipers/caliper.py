@@ -9,8 +9,8 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import count, not_negative, one_of, positive, real, real_array
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.checks import count, not_negative, one_of, positive, real, real_array
+from beamdyn.common.inputs.described import Described
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
 from brakes.planar import (
     Equilibrium,

@@ -9,10 +9,10 @@ from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind, not_negative, one_of, positive
-from beamdyn.common.described import Described
-from beamdyn.common.one_line import number
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.checks import InvalidValue, kind, not_negative, one_of, positive
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import number
+from beamdyn.common.results.result import Result
 from brakes.planar.part import check_inputs
 
 # How much a two-wheeled vehicle can be braked at one wheel: grip of the tyre, and pitching over ----------

@@ -189,11 +189,11 @@ def _answer_many(
     import numpy as np
 
     from beamdyn._version import __version__
-    from beamdyn.common.curves import sweep_figure
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.input_sweep import sweep_csv
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.tables import show
+    from beamdyn.common.plots.curves import sweep_figure
     from brakes.answers.tables import sweep_table
 
     file, varying, what = request

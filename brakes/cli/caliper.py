@@ -61,7 +61,7 @@ def caliper(
         Files to write.
     """
     from beamdyn.common.edge.tables import show
-    from beamdyn.common.pictures import save_figure
+    from beamdyn.common.results.pictures import save_figure
     from brakes.answers.caliper import MECHANISM, names_table
     from brakes.calipers import NAMED
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from beamdyn.common.app.server import add_command
+from beamdyn.common.screens.server import add_command
 from brakes.cli.answering import app
 
 if TYPE_CHECKING:
-    from beamdyn.common.app.screens import Program
+    from beamdyn.common.screens.screens import Program
 
 
 def make_program() -> Program:

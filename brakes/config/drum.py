@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
-from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.inputs.checks import InvalidValue
 from brakes.drum import (
     BrakeResult,
     DrumBrake,

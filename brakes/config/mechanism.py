@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import Field, create_model
 
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.described import described_hints, description, descriptions
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.edge.wording import in_small_units
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.described import described_hints, description, descriptions
 from brakes.calipers import NAMED, Caliper
 from brakes.config.caliper import (
     QUANTITIES,

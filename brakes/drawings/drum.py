@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from beamdyn.common.array_checks import Numbers
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
+from beamdyn.common.inputs.array_checks import Numbers
 from brakes.drawings.arrows import ForceArrows
 from brakes.drum import BrakeResult, DrumBrake, Shoe, ShoeResult, brake_torque
 

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from beamdyn.common.array_checks import Numbers
-from beamdyn.common.curves import curves
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.plots.curves import curves
+from beamdyn.common.results.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.duo_servo import bare_shoes, free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop, Truck

@@ -14,7 +14,7 @@ import numpy as np
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
-from beamdyn.common.pictures import save_animation
+from beamdyn.common.results.pictures import save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
 

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, not_negative, numbers, positive, together
-from beamdyn.common.checks import flag, kind, refuse, set_fields, several
-from beamdyn.common.one_line import error_at_most, spanned
+from beamdyn.common.inputs.array_checks import Numbers, not_negative, numbers, positive, together
+from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
+from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
 
 

@@ -14,11 +14,11 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, keep_checked, not_negative, positive, together
-from beamdyn.common.checks import flag, kind, one_of, refuse
-from beamdyn.common.described import Described
-from beamdyn.common.one_line import error_at_most, spanned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative, positive, together
+from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import error_at_most, spanned
+from beamdyn.common.results.result import Result
 
 _START = "start of the lining, from straight down, where the pin is"
 _END = "end of the lining, from straight down"

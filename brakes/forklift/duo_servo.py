@@ -14,11 +14,11 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, keep_checked, positive, together
-from beamdyn.common.checks import refuse
-from beamdyn.common.described import Described
-from beamdyn.common.one_line import error_at_most, spanned, warned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, together
+from beamdyn.common.inputs.checks import refuse
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import error_at_most, spanned, warned
+from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 from brakes.forklift.vehicle import ACUTE
 

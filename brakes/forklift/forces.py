@@ -25,10 +25,10 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, positive, together
-from beamdyn.common.checks import InvalidValue, refuse
-from beamdyn.common.one_line import error_at_most, spanned, warned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import Numbers, positive, together
+from beamdyn.common.inputs.checks import InvalidValue, refuse
+from beamdyn.common.results.one_line import error_at_most, spanned, warned
+from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 
 _STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60

@@ -19,9 +19,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.checks import count, kind, positive
-from beamdyn.common.one_line import number, warned
-from beamdyn.common.results import Result, plain
+from beamdyn.common.inputs.checks import count, kind, positive
+from beamdyn.common.results.one_line import number, warned
+from beamdyn.common.results.result import Result, plain
 from brakes.forklift.duo_servo import DuoServo
 from brakes.planar import (
     GROUND,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers
-from beamdyn.common.checks import kind
-from beamdyn.common.one_line import spanned, warned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.inputs.checks import kind
+from beamdyn.common.results.one_line import spanned, warned
+from beamdyn.common.results.result import Result
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
 from brakes.forklift.vehicle import Stop, StopConditions, Truck, stop

@@ -25,11 +25,11 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers, keep_checked, together
-from beamdyn.common.checks import kind, one_of, refuse
-from beamdyn.common.described import Described
-from beamdyn.common.one_line import spanned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.checks import kind, one_of, refuse
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import spanned
+from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.checks import count, kind, one_of
+from beamdyn.common.inputs.checks import count, kind, one_of
 from brakes.planar.mechanism import Position
 from brakes.planar.rows import GROUND, Row
 from brakes.planar.statics import Equilibrium

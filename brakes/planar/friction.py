@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.common.statements import IN_LINE, Statement
+from beamdyn.common.results.statements import IN_LINE, Statement
 from brakes.planar.kinematics import assemble
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import (

@@ -13,7 +13,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.described import Described
 from brakes.planar.part import (
     Body,
     Coefficient,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamdyn.common.checks import count, positive, real_array
+from beamdyn.common.inputs.checks import count, positive, real_array
 from brakes.planar.curve import (
     Node,
     find_zero,

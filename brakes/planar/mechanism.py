@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.checks import kind, set_fields, several
+from beamdyn.common.inputs.checks import kind, set_fields, several
 from brakes.planar.part import Joint, Load, Part, Shape
 from brakes.planar.rows import GROUND, FrictionLaw, Point, suggest
 from brakes.planar.system import System, build

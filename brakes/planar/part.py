@@ -10,8 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import flag, kind, set_fields, several
-from beamdyn.common.described import Described, described_hints, descriptions, kinds_of
+from beamdyn.common.inputs.checks import flag, kind, set_fields, several
+from beamdyn.common.inputs.described import Described, described_hints, descriptions, kinds_of
 from brakes.planar.rows import GROUND, End, FrictionLaw, Point, Row, check_point, unit_vector
 
 # Types of the inputs of joints and loads, described for checks, files and forms --------------------------

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from beamdyn.common.checks import real
+from beamdyn.common.inputs.checks import real
 
 # Points and directions in the drawing of a mechanism, and their checks -----------------------------------
 

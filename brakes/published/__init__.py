@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from beamdyn.common import published
+from beamdyn.common.results import published
 
 
 def load(name: str) -> dict[str, Any]:
-    """Contents of ``brakes/published/<name>.toml``; see `beamdyn.common.published.load`."""
+    """Contents of ``brakes/published/<name>.toml``; see `beamdyn.common.results.published.load`."""
     return published.load(__name__, name)
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from beamdyn.common.comparison import Verdict
 from beamdyn.common.edge.tables import comparison_table
-from beamdyn.common.pictures import save_figure
+from beamdyn.common.results.comparison import Verdict
+from beamdyn.common.results.pictures import save_figure
 from brakes.published import load
 from brakes.reproduce import caliper, drum, forklift
 

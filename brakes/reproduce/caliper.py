@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from beamdyn.common.comparison import Comparison
-from beamdyn.common.pictures import save_figure
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.pictures import save_figure
 from brakes.calipers import CaliperStroke, EeBrake, stop
 from brakes.published import load
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from rich.console import Group
 
-from beamdyn.common.comparison import Verdict
 from beamdyn.common.edge.tables import table
+from beamdyn.common.results.comparison import Verdict
 from brakes.published.errata import Erratum
 
 

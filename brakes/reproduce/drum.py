@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import Group
 
-from beamdyn.common.curves import grid
 from beamdyn.common.edge.tables import table
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.plots.curves import grid
+from beamdyn.common.results.pictures import COLOURS
 from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult
 from brakes.published import load

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.array_checks import Numbers
+from beamdyn.common.inputs.array_checks import Numbers
 from brakes.answers.forklift import ForkliftAnswer, solve_stages
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, StopConditions, Truck, internal_forces, stop

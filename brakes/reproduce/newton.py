@@ -13,9 +13,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from beamdyn.common.array_checks import positive
-from beamdyn.common.one_line import counted, number
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.array_checks import positive
+from beamdyn.common.results.one_line import counted, number
+from beamdyn.common.results.result import Result
 from brakes.forklift import Levers, equilibrium_equations
 
 _TOLERANCE = 1e-12  # on the largest left-hand side, in units of T/r and r

@@ -30,7 +30,7 @@ def simulate(monkeypatch, tmp_path):
     def run(program, body, solver=None):
         from nicegui.testing.user_simulation import user_simulation
 
-        from beamdyn.common.app.server import root_of
+        from beamdyn.common.screens.server import root_of
 
         async def main():
             async with user_simulation(root=root_of(program, solver or AtOnce())) as first:

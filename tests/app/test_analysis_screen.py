@@ -14,9 +14,9 @@ from beamdyn.analyses.options import Count, PositiveSpeed
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.inputs import ASIDE, inputs_of
 from beamdyn.app.program import SCENE
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.screens.form_entries import tables_of
 
 ROOT = Path(__file__).parents[2]
 SCENE_FILE = str(ROOT / "examples" / "tyre_harvester.toml")

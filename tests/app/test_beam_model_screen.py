@@ -9,18 +9,18 @@ import pytest
 from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
-from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.drag_slider import DragSlider
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.app.screens import Program
-from beamdyn.common.app.under_way import SOON
 from beamdyn.common.edge.rendering import csv_text, html
+from beamdyn.common.screens.document_report import report_of
+from beamdyn.common.screens.drag_slider import DragSlider
+from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.screens import Program
+from beamdyn.common.screens.under_way import SOON
 from beamdyn.scene.physics import AUTO
 from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
 
-pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.announced.OutsideLinearTheory")
+pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
 AT_45 = {"mount.setting_angle": "45 deg", "options.top_speed": "100 rad/s", "options.modes": "1"}
 LINEAR, TRUE = 55.62, 60.66  # Hz, at 100 rad/s: of the straight beam, and in fact; printed to 0.01
 

@@ -14,15 +14,15 @@ from beamdyn.app.rotor import ROTOR
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.app.chart_options import options_of, thinned
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.handles import draw_sheet
-from beamdyn.common.app.input_words import as_on_form
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.shapes import Outline
 from beamdyn.common.edge.rendering import html
+from beamdyn.common.screens.chart_options import options_of, thinned
+from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.handles import draw_sheet
+from beamdyn.common.screens.input_words import as_on_form
+from beamdyn.common.screens.open_document import OpenDocument
 
-pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.announced.OutsideLinearTheory")
+pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
 SHORT = {"run.end": "2 s", "motion.rotation.duration": "1 s"}
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from rich.console import Group
 
-from beamdyn.common.app.comparison import with_other_curves
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.screens.comparison import with_other_curves
+from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.program import BRAKES
 
 SCREENS = {screen.name: (document, screen) for document in BRAKES.documents for screen in document.screens}

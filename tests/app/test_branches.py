@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.shapes import Symbol
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.caliper import MECHANISM
 from brakes.app.program import BRAKES
 

@@ -6,9 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from beamdyn.common.app.chart_options import chart_colours, options_of, thinned
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.style import INKS
+from beamdyn.common.screens.chart_options import chart_colours, options_of, thinned
 
 X = ChartAxis("speed", "rad/s", low=0.0, high=10.0)
 Y = ChartAxis("frequency", "Hz")

@@ -6,9 +6,9 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from beamdyn.common.app import screen_view
-from beamdyn.common.app.chart_board import ChartBoard
-from beamdyn.common.app.draggable_drawing import DraggableDrawing
+from beamdyn.common.screens import screen_view
+from beamdyn.common.screens.chart_board import ChartBoard
+from beamdyn.common.screens.draggable_drawing import DraggableDrawing
 from brakes.app.program import BRAKES
 
 MOVES, APART = 40, 0.02  # moves of the mouse, and the time between two [s]

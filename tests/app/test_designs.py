@@ -14,9 +14,11 @@ from hypothesis import strategies as st
 
 from beamdyn.app.bent_beam import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
-from beamdyn.common.app import tasks
-from beamdyn.common.app.browser_memory import named_designs, read_typed, refused_name
-from beamdyn.common.app.comparison import (
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.tables import table
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.browser_memory import named_designs, read_typed, refused_name
+from beamdyn.common.screens.comparison import (
     Difference,
     OtherDesign,
     differences_html,
@@ -25,14 +27,12 @@ from beamdyn.common.app.comparison import (
     result_differences,
     with_ghost,
 )
-from beamdyn.common.app.comparison_panel import headline_of
-from beamdyn.common.app.design_link import LinkedDesign
-from beamdyn.common.app.examples import examples_of
-from beamdyn.common.app.handles import draw_sheet
-from beamdyn.common.app.history import History
-from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.tables import table
+from beamdyn.common.screens.comparison_panel import headline_of
+from beamdyn.common.screens.design_link import LinkedDesign
+from beamdyn.common.screens.examples import examples_of
+from beamdyn.common.screens.handles import draw_sheet
+from beamdyn.common.screens.history import History
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]

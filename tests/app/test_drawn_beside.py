@@ -8,8 +8,8 @@ pytest.importorskip("nicegui")
 
 from nicegui.testing.user_interaction import UserInteraction
 
-from beamdyn.common.app import tasks
 from beamdyn.common.edge import rendering
+from beamdyn.common.screens import tasks
 from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
 from tests.app.serving import PATIENCE

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from beamdyn.common.app import tasks
-from beamdyn.common.app.handles import Sheet, changed_texts, describe_place, draw_sheet
-from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.app.screen_view import ScreenView
-from beamdyn.common.app.screens import Screen
 from beamdyn.common.drawing.shapes import Disc, points_of_shape
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.handles import Sheet, changed_texts, describe_place, draw_sheet
+from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.screen_view import ScreenView
+from beamdyn.common.screens.screens import Screen
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
 from brakes.app.program import BRAKES

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.lists import gone_with
-from beamdyn.common.app.open_document import OpenDocument, OpenEntries
+from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.lists import gone_with
+from beamdyn.common.screens.open_document import OpenDocument, OpenEntries
 from brakes.app.caliper import MECHANISM
 from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
 from brakes.app.program import BRAKES

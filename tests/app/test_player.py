@@ -8,8 +8,8 @@ import pytest
 pytest.importorskip("nicegui")
 
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.app.courses import BackAndForth, Onward
-from beamdyn.common.app.page_writer import PageWriter
+from beamdyn.common.screens.courses import BackAndForth, Onward
+from beamdyn.common.screens.page_writer import PageWriter
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER

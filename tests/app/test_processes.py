@@ -10,10 +10,10 @@ from concurrent.futures import BrokenExecutor
 
 import pytest
 
-from beamdyn.common.app import tasks
-from beamdyn.common.app.open_document import Answered, OpenDocument
-from beamdyn.common.app.processes import Processes, Share, TakesTooLong
-from beamdyn.common.app.refusals import outcome_of
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.processes import Processes, Share, TakesTooLong
+from beamdyn.common.screens.refusals import outcome_of
 from brakes.app.program import BRAKES
 from brakes.cli.interactive import make_program
 from tests.app.serving import PATIENCE, ROOT

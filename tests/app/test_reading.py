@@ -5,10 +5,10 @@ import math
 import pytest
 
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app.form_entries import in_unit, units_of
-from beamdyn.common.app.reading import is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.varied_inputs import numbers
+from beamdyn.common.screens.form_entries import in_unit, units_of
+from beamdyn.common.screens.reading import is_bare, read_entry, unit_of, usual_unit
 from brakes.app.program import BRAKES
 
 DOCUMENTS = {d.name: d for d in (*BRAKES.documents, *BEAMDYN.documents)}

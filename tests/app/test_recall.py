@@ -6,7 +6,7 @@ import json
 import pytest
 
 from beamdyn.app.program import SCENE
-from beamdyn.common.app.open_document import OpenDocument
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.program import BRAKES
 from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
@@ -54,7 +54,7 @@ def test_stored_design_is_read_before_anything_is_stored(simulate, storage):
 
 @pytest.mark.parametrize("stored", [None, design()], ids=["nothing", "the same design"])
 def test_form_that_shows_the_stored_design_is_not_made_anew(simulate, storage, monkeypatch, stored):
-    page = pytest.importorskip("beamdyn.common.app.page")
+    page = pytest.importorskip("beamdyn.common.screens.page")
     made = []
     monkeypatch.setattr(page.Page, "_rebuild", lambda *given: made.append(given))
 

@@ -10,12 +10,12 @@ import pytest
 
 from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app import tasks
-from beamdyn.common.app.document_report import report_of
-from beamdyn.common.app.folded_parts import FoldedDrawings
-from beamdyn.common.app.input_words import NOT_GIVEN, default_words, label
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.edge.rendering import html
+from beamdyn.common.screens import tasks
+from beamdyn.common.screens.document_report import report_of
+from beamdyn.common.screens.folded_parts import FoldedDrawings
+from beamdyn.common.screens.input_words import NOT_GIVEN, default_words, label
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.caliper import CALIPER
 from brakes.app.program import BRAKES
 

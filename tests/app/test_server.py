@@ -9,7 +9,7 @@ import pytest
 
 import beamdyn.cli
 import brakes.cli
-from beamdyn.common.app.server import MISSING
+from beamdyn.common.screens.server import MISSING
 from tests.app.serving import free_port, listens_to, start, stop
 
 COMMANDS = {"beamdyn": beamdyn.cli.main, "brakes": brakes.cli.main}

@@ -12,15 +12,15 @@ from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn import frequency_locus, resonance_speeds, steady_response
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
-from beamdyn.common.app.form_entries import tables_of
-from beamdyn.common.app.open_document import OpenDocument
-from beamdyn.common.app.screens import Program
-from beamdyn.common.app.sweep_charts import sweep_charts
-from beamdyn.common.app.sweep_panel import around
 from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
 from beamdyn.common.edge.rendering import csv_text
 from beamdyn.common.edge.varied_inputs import numbers
+from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.screens import Program
+from beamdyn.common.screens.sweep_charts import sweep_charts
+from beamdyn.common.screens.sweep_panel import around
 from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main

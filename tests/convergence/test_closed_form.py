@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.gauss import propagate
 from beamdyn.transient.system import ModalSystem

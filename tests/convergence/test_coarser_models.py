@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 
 BEAM = bd.Beam.from_stiffness(
     1.0,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from benchmarks.cases.reference.power_series import bending_eigenvalues
 from benchmarks.cases.scenes import of_case
 

@@ -9,7 +9,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.equations.fields.field import Term
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from beamdyn.transient import weakly_modulated
 from beamdyn.transient.gauss import propagate
 from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp

@@ -9,7 +9,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from beamdyn.transient import record_steps, step_size
 from beamdyn.transient.gauss import tableau
 from beamdyn.transient.record_steps import RecordSteps, propagate_record

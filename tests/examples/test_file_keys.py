@@ -12,7 +12,7 @@ from types import ModuleType
 
 import pytest
 
-from beamdyn.config.scene_inputs import SceneInput
+from beamdyn.files.scene_inputs import SceneInput
 from brakes.config.drum import DrumInput
 from brakes.config.forklift import ForkliftInput
 from brakes.config.mechanism import CompleteMechanismInput

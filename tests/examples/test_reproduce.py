@@ -9,8 +9,8 @@ import pytest
 import beamdyn as bd
 from beamdyn import reproduce
 from beamdyn.cli import DONE, NO_ANSWER, main
-from beamdyn.common.comparison import Comparison
 from beamdyn.common.edge.tables import comparison_table, console
+from beamdyn.common.results.comparison import Comparison
 from beamdyn.published import load
 from beamdyn.reproduce import frequencies, large_deflection, motion, others, printed_tables
 from beamdyn.reproduce.entries import PrintedValue, summarize_entries

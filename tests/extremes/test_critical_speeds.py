@@ -16,10 +16,10 @@ import pytest
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.common.statements import OUTSIDE, kind_of
-from beamdyn.modal.model import Model
-from beamdyn.spectrum.bounds import bound_critical_speed
-from beamdyn.spectrum.buckling import decide_buckling
+from beamdyn.common.results.statements import OUTSIDE, kind_of
+from beamdyn.modes.bounds import bound_critical_speed
+from beamdyn.modes.buckling import decide_buckling
+from beamdyn.modes.modal.model import Model
 from benchmarks.cases.random_scenes import random_beam
 from benchmarks.cases.reference.of_scene import exact_critical_speed
 from benchmarks.cases.scenes import HARVESTER, steel_strip

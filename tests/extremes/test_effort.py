@@ -10,9 +10,9 @@ import pytest
 import beamdyn.cli
 import brakes.cli
 from beamdyn.app.program import SCENE
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.layout import heading
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.answers.caliper import CALIPER
 from brakes.answers.drum import BRAKE as DRUM
 from brakes.app.bases import base

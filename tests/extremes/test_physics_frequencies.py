@@ -15,7 +15,7 @@ from numpy.polynomial import Polynomial
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamdyn as bd
-from beamdyn.modal import large
+from beamdyn.modes.modal import large
 from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.reference.resolved import known_frequencies
 from benchmarks.stated_physics_errors import Answer, answer, cases, measure

@@ -11,11 +11,11 @@ import scipy.linalg
 from scipy.optimize import least_squares
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.elastica import DeflectedState
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.modal.deflected import DeflectedSolver
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.modes.modal.model import Model
 
 CANTILEVER = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0))
 HARVESTER = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -10,10 +10,10 @@ from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
-from beamdyn.spectrum.bounds import frequency_bounds
-from beamdyn.spectrum.flexibility import bound_flexibility, bound_reciprocal
-from beamdyn.spectrum.split import Split
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.modes.bounds import frequency_bounds
+from beamdyn.modes.flexibility import bound_flexibility, bound_reciprocal
+from beamdyn.modes.split import Split
 from benchmarks.cases.enclosure import (
     NondimensionalScene,
     encloses,

@@ -10,10 +10,10 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import _lowest, _nondimensional, frequency_bounds
-from beamdyn.spectrum.flexibility import bound_flexibility, bound_traces
-from beamdyn.spectrum.head import Head
-from beamdyn.spectrum.split import Split
+from beamdyn.modes.bounds import _lowest, _nondimensional, frequency_bounds
+from beamdyn.modes.flexibility import bound_flexibility, bound_traces
+from beamdyn.modes.head import Head
+from beamdyn.modes.split import Split
 from benchmarks.cases.blades import blade_scene
 from benchmarks.cases.random_stations import random_station_scene
 from benchmarks.cases.reference.resolved import known_frequencies

@@ -12,10 +12,10 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import eigh
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import _nondimensional, frequency_bounds
-from beamdyn.spectrum.coupled_head import twist_degree
-from beamdyn.spectrum.coupled_split import CoupledSplit
-from beamdyn.spectrum.flexibility import bound_flexibility
+from beamdyn.modes.bounds import _nondimensional, frequency_bounds
+from beamdyn.modes.coupled_head import twist_degree
+from beamdyn.modes.coupled_split import CoupledSplit
+from beamdyn.modes.flexibility import bound_flexibility
 from benchmarks.cases.blades import blade_scene
 from benchmarks.cases.random_stations import random_station_scene
 from benchmarks.cases.reference.resolved import Known, known_frequencies

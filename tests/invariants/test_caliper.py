@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from beamdyn.common.described import descriptions
+from beamdyn.common.inputs.described import descriptions
 from brakes import calipers
 from brakes.planar import Bar, Spring
 

@@ -14,8 +14,8 @@ import scipy.linalg
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modal import eigen, large
-from beamdyn.spectrum import buckling, setting_angles
+from beamdyn.modes import buckling, setting_angles
+from beamdyn.modes.modal import eigen, large
 from benchmarks.cases.scenes import ROLLING
 
 STIFFNESS = bd.Table((0, 0.4, 1), (2e-3, 1.5e-3, 1e-3))

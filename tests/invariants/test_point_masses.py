@@ -13,17 +13,17 @@ from numpy.polynomial import Polynomial, legendre
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.spectrum.bounds import _nondimensional
-from beamdyn.spectrum.buckling import decide_buckling
-from beamdyn.spectrum.flexibility import bound_flexibility, bound_traces
-from beamdyn.spectrum.split import Split
+from beamdyn.modes.bounds import _nondimensional
+from beamdyn.modes.buckling import decide_buckling
+from beamdyn.modes.flexibility import bound_flexibility, bound_traces
+from beamdyn.modes.split import Split
 
 RITZ, FEM = 1e-9, 1e-6  # promised relative errors
 NODES = 14  # Gauss points on a third of a part between masses
 
 # The beams are nondimensional, of no material.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:bending_stiffness:UserWarning", "ignore::beamdyn.common.announced.OutsideLinearTheory"
+    "ignore:bending_stiffness:UserWarning", "ignore::beamdyn.common.results.announced.OutsideLinearTheory"
 )
 
 

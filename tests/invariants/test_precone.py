@@ -10,7 +10,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from benchmarks.cases.reference.of_two_planes import coned_frequencies_of, squared_frequencies
 
 # Rigid blades and massless shafts are of no material.

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beamdyn as bd
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from benchmarks.cases.scenes import HARVESTER
 
 angles = st.floats(-np.pi, np.pi)

@@ -17,7 +17,7 @@ import numpy as np
 import beamdyn as bd
 import brakes
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.results import Result
+from beamdyn.common.results.result import Result
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 from brakes import drum, forklift
 from brakes.answers.caliper import CALIPER, MECHANISM

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from beamdyn.common.curves import curves, sweep_figure
 from beamdyn.common.drawing.shapes import Outline, Symbol
+from beamdyn.common.plots.curves import curves, sweep_figure
 from brakes import drum, forklift
 from brakes.drawings import mechanism_parts
 from brakes.drawings.drum import brake_figure, drawing_of, factors, free_body, pressures

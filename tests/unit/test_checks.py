@@ -6,9 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamdyn.common.array_checks import numbers, pair
-from beamdyn.common.array_checks import positive as positive_numbers
-from beamdyn.common.checks import (
+from beamdyn.common.edge.config import MissingValue, path_of
+from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.inputs.array_checks import numbers, pair
+from beamdyn.common.inputs.array_checks import positive as positive_numbers
+from beamdyn.common.inputs.checks import (
     OUT_OF_RANGE,
     InvalidValue,
     ascending,
@@ -18,8 +20,6 @@ from beamdyn.common.checks import (
     reason_of,
     refuse,
 )
-from beamdyn.common.edge.config import MissingValue, path_of
-from beamdyn.common.edge.units import InvalidInput, quantity
 
 
 def refusal(call, *arguments, **more):

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, parse_speeds
-from beamdyn.common.digits import supported, supported_or_range
+from beamdyn.common.results.digits import supported, supported_or_range
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")

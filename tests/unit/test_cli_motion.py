@@ -20,7 +20,7 @@ from beamdyn import load_scene
 from beamdyn.analyses.transients import _how_to_resume
 from beamdyn.analyses.values import parse_window
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
-from beamdyn.tables.results import peaks
+from beamdyn.results.tables.results import peaks
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "rolling_harvester.toml")
@@ -191,7 +191,7 @@ def test_ctrl_c_anywhere_is_no_traceback(run, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("beamdyn.config.scenes.scene_from_dict", interrupt)
+    monkeypatch.setattr("beamdyn.files.scenes.scene_from_dict", interrupt)
     code, out, err = run("modes", SCENE)
     assert (code, out, err) == (INTERRUPTED, "", "beamdyn: interrupted\n")
 

@@ -10,11 +10,11 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from beamdyn.app.inputs import inputs_of
-from beamdyn.common.app.form_entries import entries_of, tables_of, toml_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.units import quantity
-from beamdyn.config.scene_inputs import SceneInput
-from beamdyn.config.scenes import load_scene, parse_scene, scene_from_dict
+from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of
+from beamdyn.files.scene_inputs import SceneInput
+from beamdyn.files.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.mount import Mount

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import describe
-from beamdyn.config.scene_inputs import SceneInput
-from beamdyn.config.scenes import load_scene, parse_scene, scene_from_dict
+from beamdyn.files.scene_inputs import SceneInput
+from beamdyn.files.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.scene import Scene
 from tests.unit.toml_scenes import (
     BY_STIFFNESS,

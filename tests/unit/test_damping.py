@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import newton
 
 import beamdyn as bd
-from beamdyn.config.scenes import parse_scene
+from beamdyn.files.scenes import parse_scene
 
 BEAM = bd.Beam.from_stiffness(1.0, 1.0, 1.0)  # uniform, of unit length, mass and stiffness
 RTOL = 1e-9  # promised of frequencies; two digits more than their stated errors here

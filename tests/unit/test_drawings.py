@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.app.open_document import OpenDocument
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
 from beamdyn.common.drawing.layout import Fit, arrange, follow
 from beamdyn.common.drawing.on_axes import figure_of
@@ -23,7 +22,8 @@ from beamdyn.common.drawing.style import INKS
 from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.tables.rotor import rotor_csv
+from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.results.tables.rotor import rotor_csv
 from brakes import calipers
 from brakes.app.program import BRAKES
 from brakes.drawings.caliper import caliper_drawing

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
 
 ELASTICA = bd.Physics(large_deflection=True)

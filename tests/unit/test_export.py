@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from beamdyn.common.files import check_writable
-from beamdyn.output.export import animate, write_series, write_shapes
+from beamdyn.common.plots.export import animate, write_series, write_shapes
+from beamdyn.common.results.files import check_writable
 
 X = np.linspace(0, 0.05, 11)
 SHAPES = np.stack([71.4 * (X / 0.05) ** 2, -30 * np.sin(60 * X)])

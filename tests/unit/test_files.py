@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.files import check_writable, replacing, same_file, write_text
-from beamdyn.common.pictures import save_animation
+from beamdyn.common.results.files import check_writable, replacing, same_file, write_text
+from beamdyn.common.results.pictures import save_animation
 from brakes import cli as brakes
 
 ROOT = Path(__file__).parents[2]

@@ -15,9 +15,9 @@ import pytest
 import beamdyn as bd
 from beamdyn import cli as beams
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.records import seal
-from beamdyn.common.results import Result
-from beamdyn.common.snapshots import LeftOut, decode, encode
+from beamdyn.common.results.records import seal
+from beamdyn.common.results.result import Result
+from beamdyn.common.results.snapshots import LeftOut, decode, encode
 from beamdyn.equations.discretization import HINGED
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 from brakes import cli as brakes
@@ -221,7 +221,7 @@ EDITS = {
     "other fields": (lambda text: reseal(text, '"axial_strain"', '"strain"'), "Modes has other fields"),
     "another class": (lambda text: reseal(text, "modes:Modes", "modes:Nodes"), "no class Nodes"),
     "a foreign class": (
-        lambda text: reseal(text, "beamdyn.spectrum.modes:Modes", "os:_wrap_close"),
+        lambda text: reseal(text, "beamdyn.modes.modes:Modes", "os:_wrap_close"),
         "no class",
     ),
     "a function": (lambda text: reseal(text, "modes:Modes", "modes:natural_modes"), "no class natural_modes"),

@@ -15,7 +15,7 @@ import pytest
 
 from beamdyn._version import __version__
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.one_line import rounded_up
+from beamdyn.common.results.one_line import rounded_up
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED
 from brakes.cli import main

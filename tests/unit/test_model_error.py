@@ -14,14 +14,14 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.cli.program import main
-from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.model_error.left_out_effects import LeftOutEffects, say_change
-from beamdyn.model_error.pencils import shift_eigenvalues
-from beamdyn.tables.results import locus_table, modes_table
-from beamdyn.tables.rows import locus_csv
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
+from beamdyn.modes.model_error.pencils import shift_eigenvalues
+from beamdyn.results.tables.results import locus_table, modes_table
+from beamdyn.results.tables.rows import locus_csv
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)

@@ -10,10 +10,10 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modal.eigen import LEAST_STIFFNESS, Solver
-from beamdyn.modal.error_estimate import error_of_assumed_modes, solve_with_error
-from beamdyn.modal.model import Model
-from beamdyn.modal.one_speed import factor_stiffness
+from beamdyn.modes.modal.eigen import LEAST_STIFFNESS, Solver
+from beamdyn.modes.modal.error_estimate import error_of_assumed_modes, solve_with_error
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.one_speed import factor_stiffness
 
 BEAM = bd.Beam.from_stiffness(
     1.0, 1.0, Polynomial([1.0, -0.5]), second_bending_stiffness=9.0, twist=Polynomial([0.0, 0.6])

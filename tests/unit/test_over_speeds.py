@@ -10,10 +10,10 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modal import over_speeds
-from beamdyn.modal.eigensolver import Eigen
-from beamdyn.modal.model import Model
-from beamdyn.modal.over_speeds import solve_over_speeds
+from beamdyn.modes.modal import over_speeds
+from beamdyn.modes.modal.eigensolver import Eigen
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.over_speeds import solve_over_speeds
 
 BEAM = bd.Beam.from_stiffness(1.0, 1.0, Polynomial([1.0, -0.5]), second_bending_stiffness=9.0, twist=1e-3)
 OUTWARD = bd.Scene(BEAM, bd.Mount(0.1, math.pi, math.pi / 2))

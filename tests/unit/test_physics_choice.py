@@ -13,9 +13,9 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli.program import main
-from beamdyn.common.checks import InvalidValue
-from beamdyn.config.scenes import parse_scene
-from beamdyn.model_error.choice import Judged, choose_by
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.files.scenes import parse_scene
+from beamdyn.modes.model_error.choice import Judged, choose_by
 from beamdyn.scene.physics_choice import PhysicsChoice
 
 LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"

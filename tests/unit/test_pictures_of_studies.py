@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import beamdyn as bd
-from beamdyn.common.curves import mark_missing
+from beamdyn.common.plots.curves import mark_missing
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "rolling_harvester.toml")
 

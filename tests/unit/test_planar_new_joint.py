@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from beamdyn.common.described import descriptions
+from beamdyn.common.inputs.described import descriptions
 from brakes import planar
 from brakes.config.mechanism import PARTS
 from brakes.drawings.mechanism import mechanism_drawing

@@ -9,7 +9,7 @@ import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from beamdyn.output.plots import (
+from beamdyn.common.plots.plots import (
     COLOURS,
     mark_critical,
     mark_points,
@@ -190,7 +190,7 @@ def test_new_axes_are_made_only_where_none_are_given():
 
 
 def test_import_leaves_pyplot_and_meshio_alone():
-    code = "import sys, beamdyn.output.plots; print({'matplotlib.pyplot', 'meshio'} & set(sys.modules))"
+    code = "import sys, beamdyn.common.plots.plots; print({'matplotlib.pyplot', 'meshio'} & set(sys.modules))"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
     )

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.load_time_error import largest_per_coordinate
 from beamdyn.loads.mode_error import mode_error
 from beamdyn.loads.section_points import StationOutputs, sections_at
 from beamdyn.loads.stations import stations_at
-from beamdyn.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.modal_basis import ModalBasis
 from benchmarks import loads as loads_measured
 
 LENGTH, WIDTH, THICK, E, RHO, G = 0.5, 0.02, 0.004, 200e9, 7800.0, 9.81

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
-from beamdyn.tables.results import locus_table, modes_table
-from beamdyn.tables.rows import locus_csv, modes_csv
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.results.tables.results import locus_table, modes_table
+from beamdyn.results.tables.rows import locus_csv, modes_csv
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(

@@ -10,14 +10,14 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.cli import NO_ANSWER, main
-from beamdyn.common.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.edge.spread_tables import headline, spread_table
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
+from beamdyn.common.results.pictures import COLOURS
 from beamdyn.common.spreading.pictures import draw_scatter
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
 from beamdyn.common.spreading.statistics import scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput, Uniform
-from beamdyn.spreads import derivatives
+from beamdyn.studies.spreads import derivatives
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 2e11, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2))

@@ -11,7 +11,7 @@ import scipy.linalg
 
 import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import MotionSample
 from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.stability import growth_rate

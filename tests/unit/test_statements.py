@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.cautions import notes_of, warnings_of
-from beamdyn.common.display_units import DisplayUnits
-from beamdyn.common.statements import (
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.statements import (
     GROWING,
     OUTSIDE,
     InputValue,
@@ -20,6 +19,7 @@ from beamdyn.common.statements import (
     of_kind,
     said_in,
 )
+from beamdyn.results.cautions import notes_of, warnings_of
 from beamdyn.scene.validity import LARGE_DEFLECTION
 from benchmarks.cases.scenes import HARVESTER
 

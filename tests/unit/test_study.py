@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.designs import Designs, VariedInput, check_designs
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
+from beamdyn.results.tables.studies import study_csv
 from beamdyn.scene.numbers import number_at, units, with_numbers
-from beamdyn.tables.studies import study_csv
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))

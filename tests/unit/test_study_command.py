@@ -6,7 +6,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import main
-from beamdyn.common.designs import MOST_DESIGNS
+from beamdyn.common.inputs.designs import MOST_DESIGNS
 
 TOML = """
 [beam]

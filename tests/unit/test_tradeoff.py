@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main
-from beamdyn.tradeoffs import (
+from beamdyn.studies.tradeoffs import (
     frequencies,
     frequency_diagram,
     harmonics_diagram,
@@ -23,9 +23,9 @@ from beamdyn.tradeoffs import (
     transient_modes_diagram,
     transients,
 )
-from beamdyn.tradeoffs.physics import ALL, AS_GIVEN, pick
-from beamdyn.tradeoffs.study import MOST_MODES
-from beamdyn.tradeoffs.transients import AT_ENDS, AT_REST
+from beamdyn.studies.tradeoffs.physics import ALL, AS_GIVEN, pick
+from beamdyn.studies.tradeoffs.study import MOST_MODES
+from beamdyn.studies.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.tradeoff_physics import make_scenes
 
@@ -299,7 +299,7 @@ def test_a_transient_needs_a_motion():
 
 
 def test_the_length_of_the_run_follows_from_the_scene():
-    from beamdyn.tradeoffs.study import _end
+    from beamdyn.studies.tradeoffs.study import _end
 
     assert 11 < _end(ROLLING) < 12.1  # settled after 10 s; a hundred periods of 1/65 s
     slow = bd.Scene(HARVESTER.beam, HARVESTER.mount, bd.SpinUp(55.0, duration=3600.0))
@@ -363,7 +363,7 @@ def test_bad_input_is_refused_with_a_sentence(command, arguments, sentence):
 
 
 def test_no_answer_if_the_reference_fails(command, monkeypatch):
-    from beamdyn.tradeoffs import study
+    from beamdyn.studies.tradeoffs import study
 
     def fails(*arguments):
         raise ArithmeticError("not within the guaranteed bounds")

@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamdyn.tradeoffs import (
+from beamdyn.studies.tradeoffs import (
     Diagram,
     Measurement,
     cost_per_digit,
     pareto_front,
     timing,
 )
-from beamdyn.tradeoffs.timing import Family, Setting, measure_families
+from beamdyn.studies.tradeoffs.timing import Family, Setting, measure_families
 from benchmarks.tradeoff import LEGENDRE, compare_sizes
 
 coarse = st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 2.0])  # few values, so that ties are drawn

@@ -17,16 +17,16 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modal.choice import choose_model
-from beamdyn.modal.model import Model
+from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.model import Model
+from beamdyn.results.tables.results import crossings_table, steady_table, sweep_table
+from beamdyn.results.tables.rows import crossings_csv, steady_csv, sweep_csv, transient_csv
 from beamdyn.scene.motion import Motion
 from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.stability import growth_rate
-from beamdyn.tables.results import crossings_table, steady_table, sweep_table
-from beamdyn.tables.rows import crossings_csv, steady_csv, sweep_csv, transient_csv
 
 TWO = bd.Physics(planes=2)
 PHASE = np.linspace(0, 2 * math.pi, 61)

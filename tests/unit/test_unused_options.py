@@ -9,7 +9,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, main
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HARVESTER, ROLLING = str(EXAMPLES / "tyre_harvester.toml"), str(EXAMPLES / "rolling_harvester.toml")

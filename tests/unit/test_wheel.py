@@ -54,7 +54,7 @@ def test_holds_the_packages_with_their_data_and_nothing_else(source, wheel):
         if path.is_file()
     }
     examples = (path for path in (source / "examples").rglob("*") if path.is_file())
-    shipped = "beamdyn/common/app/shipped_examples"
+    shipped = "beamdyn/common/screens/shipped_examples"
     expected |= {f"{shipped}/{path.relative_to(source / 'examples').as_posix()}" for path in examples}
     for name in ("__init__.py", "py.typed"):  # the second says that the type hints hold
         assert {f"{package}/{name}" for package in PACKAGES} <= expected

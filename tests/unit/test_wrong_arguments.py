@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.results import Result
+from beamdyn.common.results.result import Result
 from brakes import planar
 from tests.unit.wrong_values import refusals_missing
 

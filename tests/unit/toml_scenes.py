@@ -5,7 +5,7 @@ import copy
 import pytest
 
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.config.scenes import scene_from_dict
+from beamdyn.files.scenes import scene_from_dict
 
 HARVESTER = {
     "beam": {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartMark
 from beamdyn.common.drawing.style import ink
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,11 +17,11 @@ import numpy as np
 from pydantic import BaseModel, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
-from beamdyn.common.checks import InvalidValue
 from beamdyn.common.edge.inputs import Section, describe
 from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
 from beamdyn.common.edge.wording import in_millimetres
-from beamdyn.common.files import as_path
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.files import as_path
 
 Model = TypeVar("Model", bound=BaseModel)
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from beamdyn.common.checks import MOST
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import show
-from beamdyn.common.files import as_path
+from beamdyn.common.inputs.checks import MOST
+from beamdyn.common.results.files import as_path
 
 # 1.0D+03 and 1.0+03 are 1.0e+03 to FORTRAN.
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:(?:[eEdDqQ]|(?=[+-]))([+-]?\d+))?", re.ASCII)

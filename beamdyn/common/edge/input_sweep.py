@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.columns import Column, Columns, column_named
-from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import unknown
-from beamdyn.common.one_line import counted, warned
-from beamdyn.common.results import Result
+from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.results.columns import Column, Columns, column_named
+from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.result import Result
 
 _MOST_NAMED = 4  # results in a line
 

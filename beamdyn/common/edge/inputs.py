@@ -13,9 +13,9 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from beamdyn.common.checks import real
-from beamdyn.common.described import Described
 from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
+from beamdyn.common.inputs.checks import real
+from beamdyn.common.inputs.described import Described
 
 
 class Section(BaseModel):

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import reason_of
 from beamdyn.common.edge.input_sweep import InputSweep, Output, swept
 from beamdyn.common.edge.inputs import Input, Section
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of
+from beamdyn.common.inputs.checks import reason_of
+from beamdyn.common.inputs.paths import part_at, with_parts
 from beamdyn.common.parallel.tasks import Task, TaskRunner
-from beamdyn.common.paths import part_at, with_parts
 
 MOST_ONE_BY_ONE = 2000  # designs, which take minutes
 _CHUNK = 16  # designs of a task

@@ -60,8 +60,8 @@ def as_typed(sentence: str) -> str:
 
 def as_given(error: Exception) -> str:
     """What a refusal says, its number in the unit in which the option that gave it was typed."""
-    from beamdyn.common.checks import InvalidValue  # here, for the time that it takes to import
     from beamdyn.common.edge.wording import in_unit_of
+    from beamdyn.common.inputs.checks import InvalidValue  # here, for the time that it takes to import
 
     if not isinstance(error, InvalidValue) or not error.unit:
         return str(error)

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beamdyn.common.files import check_writable, same_file, write_text
+from beamdyn.common.results.files import check_writable, same_file, write_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.results import Result
+    from beamdyn.common.results.result import Result
 
 Flag = Annotated[bool, Parameter(negative="")]
 
@@ -159,7 +159,7 @@ def write(
     if outputs.report is not None and report is not None:
         write_text(outputs.report, report.page(draw))
     if outputs.plot is not None and draw is not None:
-        from beamdyn.common.pictures import save_figure
+        from beamdyn.common.results.pictures import save_figure
 
         save_figure(draw(), outputs.plot, outputs.force)
 
@@ -186,7 +186,7 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     """Return a function that makes a figure with what `draw` draws on axes."""
 
     def made() -> Figure:
-        from beamdyn.common.pictures import figure_of
+        from beamdyn.common.results.pictures import figure_of
 
         return figure_of(draw)
 

@@ -13,10 +13,10 @@ from typing import Any
 
 from cyclopts import App, CycloptsError
 
-from beamdyn.common.announced import OutsideLinearTheory
 from beamdyn.common.edge.option_words import TYPED, as_given, as_typed
 from beamdyn.common.edge.progress import at_work, quiet
 from beamdyn.common.edge.usage_words import check_names, say_mistake
+from beamdyn.common.results.announced import OutsideLinearTheory
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -128,7 +128,7 @@ def _as_sentences(name: str) -> Iterator[None]:
 
 
 def _no_answer(name: str, error: Exception) -> int:
-    from beamdyn.common.checks import reason_of
+    from beamdyn.common.inputs.checks import reason_of
 
     return _complain(name, f"no answer: {as_typed(reason_of(error))}", NO_ANSWER)
 
@@ -137,7 +137,7 @@ def _refused(name: str, error: Exception) -> int:
     """Exit code of a ValueError: bad input, or no answer, as where a linear system is singular."""
     from numpy.linalg import LinAlgError
 
-    from beamdyn.common.checks import NoModelAnswer
+    from beamdyn.common.inputs.checks import NoModelAnswer
 
     if isinstance(error, NoModelAnswer):
         return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)

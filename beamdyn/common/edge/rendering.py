@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.checks import reason_of
+from beamdyn.common.inputs.checks import reason_of
 
 _SENTENCE = 36  # letters from which on the words of a cell are a sentence
 

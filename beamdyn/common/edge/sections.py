@@ -11,11 +11,11 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, get_args, get_ori
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, create_model
 
-from beamdyn.common.described import Described, description, kinds_of
 from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.wording import of_file
+from beamdyn.common.inputs.described import Described, description, kinds_of
 
 
 class MadeSection(CoreSection):

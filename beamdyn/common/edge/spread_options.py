@@ -123,8 +123,8 @@ def parse_spreads(
 @contextmanager
 def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
     """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
-    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.wording import in_unit_of
+    from beamdyn.common.inputs.checks import InvalidValue
 
     texts = {each.name: each.text for each in given}
     try:
@@ -134,8 +134,8 @@ def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
 
 
 def _parse_spread(entry: Input, tolerance: str, value: float, unit: str) -> SpreadInput:
-    from beamdyn.common.checks import InvalidValue
     from beamdyn.common.edge.units import InvalidInput
+    from beamdyn.common.inputs.checks import InvalidValue
     from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
     try:

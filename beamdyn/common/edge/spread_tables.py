@@ -8,9 +8,9 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.common.digits import percent, supported
 from beamdyn.common.edge.tables import table
+from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
+from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.tolerances import Normal
 

@@ -13,10 +13,10 @@ from unicodedata import normalize
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
-from beamdyn.common.comparison import Comparison
-from beamdyn.common.digits import count_sure
 from beamdyn.common.edge.fitted_table import FittedTable
 from beamdyn.common.edge.progress import quiet
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.digits import count_sure
 
 _PIPE_WIDTH = 120  # width of tables that go to a file or another program
 

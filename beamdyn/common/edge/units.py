@@ -12,7 +12,7 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
-from beamdyn.common.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue
 
 if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
     from pint import Unit, UnitRegistry

@@ -10,9 +10,9 @@ from typing import get_args, get_origin
 
 import numpy as np
 
-from beamdyn.common.designs import Designs, VariedInput
 from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character
+from beamdyn.common.inputs.designs import Designs, VariedInput
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)

@@ -14,20 +14,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import Console, Group, RenderableType
 
-from beamdyn.common.checks import reason_of
-from beamdyn.common.columns import in_display_units
-from beamdyn.common.described import descriptions
 from beamdyn.common.edge.rendering import html, png
 from beamdyn.common.edge.tables import table
-from beamdyn.common.one_line import brief, spanned
-from beamdyn.common.pictures import figure_of
-from beamdyn.common.results import Result, plain
+from beamdyn.common.inputs.checks import reason_of
+from beamdyn.common.inputs.described import descriptions
+from beamdyn.common.results.columns import in_display_units
+from beamdyn.common.results.one_line import brief, spanned
+from beamdyn.common.results.pictures import figure_of
+from beamdyn.common.results.result import Result, plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-_PLACES = {"beamdyn": "beamdyn.views", "brakes": "brakes.views"}  # modules of `VIEWS`, by package
+_PLACES = {"beamdyn": "beamdyn.results.views", "brakes": "brakes.views"}  # modules of `VIEWS`, by package
 _MOST_ROWS = 30  # rows of a table in a notebook
 _WIDTH = 120  # characters of a table as text
 _NOT_SHOWN = ("provenance", "warnings")

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 from pydantic import BaseModel
 
-from beamdyn.common.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.units import unit_as_written
+from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(

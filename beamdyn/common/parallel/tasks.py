@@ -11,11 +11,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from beamdyn.common.checks import InvalidValue, count, function
+from beamdyn.common.inputs.checks import InvalidValue, count, function
 from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.parallel.workers import Workers, one_blas_thread
-from beamdyn.common.records import DamagedRecord
-from beamdyn.common.snapshots import decode, encode
+from beamdyn.common.results.records import DamagedRecord
+from beamdyn.common.results.snapshots import decode, encode
 
 Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
@@ -168,7 +168,7 @@ class TaskRunner:
         ----------
         solve : callable
             Takes what a task makes; with workers or an executor a function of a module.  What it returns
-            with a store is data: see `beamdyn.common.snapshots`.
+            with a store is data: see `beamdyn.common.results.snapshots`.
         tasks : sequence of Task
             The tasks.
         keep : callable

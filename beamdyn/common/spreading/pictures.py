@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

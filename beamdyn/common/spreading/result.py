@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.digits import supported
-from beamdyn.common.one_line import counted, warned
-from beamdyn.common.results import Provenance, Result
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.spreading.first_order import FirstOrderRange
 from beamdyn.common.spreading.statistics import Scatter, SobolIndices
 from beamdyn.common.spreading.tolerances import SpreadInput
@@ -137,7 +137,7 @@ class Spread(Result):
 
     def plot(self, ax: Axes | None = None, answer: int = 0) -> Axes:
         """Draw how an answer scatters: its random designs, percentiles, first order and worst cases."""
-        from beamdyn.common.pictures import COLOURS
+        from beamdyn.common.results.pictures import COLOURS
         from beamdyn.common.spreading.pictures import draw_scatter
 
         first, worst, unit = self.first_order, self.worst, self.units[answer]

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, count
+from beamdyn.common.inputs.checks import InvalidValue, count
 from beamdyn.common.spreading.tolerances import SpreadInput
 
 BLOCKS = 16

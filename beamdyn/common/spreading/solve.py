@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.checks import InvalidValue
-from beamdyn.common.digits import percent
-from beamdyn.common.results import Provenance
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import after
 from beamdyn.common.spreading.first_order import first_order_of
 from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.sampling import SpreadDesigns
@@ -21,7 +22,6 @@ from beamdyn.common.spreading.slopes import KnownDerivatives, slopes_from
 from beamdyn.common.spreading.statistics import Scatter, indices_of, scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
-from beamdyn.common.statements import after
 
 _FEW = 3  # reasons that a warning lists
 _NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.checks import InvalidValue, kind, positive, real, set_fields
+from beamdyn.common.inputs.checks import InvalidValue, kind, positive, real, set_fields
 
 _N = r"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _BOTH = re.compile(rf"(?:\+-|\+/-|±)\s*{_N}\s*(.*)")

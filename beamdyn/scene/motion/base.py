@@ -11,8 +11,8 @@ from typing import Self
 
 import numpy as np
 
-from beamdyn.common.checks import real_array
-from beamdyn.common.one_line import OneLine
+from beamdyn.common.inputs.checks import real_array
+from beamdyn.common.results.one_line import OneLine
 
 _ROUNDING = 1e-12  # relative to the end of a motion: times beyond it by less differ by rounding only
 

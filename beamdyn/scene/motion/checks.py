@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamdyn.common.checks import MOST
+from beamdyn.common.inputs.checks import MOST
 from beamdyn.scene.motion.base import Motion
 
 _SAMPLES = 1000  # times at which functions are compared with their derivatives

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import MOST, InvalidValue, one_of, real, real_array, refuse, set_fields
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.checks import MOST, InvalidValue, one_of, real, real_array, refuse, set_fields
+from beamdyn.common.inputs.described import Described
 from beamdyn.scene.motion.base import Motion, MotionSample, check_times
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.checks import function, kind, moderate, positive, real, refuse, set_fields, size
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.checks import function, kind, moderate, positive, real, refuse, set_fields, size
+from beamdyn.common.inputs.described import Described
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
 from beamdyn.scene.motion.checks import check_consistent
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.checks import (
+from beamdyn.common.inputs.checks import (
     function,
     moderate,
     one_of,
@@ -21,7 +21,7 @@ from beamdyn.common.checks import (
     set_fields,
     size,
 )
-from beamdyn.common.described import Described
+from beamdyn.common.inputs.described import Described
 from beamdyn.scene.motion.base import (
     Kinematics,
     Motion,

@@ -1,0 +1,77 @@
+"""Checks of numbers that may be arrays: one case or many, by numpy broadcasting."""
+
+from __future__ import annotations
+
+from types import NoneType
+from typing import Any, Literal, get_origin
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, in_unit, refuse, set_fields
+from beamdyn.common.inputs.described import described_hints, description, kinds_of
+
+Numbers = Any  # a float, or an array of floats: one value a case
+
+
+def numbers(name: str, value: Any, unit: str = "") -> Numbers:
+    """Finite floats: a float, or an array of any shape."""
+    array = as_floats(value)
+    if array is None:
+        raise InvalidValue(name, value, "give a finite number, or an array" + in_unit(unit), unit=unit)
+    if not array.size:
+        raise InvalidValue(name, value, "it is empty; give a number, or an array" + in_unit(unit), unit=unit)
+    refuse(~np.isfinite(array), name, array, unit, "it must be a finite number")
+    return array if array.ndim else float(array)
+
+
+def positive(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
+    """Finite floats above zero."""
+    array = numbers(name, value, unit)
+    refuse(np.asarray(array) <= 0, name, array, unit, "it must be greater than 0", remedy)
+    return array
+
+
+def not_negative(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
+    """Finite floats of zero or more."""
+    array = numbers(name, value, unit)
+    refuse(np.asarray(array) < 0, name, array, unit, "it must be 0 or more", remedy)
+    return array
+
+
+def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
+    """Two finite floats or arrays; a message names them by index, such as "tip[0]"."""
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise InvalidValue(name, value, "give two numbers" + in_unit(unit), unit=unit) from None
+    return numbers(f"{name}[0]", first, unit), numbers(f"{name}[1]", second, unit)
+
+
+def keep_checked(core: object) -> None:
+    """Replace the described numbers of a frozen dataclass by floats or arrays of floats; None stays.
+
+    Raises
+    ------
+    InvalidValue
+        If one is not finite, or out of the bounds of its description; the numbers of a pair have none.
+    """
+    for name, hint in described_hints(type(core)).items():
+        value, (kind, *others), described = getattr(core, name), kinds_of(hint), description(hint)
+        if described is None or get_origin(kind) is Literal or (value is None and NoneType in others):
+            continue
+        if get_origin(kind) is tuple:
+            checked = pair(name, value, described.unit)
+        else:
+            checked = numbers(name, value, described.unit)
+            described.refuse_out_of_bounds(name, checked)
+        set_fields(core, **{name: checked})
+
+
+def together(**values: Any) -> None:
+    """Raise a ValueError unless the shapes broadcast."""
+    shapes = {name: np.shape(value) for name, value in values.items()}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        raise ValueError(f"shapes do not broadcast: {listed}; give numbers, or arrays of one shape") from None

@@ -1,0 +1,149 @@
+"""Designs: inputs with their values, each combined with each, or taken together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, one_of
+
+COMBINATIONS = ("product", "zip")
+MOST_DESIGNS = 1_000_000  # whose answers fit into memory
+
+
+@dataclass(frozen=True)
+class VariedInput:
+    """An input that is varied.
+
+    Parameters
+    ----------
+    name : str
+        Its path in files, such as "beam.thickness".
+    unit : str
+        Unit of the values.
+    values : ndarray, shape (n,)
+        Its values [unit].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> varied = bd.study(bd.Scene(strip), {"beam.thickness": [0.0002, 0.0004]}, modes=1).inputs[0]
+    >>> varied.name, varied.unit
+    ('beam.thickness', 'm')
+    """
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures: name and unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class Designs:
+    """N designs: the last input of a product changes fastest.
+
+    Parameters
+    ----------
+    inputs : sequence of VariedInput
+        The inputs.
+    combine : {"product", "zip"}
+        Whether each value is combined with each of the other inputs, or the first of all are a design, the
+        second of all another, and so on.
+    """
+
+    inputs: Sequence[VariedInput]
+    combine: str = "product"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the answers: one axis an input, or one for all that are taken together."""
+        lengths = tuple(len(each.values) for each in self.inputs)
+        return lengths[:1] if self.combine == "zip" else lengths
+
+    @property
+    def count(self) -> int:
+        """Number N of designs; 1 without inputs."""
+        return math.prod(self.shape)
+
+    def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
+        """The value of each input in some of the designs: (R,) by name."""
+        places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
+        if self.combine == "zip":
+            return {each.name: each.values[places] for each in self.inputs}
+        indices = np.unravel_index(places, self.shape) if self.inputs else ()
+        return {each.name: each.values[i] for each, i in zip(self.inputs, indices, strict=True)}
+
+    def at(self, *place: int) -> dict[str, float]:
+        """Values by name of the design at a place (i1, ..., id) of `shape`.
+
+        Raises
+        ------
+        ValueError
+            If there are not as many indices as axes, or one is out of range.
+        """
+        if len(place) != len(self.shape):
+            raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
+        if any(not -length <= i < length for i, length in zip(place, self.shape, strict=True)):
+            raise ValueError(f"place {place}: it is outside {self.shape}, where indices begin at 0")
+        places = place * len(self.inputs) if self.combine == "zip" else place
+        return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
+
+    def chunks(self, size: int) -> list[slice]:
+        """Rows of designs of at most a size, which follow from the designs alone."""
+        return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
+
+    def without(self, name: str) -> Designs:
+        """The same without an input."""
+        return Designs([each for each in self.inputs if each.name != name], self.combine)
+
+    def extremes(self) -> Iterator[dict[str, float]]:
+        """Yield the designs of the smallest and the largest value of each input, each with each."""
+        ends = [VariedInput(i.name, i.unit, np.unique([i.values.min(), i.values.max()])) for i in self.inputs]
+        yield from rows_of(Designs(ends).columns())
+
+
+def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
+    """Designs of columns (R,), each with its values by name."""
+    return [
+        dict(zip(columns, row, strict=True))
+        for row in zip(*(c.tolist() for c in columns.values()), strict=True)
+    ]
+
+
+def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
+    """Refuse an unknown combination, an input given twice, unequal lengths to be taken together, too many.
+
+    Parameters
+    ----------
+    designs : Designs
+        The designs.
+    most : int
+        Largest number of them.
+    option : str
+        What the inputs are called in the message.
+
+    Raises
+    ------
+    InvalidValue
+        With the reason.
+    """
+    one_of("combine", designs.combine, COMBINATIONS)
+    names = [each.name for each in designs.inputs]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidValue(option, name, "the input is given twice", "give all its values at once")
+    lengths = [len(each.values) for each in designs.inputs]
+    if designs.combine == "zip" and len({*lengths}) > 1:
+        bound = f"the inputs have {' and '.join(map(str, lengths))} values"
+        raise InvalidValue("combine", "zip", bound, "give as many of each to take them together")
+    if designs.count > most:
+        counts = " x ".join(map(str, lengths)) if designs.combine == "product" else str(designs.count)
+        bound = f"at most {most} designs are solved"
+        raise InvalidValue(option, f"{counts} values", bound, "give fewer values")

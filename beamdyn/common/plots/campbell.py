@@ -1,0 +1,302 @@
+"""Campbell's diagram from arrays: natural frequencies and lines over speed, with what is marked in it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+from matplotlib.transforms import ScaledTranslation
+
+from beamdyn.common.plots.plots import set_up_axes
+from beamdyn.common.plots.plots_by_plane import draw_by_plane, style_by_plane
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.pictures import COLOURS
+
+_MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
+_HEADROOM = 1.06
+_MOST_HIDDEN = 2  # modes above the picture that the legend names
+_APART = 0.042  # of the height: least distance of two labels
+_LONGEST = 36  # letters of an entry of the legend above which it has two columns
+_SAME = 0.03  # of the height: distance of two labels of one name below which one of them will do
+_GREY, _DARK = "0.45", "0.1"  # of per-rev lines, and of the motion's
+_PER_REV = re.compile(r"\d+P")  # names of per-rev lines
+_MARKS: tuple[dict[str, Any], ...] = (
+    {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
+    {"marker": "s", "color": "black", "markerfacecolor": "white", "markersize": 6},
+)
+_INSIDE: tuple[dict[str, Any], ...] = (
+    {"marker": "o", "color": "black", "markerfacecolor": "black", "markersize": 6},
+    {"marker": "o", "color": "0.5", "markerfacecolor": "white", "markersize": 4.5},
+)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Natural frequencies of one scene.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    frequency : ndarray, shape (S, m)
+        Frequencies [Hz]; nan leaves a gap.
+    names : tuple of str, length m
+        Names of the modes.
+    label : str
+        Name of the scene, for the legend.
+    solid : ndarray of bool, shape (S, m), optional
+        Where a mode is drawn solid, else dashed.
+    directions : tuple of str, optional
+        What is drawn solid and dashed, for the legend.
+    """
+
+    speeds: np.ndarray
+    frequency: np.ndarray
+    names: tuple[str, ...]
+    label: str = ""
+    solid: np.ndarray | None = None
+    directions: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class _CurveName:
+    text: str
+    y: float
+    colour: str
+
+
+def plot_campbell(
+    scenes: Sequence[Curves],
+    lines: Mapping[str, float],
+    crossings: Mapping[str, Sequence[tuple[float, float]]],
+    ax: Axes | None = None,
+    unit: str = "rad/s",
+    rated: float | None = None,
+    operating: tuple[float, float] | None = None,
+) -> Axes:
+    """Draw natural frequencies, excitation lines and their crossings over speed: Campbell's diagram.
+
+    Modes and lines are named where they leave the axes.  Modes far above all lines are left out.
+
+    Parameters
+    ----------
+    scenes : sequence of Curves
+        One scene, whose modes differ in colour, or several, which do.
+    lines : mapping of str to float
+        Excitation lines: their frequencies as multiples of the speed.
+    crossings : mapping of str to sequence of (float, float)
+        Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    unit : {"rad/s", "rpm", "deg/s"}
+        Unit of the axis of speeds.
+    rated : float, optional
+        Rated speed [rad/s], marked by a line.
+    operating : (float, float), optional
+        Operating range [rad/s], shaded; the first kind of crossings is then that within it.
+
+    Returns
+    -------
+    Axes
+    """
+    factor = DisplayUnits(unit).speed_unit().per_si
+    ax = set_up_axes(ax, f"{'rotor speed' if unit == 'rpm' else 'angular speed'} [{unit}]", "frequency [Hz]")
+    first, last = scenes[0].speeds[[0, -1]]
+    top = _top(scenes, lines, last)
+    ax.set(xlim=(factor * first, factor * last), ylim=(0, top))
+    at_right, above = _draw_lines(ax, factor, lines, first, last, top)
+    rows = _name_at_top(ax, factor, above, last - first)
+    _name_at_right(ax, [*at_right, *_draw_modes(ax, factor, scenes, top)], top)
+    _mark_operation(ax, factor, unit, rated, operating)
+    _mark_crossings(ax, factor, crossings, _MARKS if operating is None else _INSIDE, top)
+    _name_hidden(ax, scenes, top)
+    if len(scenes) == 1 and scenes[0].label:
+        ax.set_title(scenes[0].label, fontsize=12, pad=6 + 12 * rows)
+    return _add_legend(ax)
+
+
+def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
+    """Top of the axis of frequencies [Hz]: above the modes that are not far above all lines."""
+    fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
+    shown = np.concatenate([curves.frequency.ravel() for curves in scenes])
+    shown = shown[np.isfinite(shown)]
+    if not shown.size:
+        return max(fastest, 1.0)
+    highest = [np.nanmax(f) for curves in scenes for f in curves.frequency.T if np.isfinite(f).any()]
+    within = [f for f in highest if not fastest or f <= _MOST_ABOVE * fastest]
+    return _HEADROOM * max(within, default=min(highest))
+
+
+# What is drawn ------------------------------------------------------------------------------------
+
+
+def _draw_lines(
+    ax: Axes, factor: float, lines: Mapping[str, float], first: float, last: float, top: float
+) -> tuple[list[_CurveName], list[tuple[str, str, float]]]:
+    """Draw the lines; labels of those that end at the right, and name, colour, speed where others leave."""
+    at_right, above = [], []
+    ends = np.array([first, last])
+    for name, multiple in lines.items():
+        per_rev = _PER_REV.fullmatch(name)
+        colour, dashes = (_GREY, "-") if per_rev else (_DARK, "-.")
+        y = multiple * ends / (2 * np.pi)
+        ax.plot(factor * ends, y, dashes, color=colour, linewidth=0.9 if per_rev else 1.2, zorder=1.5)
+        if y[1] <= top:
+            at_right.append(_CurveName(name, y[1], colour))
+        else:
+            above.append((name, colour, 2 * np.pi * top / multiple))
+    return at_right, above
+
+
+def _name_at_top(ax: Axes, factor: float, above: Sequence[tuple[str, str, float]], width: float) -> int:
+    """Name lines where they leave through the top, in as many rows as needed: the number of rows."""
+    ends: list[float] = []
+    for name, colour, speed in sorted(above, key=lambda line: line[2]):
+        half = 0.006 * (len(name) + 1) * width
+        row = next((r for r, end in enumerate(ends) if speed - half > end), len(ends))
+        ends[row : row + 1] = [speed + half]
+        place = {"xytext": (0, 3 + 11 * row), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+        at = factor * speed, 1.0
+        ax.annotate(name, at, xycoords=("data", "axes fraction"), fontsize=9, color=colour, **place)
+    return len(ends)
+
+
+def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
+    """Draw the modes, and yield their labels."""
+    for k, curves in enumerate(scenes):
+        solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
+        for i, (y, dashes, name) in enumerate(zip(curves.frequency.T, solid.T, curves.names, strict=True)):
+            style = style_by_plane(i if len(scenes) == 1 else k)
+            draw_by_plane(ax, factor * curves.speeds, y, dashes, style)
+            if np.isfinite(y[-1]) and y[-1] <= top:
+                yield _CurveName(name + _changed(curves, i), float(y[-1]), style["color"])
+            else:
+                _name_inside(ax, factor * curves.speeds, y, name, style["color"], top)
+        if len(scenes) > 1:
+            ax.plot([], [], color=COLOURS[k % len(COLOURS)], linewidth=3, label=curves.label)
+    directions = next((curves.directions for curves in scenes if curves.directions), ())
+    for dashes, direction in zip(("-", "--"), directions, strict=False):
+        ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=f"mostly {direction}")
+
+
+def _changed(curves: Curves, mode: int) -> str:
+    """What a mode mostly is at the last speed, in brackets, if that is not what it was named after."""
+    if curves.solid is None or curves.directions is None or curves.solid[0, mode] == curves.solid[-1, mode]:
+        return ""
+    return f" ({curves.directions[0 if curves.solid[-1, mode] else 1]})"
+
+
+def _name_inside(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str, top: float) -> None:
+    """Name a mode that does not reach the right end at its first point, if that is shown."""
+    shown = np.flatnonzero(np.isfinite(y) & (y <= top))
+    if shown.size:
+        where = shown[0]
+        place = {"xytext": (4, 3), "textcoords": "offset points"}
+        halo = [withStroke(linewidth=3, foreground="white")]
+        ax.annotate(name, (x[where], y[where]), color=colour, fontsize=9, path_effects=halo, **place)
+
+
+def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
+    """Name the modes above the picture in the legend, with their least frequency where it is one scene."""
+    hidden = {
+        name: np.nanmin(y)
+        for curves in scenes
+        for name, y in zip(curves.names, curves.frequency.T, strict=True)
+        if np.isfinite(y).any() and np.nanmin(y) > top
+    }
+    if hidden:
+        named = [f"{name} ({f:.4g} Hz)" if len(scenes) == 1 else name for name, f in hidden.items()]
+        shown, more = named[:_MOST_HIDDEN], ", ..." * (len(named) > _MOST_HIDDEN)
+        ax.plot([], [], " ", label=f"above: {', '.join(shown)}{more}")
+
+
+def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
+    """Name curves beside their right ends, the labels apart, each with a leader to its curve."""
+    labels = sorted(_merged(labels, top), key=lambda label: label.y)
+    heights = _spread([label.y / top for label in labels])
+    for label, height in zip(labels, heights, strict=True):
+        moved = abs(height - label.y / top) > 0.004
+        leader = {"arrowstyle": "-", "color": label.colour, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate(
+            label.text,
+            (1.0, label.y / top),
+            xytext=(1.025, height),
+            xycoords="axes fraction",
+            textcoords="axes fraction",
+            fontsize=9,
+            color=label.colour,
+            va="center",
+            arrowprops=leader if moved else None,
+            annotation_clip=False,
+        )
+
+
+def _merged(labels: Sequence[_CurveName], top: float) -> list[_CurveName]:
+    """The labels, with one in grey for those of one name whose curves end close to one another."""
+    merged: list[_CurveName] = []
+    for label in labels:
+        same = [i for i, m in enumerate(merged) if m.text == label.text and abs(m.y - label.y) < _SAME * top]
+        if same:
+            merged[same[0]] = _CurveName(label.text, (merged[same[0]].y + label.y) / 2, "0.2")
+        else:
+            merged.append(label)
+    return merged
+
+
+def _spread(heights: Sequence[float]) -> list[float]:
+    """Move ascending heights as little as need be, so that neighbours are apart.
+
+    Heights less their numbers times the distance have to ascend: the nearest ascending ones are the means
+    of blocks that do not (pool adjacent violators).
+    """
+    blocks: list[tuple[float, int]] = []
+    for i, height in enumerate(heights):
+        blocks.append((height - i * _APART, 1))
+        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
+            (a, m), (b, n) = blocks[-2:]
+            blocks[-2:] = [((m * a + n * b) / (m + n), m + n)]
+    means = [mean for mean, size in blocks for _ in range(size)]
+    return [mean + i * _APART for i, mean in enumerate(means)]
+
+
+def _mark_operation(
+    ax: Axes, factor: float, unit: str, rated: float | None, operating: tuple[float, float] | None
+) -> None:
+    """Shade the operating range and draw the rated speed."""
+    if operating is not None:
+        low, high = (factor * speed for speed in operating)
+        text = f"operating range {low:.4g} to {high:.4g} {unit}"
+        ax.axvspan(low, high, color="0.93", zorder=0, label=text)
+    if rated is not None:
+        text = f"rated speed {factor * rated:.4g} {unit}"
+        ax.axvline(factor * rated, color="0.2", linewidth=1.1, linestyle=(0, (6, 3)), zorder=1.6, label=text)
+
+
+def _mark_crossings(
+    ax: Axes,
+    factor: float,
+    crossings: Mapping[str, Sequence[tuple[float, float]]],
+    marks: Sequence[dict[str, Any]],
+    top: float,
+) -> None:
+    for mark, (kind, points) in zip(marks, crossings.items(), strict=False):
+        shown = [(factor * speed, frequency) for speed, frequency in points if frequency <= top]
+        if shown:
+            x, y = zip(*shown, strict=True)
+            ax.plot(x, y, linestyle="none", label=kind, zorder=3, **mark)
+
+
+def _add_legend(ax: Axes) -> Axes:
+    """Add a legend below the axes, where it covers nothing."""
+    handles, labels = ax.get_legend_handles_labels()
+    if labels:
+        columns = 3 if max(map(len, labels)) <= _LONGEST else 2
+        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
+        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+        ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
+    return ax

@@ -1,0 +1,99 @@
+"""Comparison of published values with computed ones: deviation and verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from beamdyn.common.results.digits import supported
+
+
+class Verdict:
+    """Whether a published number and ours agree, as far as that was to be expected."""
+
+    reason: str
+
+    @property
+    def agrees(self) -> bool:
+        """Whether they agree."""
+        raise NotImplementedError
+
+    @property
+    def as_expected(self) -> bool:
+        """Whether they agree, or differ for a known reason."""
+        return self.agrees != bool(self.reason)
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        if self.agrees:
+            return "agrees" if not self.reason else "agrees, which is unexpected"
+        return f"differs: {self.reason or 'unexpected'}"
+
+
+@dataclass(frozen=True)
+class Comparison(Verdict):
+    """A published value and the computed one.
+
+    Parameters
+    ----------
+    what : str
+        What is compared.
+    source : str
+        Who published it.
+    published : float or pair of floats
+        The value, or the ends of the interval in which it is said to lie.
+    ours : float
+        Our value.
+    error : float
+        Its estimated absolute error.
+    decimals : int
+        Decimals printed by the source.
+    reason : str
+        Why the two are known to differ; empty where they should agree.
+    """
+
+    what: str
+    source: str
+    published: float | tuple[float, float]
+    ours: float
+    error: float
+    decimals: int
+    reason: str = ""
+
+    @property
+    def deviation(self) -> float:
+        """Ours less the published value; of an interval, less the nearest of it."""
+        ends = self.published if isinstance(self.published, tuple) else (self.published,) * 2
+        return self.ours - min(max(self.ours, ends[0]), ends[1])
+
+    @property
+    def bound(self) -> float:
+        """Largest deviation of values that agree: the source's rounding and our error."""
+        rounding = 0.0 if isinstance(self.published, tuple) else 0.5 * 10.0**-self.decimals
+        return rounding + self.error
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the deviation is within the bound."""
+        return abs(self.deviation) <= self.bound
+
+    def cells(self) -> list[str]:
+        """Its row of the table."""
+        return [
+            self.what,
+            self.source,
+            self._published(),
+            supported(self.ours, self.error, 12) if self.error else f"{self.ours:.{self.decimals}f}",
+            self._deviation(),
+            self.verdict,
+        ]
+
+    def _published(self) -> str:
+        ends = self.published if isinstance(self.published, tuple) else (self.published,)
+        return " to ".join(f"{end:.{self.decimals}f}" for end in ends)
+
+    def _deviation(self) -> str:
+        if isinstance(self.published, tuple) and self.deviation == 0:
+            return "inside"
+        text = supported(self.deviation, self.error, 2)
+        return text if self.deviation <= 0 or "±" in text else f"+{text}"

@@ -1,0 +1,207 @@
+"""Pictures as files, the colours of their lines, and several results on one pair of axes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import wraps
+from inspect import Parameter, signature
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from beamdyn.common.results.files import check_writable, replacing
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+DASHES = ("-", "--", "-.", ":")
+_MOST_INSIDE = 6  # entries above which the legend stands beside the axes
+_LONGEST_INSIDE = 28  # letters of an entry above which it stands below them
+SUFFIXES = (".png", ".svg", ".pdf")
+ANIMATION_SUFFIXES = (".gif",)
+
+
+def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> Path:
+    """Write a picture as PNG, SVG or PDF.
+
+    Parameters
+    ----------
+    drawn : Axes or Figure
+        The picture, or axes in it.
+    path : str or Path
+        File to write; its suffix .png, .svg or .pdf chooses the format.
+    force : bool
+        Overwrite a file that exists.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown.
+    FileExistsError
+        If the file exists and `force` is not set.
+    OSError
+        If it cannot be written.
+    """
+    path = check_writable(path, SUFFIXES, force)
+    figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
+    content = BytesIO()  # matplotlib does not close a file that it cannot write
+    figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
+    with replacing(path) as aside:
+        aside.write_bytes(content.getvalue())
+    return path
+
+
+def save_animation(
+    figure: Figure, path: str | Path, frames: Iterable[object], dpi: float, rate: float, force: bool = False
+) -> None:
+    """Write an animation of a figure that changes.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    path : str or Path
+        File to write, .gif.
+    frames : iterable
+        Each step to its next item draws one frame.
+    dpi : float
+        Resolution [1/inch].
+    rate : float
+        Frames per second.
+    force : bool
+        Overwrite a file that exists.
+
+    Raises
+    ------
+    ValueError, FileExistsError, OSError
+        As for `save_figure`.
+    """
+    from matplotlib import rc_context
+    from matplotlib.animation import PillowWriter
+
+    path = check_writable(path, ANIMATION_SUFFIXES, force)
+    writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
+    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have one size
+        writer.setup(figure, str(aside), dpi)
+        for _ in frames:
+            writer.grab_frame()
+        writer.finish()
+
+
+def add_legend(ax: Axes) -> Axes:
+    """Add a legend: beside the axes if it has many entries, below them if these are long."""
+    labels = ax.get_legend_handles_labels()[1]
+    place: dict[str, Any] = {"loc": "best"}
+    if max(map(len, labels), default=0) > _LONGEST_INSIDE:
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
+    elif len(labels) > _MOST_INSIDE:
+        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
+    ax.legend(fontsize=10, **place)
+    return ax
+
+
+def figure_of(draw: Callable[[Axes], object], size: tuple[float, float] = (7.5, 4.8)) -> Figure:
+    """Make a figure, of a size in inches, of what a function draws on axes; nobody has to close it."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    draw(figure.subplots())
+    return figure
+
+
+# Several results on one pair of axes ----------------------------------------------------------------
+
+
+def labelled(plot: Callable[..., Axes]) -> Callable[..., Axes]:
+    """Give a method that draws a result the option `label`, which tells results on the same axes apart.
+
+    The entries of the legend then begin with the label, and colours that are there already are not taken
+    again.  By default it is the `plot_label` of the result.
+    """
+    known = signature(plot)
+
+    @wraps(plot)
+    def drawn(self: Any, *arguments: Any, label: str | None = None, **options: Any) -> Axes:
+        ax = known.bind(self, *arguments, **options).arguments.get("ax")
+        before = [] if ax is None else [*_marks(ax)]
+        made = plot(self, *arguments, **options)
+        if text := self.plot_label if label is None else label:
+            _tell_apart(made, before if made is ax else [], text)
+        return made
+
+    option = Parameter("label", Parameter.KEYWORD_ONLY, default=None, annotation="str | None")
+    each = [*known.parameters.values()]
+    drawn.__dict__["__signature__"] = known.replace(parameters=[*each, option])
+    return drawn
+
+
+def _marks(ax: Axes) -> Iterator[Artist]:
+    """Lines, areas, bars, each of their rectangles, and names in a picture."""
+    marks: Any = (*ax.lines, *ax.collections, *ax.containers, *ax.patches, *ax.texts)
+    yield from marks
+
+
+def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
+    """Put a label before the names of what was drawn last, in colours that were not there before."""
+    new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
+    taken, own = _colours(before), _colours(new)
+    moves = _free_places(taken, own) if taken & own else {}
+    for mark in new:
+        _recolour(mark, moves)
+    names = [mark for mark in new if _name(mark)]
+    for mark in names or [mark for mark in new if hasattr(mark, "get_data")][:1]:
+        mark.set_label(f"{text}, {_name(mark)}" if _name(mark) else text)
+    if new:
+        add_legend(ax)
+
+
+def _free_places(taken: set[int], own: set[int]) -> dict[int, int]:
+    """What each of our own colours becomes: one behind those taken, or a free one if these do not do."""
+    behind = {place: place + len(taken) for place in own}
+    free = [place for place in range(len(COLOURS) - 1) if place not in taken]
+    if max(behind.values()) < len(COLOURS) or len(free) < len(own):
+        return behind
+    return dict(zip(sorted(own), free, strict=False))
+
+
+def _name(mark: Artist) -> str:
+    """Its entry in the legend, if it has one."""
+    label = str(mark.get_label())
+    return "" if label.startswith("_") else label
+
+
+def _colours(marks: Iterable[Artist]) -> set[int]:
+    return {place for mark in marks if (place := _place(mark)) is not None}
+
+
+def _place(mark: Artist) -> int | None:
+    """Which of our colours a line, an area or a name has; None if it has none of them."""
+    from matplotlib.colors import to_hex
+
+    given: Any = getattr(mark, "get_color", None) or getattr(mark, "get_facecolor", None)
+    colour = None if given is None else given()
+    if colour is not None and not isinstance(colour, str):
+        colour = colour[0] if len(colour) and not isinstance(colour[0], float) else colour
+    known = {to_hex(each): place for place, each in enumerate(COLOURS[:-1])}  # black is that of marks, too
+    return None if colour is None or not len(colour) else known.get(to_hex(colour))
+
+
+def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
+    """Give a line, an area, a bar or a name another colour; past the last one, a line is dashed."""
+    place, line = _place(mark), hasattr(mark, "get_linestyle")
+    if place is None or place not in moves:
+        return
+    cycle, colour = divmod(moves[place], len(COLOURS))
+    new: dict[str, Any] = {"color": COLOURS[colour]}
+    if cycle and line and mark.get_linestyle() == "-":  # pyright: ignore[reportAttributeAccessIssue]
+        new["linestyle"] = DASHES[cycle % len(DASHES)]
+    mark.set(**new)

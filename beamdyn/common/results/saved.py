@@ -1,0 +1,149 @@
+"""Results in files: JSON, with all that makes the result again."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.results.files import as_path, check_writable, write_text
+from beamdyn.common.results.plain import nullified, plain
+from beamdyn.common.results.read_only import make_read_only
+from beamdyn.common.results.records import seal, unseal
+from beamdyn.common.results.snapshots import decode, encode
+
+
+class Saved:
+    """Base of dataclasses that are written as JSON, and loaded.
+
+    Attributes
+    ----------
+    kept : tuple of str
+        What is computed when asked for, and saved with the result once it is; numbers are anyway.
+    """
+
+    kept: ClassVar[tuple[str, ...]] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
+        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
+        return {f.name: plain(getattr(self, f.name)) for f in fields if f.repr}
+
+    def loadable(self) -> Saved | None:
+        """The result that `load` makes of this one's JSON; None if it makes none."""
+        return self
+
+    def to_json(self) -> str:
+        """The result as JSON: the numbers of `to_dict` for any program, and all that `load` needs.
+
+        Numbers that are not finite are null, but `load` gets them back.
+        """
+        values, result = nullified(self.to_dict()), self.loadable()
+        record = {} if result is None else {"record": _record_of(result)}
+        return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
+
+    def save(self, path: str | Path, force: bool = False) -> None:
+        """Write the result as JSON, from which `beamdyn.load` makes it again; see `to_json`.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+        force : bool
+            Overwrite a file that exists.
+
+        Raises
+        ------
+        ValueError
+            If the path is none.
+        FileExistsError
+            If the file exists and `force` is not set.
+        OSError
+            If it cannot be written.
+        """
+        write_text(check_writable(path, force=force), self.to_json())
+
+
+def load(path: str | Path) -> Any:
+    """Read a result that `Result.save` or the option ``--json`` of a command has written.
+
+    It has the class, the numbers (to the bit), the scene and the provenance of the one that was written, and
+    does what that one does.  Only what is no data is missing, and an error says so where it is used:
+    functions and classes of the user's own (of a motion, a discretization, an integrator), and the
+    interpolation by `solve_ivp`.  A pickle keeps these as well.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ValueError
+        If the path is none, or the file is damaged, was changed, holds no result, or was written by a
+        version whose results had other fields.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> modes = bd.natural_modes(bd.Scene(strip), modes=1)
+    >>> file = Path(mkdtemp()) / "modes.json"
+    >>> _ = modes.save(file)
+    >>> bool((bd.load(file).frequency == modes.frequency).all())
+    True
+    """
+    file = as_path("path", path)
+    try:
+        content = unseal(_read(file))
+        if "record" in content:
+            return _result_from(content["record"])
+        reason = "it has numbers only"
+    except ValueError as error:
+        reason = str(error)
+    remedy = "compute the result again; any JSON reader gets its numbers"
+    raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
+        remedy = "give one that save or --json has written"
+        raise type(error)(f"{file}: no result can be loaded: {reason}; {remedy}") from None
+
+
+def _record_of(result: Saved) -> dict[str, Any]:
+    """The fields, and the computed values that the result has kept, such as a modal truncation error."""
+    names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
+    kept = {
+        key: encode(value)
+        for key, value in vars(result).items()
+        if key not in names and (_is_number(value) or key in result.kept)
+    }
+    return {"result": encode(result), "computed": kept}
+
+
+def _result_from(record: Any) -> Saved:
+    result = decode(record["result"])
+    if not isinstance(result, Saved):
+        raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
+    for key, value in record["computed"].items():
+        object.__setattr__(result, key, decode(value))
+    make_read_only(result)
+    return result
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, bool | int | float | np.generic | np.ndarray)

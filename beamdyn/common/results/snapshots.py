@@ -1,0 +1,191 @@
+"""Objects made of data as JSON's types, and back, to the bit: how results are kept in files.
+
+Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
+What is not (a function, an object of another package's class) is left out, and stands in the object that
+comes back as a `LeftOut`.
+"""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+from collections.abc import Iterator
+from importlib import import_module
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.results.statements import Words
+
+_PACKAGES = ("beamdyn", "brakes")  # whose classes may be named in a file
+
+
+class LeftOut:
+    """Stands for a part of an object that its file does not hold: using it raises a ValueError.
+
+    Parameters
+    ----------
+    what : str
+        The part.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+
+    def __repr__(self) -> str:
+        return f"<left out: {self.what}>"
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "what":  # what Python itself looks for
+            raise AttributeError(name)
+        self()
+
+    def __call__(self, *arguments: object, **options: object) -> Any:
+        """Raise the ValueError."""
+        raise ValueError(
+            f"the file does not hold {self.what}, which is no data; compute the result again to use it"
+        )
+
+
+def encode(value: Any) -> Any:
+    """Represent an object by JSON's types.
+
+    Parameters
+    ----------
+    value : object
+        None, number, string, array, slice, container, or dataclass or named tuple of this package.
+
+    Returns
+    -------
+    object
+        The value itself, or a dictionary with one key that names its type.
+    """
+    if isinstance(value, np.generic):
+        return encode(value.item())
+    if isinstance(value, Words):
+        return {"words": [_name(type(value)), *map(encode, value.arguments())]}
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float):
+        return value if np.isfinite(value) else {"float": str(value)}
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biufcU":
+        return {"array": [value.dtype.str, list(value.shape), base64.b64encode(value.tobytes()).decode()]}
+    if isinstance(value, complex | slice):
+        return {type(value).__name__: [encode(part) for part in _PARTS[type(value)](value)]}
+    kind: Any = type(value)
+    if _is_known(kind):
+        return {"object": [_name(kind), {name: encode(getattr(value, name)) for name in _fields(kind)}]}
+    if isinstance(value, tuple | list):
+        return {"list" if isinstance(value, list) else "tuple": [encode(item) for item in value]}
+    if isinstance(value, dict) and all(isinstance(key, str) for key in value):
+        return {"dict": {key: encode(item) for key, item in value.items()}}
+    return {"left out": _describe(value)}
+
+
+_PARTS: dict[type, Any] = {
+    complex: lambda z: (z.real, z.imag),
+    slice: lambda s: (s.start, s.stop, s.step),
+}
+
+
+def decode(value: Any) -> Any:
+    """Make the object that `encode` represented.
+
+    Raises
+    ------
+    ValueError
+        If it names a class that this version does not have, or that has other fields.
+    """
+    if not isinstance(value, dict):
+        return value
+    ((kind, content),) = value.items()
+    return _DECODERS[kind](content)
+
+
+def _decode_array(content: list[Any]) -> np.ndarray:
+    kind, shape, data = content
+    return np.frombuffer(base64.b64decode(data), dtype=kind).reshape(shape).copy()
+
+
+def _decode_object(content: list[Any]) -> Any:
+    """An object with the fields as they were, without the checks and conversions of its construction."""
+    name, values = content
+    kind = _find_class(name)
+    optional = _defaults(kind)
+    if not {*values} <= {*_fields(kind)} <= {*values, *optional}:
+        raise ValueError(f"in this version {kind.__name__} has other fields")
+    if issubclass(kind, tuple):
+        return kind(*(decode(values[name]) for name in _fields(kind)))
+    made = object.__new__(kind)
+    for key, item in (optional | {key: decode(item) for key, item in values.items()}).items():
+        object.__setattr__(made, key, item)
+    return made
+
+
+def _decode_words(content: list[Any]) -> Words:
+    name, given, named = content
+    return _find_class(name)(*decode(given), **decode(named))
+
+
+_DECODERS: dict[str, Any] = {
+    "float": float,
+    "complex": lambda parts: complex(*map(decode, parts)),
+    "slice": lambda parts: slice(*map(decode, parts)),
+    "array": _decode_array,
+    "tuple": lambda items: tuple(map(decode, items)),
+    "list": lambda items: [*map(decode, items)],
+    "dict": lambda items: {key: decode(item) for key, item in items.items()},
+    "object": _decode_object,
+    "words": _decode_words,
+    "left out": LeftOut,
+}
+
+
+def _is_known(kind: type) -> bool:
+    has_fields = dataclasses.is_dataclass(kind) or hasattr(kind, "_fields") or issubclass(kind, Words)
+    return has_fields and kind.__module__.partition(".")[0] in _PACKAGES
+
+
+def _fields(kind: Any) -> tuple[str, ...]:
+    named: tuple[str, ...] | None = getattr(kind, "_fields", None)
+    return tuple(f.name for f in dataclasses.fields(kind)) if named is None else named
+
+
+def _defaults(kind: Any) -> dict[str, Any]:
+    """Fields of a dataclass that a file of an earlier version may lack, with what stands for them."""
+    every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+    return {f.name: f.default for f in every if f.default is not dataclasses.MISSING and not f.compare}
+
+
+def _name(kind: type) -> str:
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _find_class(name: str) -> Any:
+    """The class of a name; one whose module has moved since the file was written is looked for by its own."""
+    module, _, kind = name.partition(":")
+    package = module.partition(".")[0]
+    for place in chain((module,), _modules_that_define(kind, package)) if package in _PACKAGES else ():
+        try:
+            found = getattr(import_module(place), kind)
+        except (ImportError, AttributeError):
+            continue
+        if isinstance(found, type) and _is_known(found):
+            return found
+    raise ValueError(f"this version has no class {kind} in {module}")
+
+
+def _modules_that_define(kind: str, package: str) -> Iterator[str]:
+    """Modules of this package whose source defines a class of a name."""
+    folder = Path(__file__).parents[3] / package
+    for file in sorted(folder.rglob("*.py")):
+        if f"\nclass {kind}(" in (text := file.read_text(encoding="utf-8")) or f"\nclass {kind}:" in text:
+            yield ".".join(file.relative_to(folder.parent).with_suffix("").parts)
+
+
+def _describe(value: object) -> str:
+    """What a part is that is left out."""
+    name = getattr(value, "__qualname__", "") or type(value).__qualname__
+    return f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"

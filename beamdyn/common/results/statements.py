@@ -1,0 +1,231 @@
+"""Warnings, refusals and remarks as data: sentences whose kind programs ask for.
+
+As a string each is the sentence itself, in SI units; speeds and inputs in it are numbers, which a medium puts
+into the units in which it shows them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol, SupportsFloat
+
+if TYPE_CHECKING:
+    from typing import Self
+
+# Kinds of statements that programs ask for.
+OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
+MODEL_ERROR = "model error"  # what the model leaves out changes the answer too much, or may
+TOLERANCE = "tolerance"  # a numerical error exceeds what was asked for
+GROWING = "unstable"  # the motion grows
+NO_ANSWER = "no answer"  # of some of many cases, or of a part of the question
+INPUT = "input"  # something given has no effect, or is doubtful
+EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
+IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
+LIMITS = "limits"  # of other validity: large strain, few vibrations
+
+
+class _Unit(Protocol):
+    """A unit in which speeds are shown; see `beamdyn.common.results.display_units.ShownUnit`."""
+
+    @property
+    def name(self) -> str: ...
+    def of(self, values: Any) -> Any: ...
+    def say(self, value: float, digits: int = 6) -> str: ...
+
+
+class _Units(Protocol):
+    """Units in which a medium shows quantities; see `beamdyn.common.results.display_units.DisplayUnits`."""
+
+    def speed_unit(self) -> _Unit: ...
+
+
+class Words(str):
+    """A text made of parts, some of which each medium words in its own way: `Speeds` and `InputValue`.
+
+    Parameters
+    ----------
+    *parts : str
+        The parts, one after the other; those that are `Words` keep what they know.
+    """
+
+    parts: tuple[str, ...]
+
+    def __new__(cls, *parts: str) -> Self:  # noqa: D102
+        made = super().__new__(cls, "".join(parts))
+        made.parts = parts
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Arguments by position and by name that make an equal object, for pickles and files."""
+        return self.parts, {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given, named = self.arguments()
+        return partial(type(self), *given, **named), ()
+
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The text with each speed and input as a medium words it."""
+        return "".join(worded(part, word) for part in self.parts)
+
+    def in_units(self, units: _Units) -> str:
+        """The text with its speeds in a display unit."""
+        return self.worded(lambda part: part.in_units(units))
+
+
+class _Number(Words):
+    """A part that is a number with its unit."""
+
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The part as a medium words it."""
+        return word(self)
+
+
+class Speeds(_Number):
+    """Speeds in a text: "20 rad/s", or from where to where they go, "20 to 35 rad/s".
+
+    Parameters
+    ----------
+    *values : float
+        One speed or two [rad/s].
+    digits : int
+        Digits of each.
+    """
+
+    values: tuple[float, ...]
+    digits: int
+
+    def __new__(cls, *values: SupportsFloat, digits: int = 6) -> Self:  # noqa: D102
+        numbers = tuple(map(float, values))
+        made = super().__new__(cls, _spanning(numbers, digits, "rad/s"))
+        made.values, made.digits = numbers, digits
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """The speeds, and the digits by name."""
+        return self.values, {"digits": self.digits}
+
+    def in_units(self, units: _Units) -> str:
+        """The speeds in a display unit."""
+        unit = units.speed_unit()
+        return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
+
+
+class InputValue(_Number):
+    """An input and its value in a text: "beam.thickness = 0.0002 m".
+
+    Parameters
+    ----------
+    name : str
+        Name of the input.
+    value : float
+        Its value, in SI.
+    unit : str
+        The unit; empty for a pure number.
+    digits : int
+        Digits of the value.
+    """
+
+    name: str
+    value: float
+    unit: str
+    digits: int
+
+    def __new__(cls, name: str, value: SupportsFloat, unit: str, digits: int = 6) -> Self:  # noqa: D102
+        made = super().__new__(cls, f"{name} = {float(value):.{digits}g} {unit}".rstrip())
+        made.name, made.value, made.unit, made.digits = name, float(value), unit, digits
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Name, value and unit, and the digits by name."""
+        return (self.name, self.value, self.unit), {"digits": self.digits}
+
+    def in_units(self, units: _Units) -> str:
+        """The input with its value in a display unit, if it is a speed."""
+        return f"{self.name} = {units.speed_unit().say(self.value)}" if self.unit == "rad/s" else str(self)
+
+
+def _spanning(numbers: Iterable[float], digits: int, unit: str) -> str:
+    return " to ".join(dict.fromkeys(f"{number:.{digits}g}" for number in numbers)) + f" {unit}"
+
+
+class Statement(Words):
+    """A warning, refusal or remark: its sentence, and what it says as data.
+
+    Parameters
+    ----------
+    *parts : str
+        Parts of the sentence.
+    kind : str
+        What it is about; one of the kinds in `beamdyn.common.results.statements`.
+    quantity : str
+        The quantity that it is about, such as "tip deflection over the length"; empty if it is about none.
+    value, limit : float
+        The quantity, and what it should not pass; nan where there is no such number.
+    remedy : str
+        What to do about it; empty where the sentence has no advice.
+
+    Examples
+    --------
+    >>> said = Statement("unstable at ", Speeds(50.0), kind=GROWING, quantity="growth rate", value=3.0)
+    >>> said, said.kind, said.value
+    ('unstable at 50 rad/s', 'unstable', 3.0)
+    """
+
+    kind: str
+    quantity: str
+    value: float
+    limit: float
+    remedy: str
+
+    def __new__(  # noqa: D102
+        cls,
+        *parts: str,
+        kind: str,
+        quantity: str = "",
+        value: SupportsFloat = math.nan,
+        limit: SupportsFloat = math.nan,
+        remedy: str = "",
+    ) -> Self:
+        made = super().__new__(cls, *parts)
+        made.kind, made.quantity, made.remedy = kind, quantity, remedy
+        made.value, made.limit = float(value), float(limit)
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """The parts, and the data by name."""
+        data = {"kind": self.kind, "quantity": self.quantity, "value": self.value, "limit": self.limit}
+        return self.parts, data | {"remedy": self.remedy}
+
+
+def kind_of(sentence: str) -> str:
+    """The kind of a statement; empty for a sentence that is none, as in files of older versions."""
+    return sentence.kind if isinstance(sentence, Statement) else ""
+
+
+def of_kind(sentences: Iterable[str], *kinds: str) -> list[str]:
+    """The sentences that are statements of some kinds."""
+    return [said for said in sentences if kind_of(said) in kinds]
+
+
+def after(words: str, sentence: str) -> str:
+    """A sentence with words before it, such as the name of the scene that it is about: still a statement."""
+    given, data = sentence.arguments() if isinstance(sentence, Statement) else ((sentence,), {})
+    return Statement(words, *given, **data) if data else Words(words, *given)
+
+
+def joined(separator: str, texts: Iterable[str]) -> Words:
+    """Texts with a separator between them, which keep what they know of speeds."""
+    parts = [part for text in texts for part in (separator, text)]
+    return Words(*parts[1:])
+
+
+def worded(text: str, word: Callable[[Words], str]) -> str:
+    """A text with each speed and input that it knows as a medium words it."""
+    return text.worded(word) if isinstance(text, Words) else text
+
+
+def said_in(units: _Units, text: str) -> str:
+    """A text with the speeds that it knows in a display unit."""
+    return worded(text, lambda part: part.in_units(units))

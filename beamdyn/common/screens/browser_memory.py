@@ -1,0 +1,179 @@
+"""What the browser stores for a page: the designs of a tab, what is being typed, named designs, the look.
+
+The program stores the entries of a tab after each change, and the page itself each key stroke: what has been
+typed is not lost when the program or the tab ends.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.screens.form_entries import Entries
+from beamdyn.common.screens.reading import read_entry, unit_of, usual_unit
+
+_LONGEST = 80  # characters of a name
+_MOST = 100  # named designs
+
+# Width of a page below which drawings have narrow paper, as the rules of `look` have it.
+_NARROW = "(max-width: 600px)"
+# The script keeps a key stroke in a field until the program has stored it, marks its screen until the program
+# has heard it (a field tells what is typed after 0.1 s, one of a list when it is left), follows a link that
+# is put into the address of an open page, passes on the keys of undo and redo after what has been typed, and
+# reports when the page becomes narrow or wide.
+SCRIPT = """<script type="module">
+const typedKey = %(typed)s;
+let strokes = 0;
+const askAfter = (delay) => {
+  const stroke = ++strokes;
+  setTimeout(() => stroke === strokes && emitEvent("typed", stroke), delay);
+};
+window.heard = (stroke) => {
+  if (stroke === strokes) for (const it of document.querySelectorAll(".typed")) it.classList.remove("typed");
+};
+const askNow = (event) => { if (event.target.closest?.(".typed [data-path]")) askAfter(0); };
+document.addEventListener("focusout", askNow);
+document.addEventListener("keydown", (event) => { if (event.key === "Enter") askNow(event); });
+document.addEventListener("input", (event) => {
+  const field = event.target.closest?.("[data-path]"), screen = event.target.closest?.("[data-document]");
+  if (!field || !screen || event.target.value === undefined) return;
+  const typed = JSON.parse(sessionStorage.getItem(typedKey) || "{}");
+  (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
+  sessionStorage.setItem(typedKey, JSON.stringify(typed));
+  field.closest(".screen").classList.add("typed");
+  if (field.closest(".lists")) ++strokes;
+  else askAfter(150);
+});
+matchMedia(%(narrow)s).addEventListener("change", (event) => emitEvent("narrow", event.matches));
+window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest?.(".q-dialog")) return;
+  const key = event.key.toLowerCase();
+  const way = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
+  if (!way) return;
+  event.preventDefault();
+  setTimeout(() => emitEvent(way), 150);
+});
+</script>"""
+
+
+class BrowserMemory:
+    """Scripts that store and read a program's data in the browser.
+
+    Parameters
+    ----------
+    program : str
+        Name of the program.
+    """
+
+    def __init__(self, program: str) -> None:
+        self._page, self._typed, self._designs, self._look = (
+            json.dumps(f"{program}-{what}") for what in ("page", "typed", "designs", "look")
+        )
+
+    @property
+    def script(self) -> str:
+        """The script that the page runs by itself."""
+        return SCRIPT % {"typed": self._typed, "narrow": json.dumps(_NARROW)}
+
+    @property
+    def recall(self) -> str:
+        """Script that returns, as JSON, what was stored, the look, the width, and the link in the address.
+
+        It takes the link out of the address.
+        """
+        return (
+            f"const kept = JSON.parse(sessionStorage.getItem({self._page}) || '{{}}');"
+            f"kept.typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
+            f"kept.look = localStorage.getItem({self._look}); kept.link = location.hash;"
+            f"kept.narrow = matchMedia({json.dumps(_NARROW)}).matches;"
+            "if (location.hash) history.replaceState(null, '', location.pathname);"
+            "return JSON.stringify(kept);"
+        )
+
+    def remember(self, stored: Mapping[str, Any], heard: Mapping[str, Mapping[str, str]]) -> str:
+        """Script that stores the content of the page.
+
+        Parameters
+        ----------
+        stored : mapping
+            The content.
+        heard : mapping
+            Texts of fields that the program has received, by document and path: they need no longer be kept
+            as key strokes.
+        """
+        return (
+            f"sessionStorage.setItem({self._page}, {json.dumps(json.dumps(stored))});"
+            f"const typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
+            f"for (const [document, fields] of Object.entries({json.dumps(heard)}))"
+            " for (const [path, text] of Object.entries(fields))"
+            " if (typed[document]?.[path] === text) delete typed[document][path];"
+            f"sessionStorage.setItem({self._typed}, JSON.stringify(typed));"
+        )
+
+    @property
+    def forget_typed(self) -> str:
+        """Script that forgets the key strokes, for when another design is shown."""
+        return f"sessionStorage.removeItem({self._typed});"
+
+    def keep_look(self, look: str) -> str:
+        """Script that stores whether the page is light or dark."""
+        return f"localStorage.setItem({self._look}, {json.dumps(look)});"
+
+    @property
+    def designs(self) -> str:
+        """Script that returns the named designs, as JSON."""
+        return f"return localStorage.getItem({self._designs});"
+
+    def keep_design(self, name: str, document: str, entries: Mapping[str, str]) -> str:
+        """Script that stores a named design, and returns "" or why the browser has no room for it."""
+        return self._with_designs(f"all[{json.dumps(name)}] = {json.dumps([document, dict(entries)])};")
+
+    def drop_design(self, name: str) -> str:
+        """Script that deletes a named design."""
+        return self._with_designs(f"delete all[{json.dumps(name)}];")
+
+    def _with_designs(self, change: str) -> str:
+        return (
+            f"const all = JSON.parse(localStorage.getItem({self._designs}) || '{{}}'); {change}"
+            f"try {{ localStorage.setItem({self._designs}, JSON.stringify(all)); return ''; }}"
+            "catch (error) { return 'the browser has no room for it: delete another design'; }"
+        )
+
+
+def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
+    """Document and entries of each named design that the browser has stored; malformed ones are left out."""
+    try:
+        held = json.loads(stored or "{}")
+    except ValueError:
+        return {}
+    found = {}
+    for name, design in held.items() if isinstance(held, dict) else ():
+        match design:
+            case [str(document), dict(entries)] if all(isinstance(text, str) for text in entries.values()):
+                found[name[:_LONGEST]] = document, entries
+    return dict([*found.items()][:_MOST])
+
+
+def refused_name(name: str, present: Mapping[str, object]) -> str:
+    """Why a design cannot be stored under a name; empty if it can."""
+    if not name.strip():
+        return "give the design a name"
+    if len(name) > _LONGEST:
+        return f"give a name of at most {_LONGEST} characters"
+    if len(present) >= _MOST and name not in present:
+        return f"there are {_MOST} designs already: delete one"
+    return ""
+
+
+def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
+    """Entries with the texts that were typed but not yet stored, read as the form reads them."""
+    known = {entry.path: entry for entry in inputs}
+    found = dict(entries)
+    for path, text in typed.items() if isinstance(typed, dict) else ():
+        if path in known and isinstance(text, str):
+            unit = unit_of(entries.get(path, ""), known[path]) or usual_unit(known[path])
+            found[path] = read_entry(text, known[path], unit).text
+    return found

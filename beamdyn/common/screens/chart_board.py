@@ -1,0 +1,159 @@
+"""The charts of a screen on the page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+from zlib import crc32
+
+from nicegui import ui
+
+from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.screens.chart_options import chart_colours, marks_of, options_of
+from beamdyn.common.screens.page_writer import PageWriter
+
+STYLE = (
+    chart_colours(":root")
+    + chart_colours(".body--dark", dark=True)
+    + """
+.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); contain: strict; }
+.chart-title { font-weight: 600; margin-top: 0.4rem; }
+"""
+)
+
+
+_HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
+# Zooming and moving by keys: each changes the part of the x axis [%] that is shown.
+_KEYS = """(event) => {
+  const chart = getElement(%d)?.chart, zoom = chart?.getOption().dataZoom?.[0];
+  if (!zoom || event.ctrlKey || event.altKey || event.metaKey) return;
+  const {start, end} = zoom, step = 0.1 * (end - start);
+  const to = {"+": [start + step, end - step], "=": [start + step, end - step],
+    "-": [start - 1.25 * step, end + 1.25 * step], "0": [0, 100],
+    ArrowLeft: [Math.max(start - step, 0), end - Math.min(step, start)],
+    ArrowRight: [start + Math.min(step, 100 - end), Math.min(end + step, 100)]}[event.key];
+  if (!to) return;
+  event.preventDefault();
+  chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
+}"""
+
+# Saves what is seen, on paper: programs that draw and write know neither the page's colours nor its letters.
+_SAVE = """(model, api) => {
+  const [head, ...seen] = api.getDataURL({excludeComponents: ["toolbox"]}).split(",");
+  const picture = decodeURIComponent(seen.join(",")).replace('fill="none"', 'fill="#ffffff"')
+    .replace(/var\\(--[\\w-]+,(#\\w+|none)\\)/g, "$1")
+    .replace(/font-family: ?inherit/g, "font-family:sans-serif");
+  const name = model.getComponent("toolbox").get(["feature", "mySave", "name"]);
+  const link = Object.assign(document.createElement("a"),
+    {href: `${head},${encodeURIComponent(picture)}`, download: `${name}.svg`});
+  link.click();
+}"""
+
+_NO_TOOLBOX = {"toolbox": {"show": False}}  # while something is held: it would be made anew for each picture
+
+
+class _ShownChart:
+    """A chart below its heading on the page; its element is kept and given new data."""
+
+    def __init__(self, writer: PageWriter) -> None:
+        self._writer = writer
+        self._options: dict[str, Any] = {}
+        self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
+        self._element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
+        self._element.on("keydown", js_handler=_KEYS % self._element.id)
+        # What the component restores is what it was given first: the present data follow.
+        self._element.on("chart:restore", self.update, args=[])
+
+    @property
+    def id(self) -> int:
+        """Number of its element."""
+        return self._element.id
+
+    def set_visibility(self, visible: bool) -> None:
+        """Show it, or hide it."""
+        for part in (self.heading, self._element):
+            part.set_visibility(visible)
+
+    def fill(self, chart: Chart) -> None:
+        """Show another chart."""
+        self.heading.set_text(chart.title)
+        last, self._options = self._options, _with_saving(options_of(chart))
+        with self._element.props.suspend_updates():
+            self._element.props["aria-label"] = chart.words
+        if self._writer.is_ahead:
+            others = {name: value for name, value in self._options.items() if last.get(name) != value}
+            self._writer.write(self._element, {"options": _without_scripts(others) | _NO_TOOLBOX})
+            self._writer.tell_later(self)
+        else:
+            self.update()
+
+    def update(self) -> None:
+        """Tell NiceGUI what is shown; not while something is held, as that takes time for each number."""
+        with self._element.props.suspend_updates():
+            self._element.props["options"] = self._options
+        self._element.update()
+
+    def move_cursor(self, chart: Chart) -> None:
+        """Show the marks of a chart, of which nothing else has changed."""
+        self._options["series"][0] = marks_of(chart)
+        self._element.run_chart_method("setOption", {"series": self._options["series"][:1]})
+
+
+class ChartBoard:
+    """Charts below one another; their elements are kept and given new data, so that zooming lasts.
+
+    Parameters
+    ----------
+    words : str
+        What they show.
+    writer : PageWriter
+        What writes them while something is held.
+    """
+
+    def __init__(self, words: str, writer: PageWriter) -> None:
+        self._writer = writer
+        self._made: list[_ShownChart] = []
+        self._shown: list[dict[str, Any]] = []  # options of the charts without their cursors
+        self._column: Any = ui.column().classes("w-full gap-0 charts")
+        self._column.props["data-words"] = words
+        self._how: Any = ui.label(_HOW).classes("status")
+        self._how.set_visibility(False)
+
+    def show(self, charts: Sequence[Chart]) -> None:
+        """Show these charts in place of the last ones."""
+        while len(self._made) < len(charts):
+            with self._column:
+                self._made.append(_ShownChart(self._writer))
+        with self._writer.writing(self._column, self._how, *(made.heading for made in self._made)):
+            self._put(charts)
+
+    def _put(self, charts: Sequence[Chart]) -> None:
+        for i, made in enumerate(self._made):
+            made.set_visibility(i < len(charts))
+        last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
+        if last != self._shown:
+            self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
+            self._column.update()
+            self._how.set_visibility(bool(charts))
+        for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
+            if last[i : i + 1] == [self._shown[i]]:
+                made.move_cursor(chart)
+            else:
+                made.fill(chart)
+
+
+def _with_saving(options: dict[str, Any]) -> dict[str, Any]:
+    """Options whose sign for saving does so."""
+    options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
+    return options
+
+
+def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:
+    """Options without those that the component reads as scripts, which do not change."""
+    return {
+        name: _without_scripts(value) if isinstance(value, dict) else value
+        for name, value in options.items()
+        if not name.startswith(":")
+    }

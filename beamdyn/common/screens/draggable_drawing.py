@@ -1,0 +1,196 @@
+"""A drawing on the page with handles, which are moved by pointer, finger or arrow keys."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from beamdyn.common.drawing.svg import page_colours
+from beamdyn.common.screens.handles import Place, Sheet, Viewport
+from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.screens import Handle
+
+STYLE = (
+    f"""
+{page_colours(":root")}"""
+    + """
+.board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
+.board .machine { display: block; width: 100%; height: auto; user-select: none; }
+.waits { opacity: 0.4; }
+.handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
+  border: 2px solid #0072B2; background: rgb(255 255 255 / 0.35); box-shadow: 0 0 0 1px white;
+  touch-action: none; }
+.handle::after { content: ""; position: absolute; inset: -7px; }
+.handle.away { visibility: hidden; }
+.handle:hover { background: rgb(86 180 233 / 0.6); }
+.handle:active { cursor: grabbing; background: rgb(86 180 233 / 0.9); }
+"""
+)
+_OFTEN = 0.03  # least time between two messages of a moving handle [s]
+_PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
+_FAR = 10  # arrow keys' steps with shift
+
+# Sends the position of the handle in the picture, in parts of its width and height, as the pointer drags it,
+# and whether it has been let go; by one listener, so that this message comes last. The picture's position is
+# taken at the start: if a new sentence above shifts the picture, the point does not follow.
+_HOLD = """(down) => {
+  if (down.button) return;
+  const handle = down.currentTarget, board = handle.parentElement;
+  const own = handle.getBoundingClientRect();
+  const aside = [down.clientX - own.x - own.width / 2, down.clientY - own.y - own.height / 2];
+  const box = board.getBoundingClientRect();
+  const send = (event, done) => {
+    const part = (at, size) => Math.min(Math.max(at / size, 0), 1);
+    emit(part(event.clientX - aside[0] - box.x, box.width),
+         part(event.clientY - aside[1] - box.y, box.height), done);
+  };
+  handle.setPointerCapture(down.pointerId);
+  handle.onpointermove = (event) => send(event, false);
+  handle.onpointerup = handle.onpointercancel = (event) => {
+    handle.onpointermove = handle.onpointerup = handle.onpointercancel = null;
+    send(event, true);
+  };
+}"""
+_KEY = """(event) => {
+  const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
+  if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  emit(way[0], way[1], event.shiftKey);
+}"""
+
+
+class DraggableDrawing:
+    """A drawing with its handles.
+
+    Parameters
+    ----------
+    words : str
+        What the drawing shows, for those who do not see it.
+    moved : callable
+        Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
+    writer : PageWriter
+        Writes it into the page while something is held.
+
+    Attributes
+    ----------
+    held : Viewport, optional
+        Viewport that the drawing keeps while a handle is held.
+    view : Viewport, optional
+        Viewport of the drawing that is shown.
+    """
+
+    def __init__(
+        self, words: str, moved: Callable[[Handle, Place, bool], object], writer: PageWriter
+    ) -> None:
+        self.held: Viewport | None = None
+        self.view: Viewport | None = None
+        self._moved, self._writer = moved, writer
+        self._sheet = Sheet("")
+        self._wanted: tuple[int, Place, bool] | None = None
+        self._follows = False
+        self._stepped_to: dict[int, Place] = {}  # where keys have moved points that are not drawn again yet
+        self._handles: list[Any] = []
+        self._places: dict[int, str] = {}
+        self._said: Any = ui.label()
+        with ui.element("div").classes("w-full drawing-frame"):
+            self._board: Any = ui.element("div").classes("board")
+        with self._board:
+            self._machine: Any = ui.html("", sanitize=False)
+        self._board.props["data-words"] = words
+        self._how: Any = ui.label("Drag the round points, or choose one by Tab and move it by arrow keys.")
+        self._how.classes("status")
+        self._board.set_visibility(False)
+        self._how.set_visibility(False)
+
+    def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
+        """Show a drawing; `words` describes the position of each handle for screen readers."""
+        parts = self._said, self._board, self._machine, self._how
+        with self._writer.writing(*parts, *self._handles):
+            self._put_sheet(sheet, words)
+
+    def _put_sheet(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
+        self._show(sheet)
+        self._how.set_visibility(bool(sheet.handles))
+        for element in self._handles:
+            element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
+        if sheet.handles:  # else the last ones stay, hidden: one of them may be held
+            self._make([handle.label for handle in sheet.handles])
+            self._sheet = sheet
+            for element, handle in zip(self._handles, sheet.handles, strict=True):
+                self._put(element, handle, words)
+
+    def _show(self, sheet: Sheet) -> None:
+        self.view = sheet.view
+        drawn = self.view is not None
+        self._said.set_text("" if drawn else sheet.text)
+        self._board.set_visibility(drawn)
+        if drawn:
+            self._board.style(f"--ratio: {sheet.ratio:.6g}")
+            self._board.props["data-picture"] = sheet.name
+            self._machine.set_content(sheet.element)
+
+    def _make(self, labels: list[str]) -> None:
+        """Make handles for these points; existing ones are kept."""
+        if labels == [handle.label for handle in self._sheet.handles]:
+            return
+        for element in self._handles:
+            element.delete()
+        with self._board:
+            self._handles = [self._handle(i, label) for i, label in enumerate(labels)]
+
+    def _handle(self, i: int, label: str) -> Any:
+        made: Any = ui.element("div").classes("handle")
+        made.props('role="slider" tabindex=0 aria-roledescription="point that can be moved"')
+        made.props["aria-label"] = made.props["title"] = label
+        made.on("pointerdown", partial(self._pulled, i), throttle=_OFTEN, js_handler=_HOLD)
+        made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
+        return made
+
+    def _put(self, element: Any, handle: Handle, words: Callable[[Handle], str]) -> None:
+        """Move a handle to its place, with a message to the page only if that has changed."""
+        x, y = self._sheet.place(handle)
+        at = f"left: {100 * x:.3f}%; top: {100 * y:.3f}%"
+        if self.held is not None and self._places.get(element.id) == at:
+            return
+        self._places[element.id] = at
+        element.style(at)
+        element.props["aria-valuenow"] = round(100 * x)
+        element.props["aria-valuetext"] = words(handle)
+
+    def _stepped(self, i: int, event: Any) -> None:
+        across, up, far = event.args
+        handle = self._sheet.handles[i]
+        x, y = self._stepped_to.get(i, handle.at)
+        step = handle.step * (_FAR if far else 1)
+        self._stepped_to[i] = x + step * across, y + step * up
+        self._moved(handle, self._stepped_to[i], True)
+
+    def forget_steps(self) -> None:
+        """Let steps by keys start from the points as drawn, once the drawing shows the present entries."""
+        self._stepped_to.clear()
+
+    async def _pulled(self, i: int, event: Any) -> None:
+        """Move to the latest place received; places that arrive while one is drawn are skipped."""
+        x, y, done = event.args
+        self._wanted = (i, (x, y), done)
+        if self._follows:
+            return
+        self._follows = True
+        try:
+            while self._wanted is not None:
+                wanted, self._wanted = self._wanted, None
+                self._follow(*wanted)
+                await asyncio.sleep(_PAUSE)
+        finally:
+            self._follows = False
+
+    def _follow(self, i: int, place: Place, done: bool) -> None:
+        handle, view = self._sheet.handles[i], self._sheet.view
+        assert view is not None
+        x, y = view.point(place)
+        self.held = None if done else view
+        self._moved(handle, (x / handle.scale, y / handle.scale), done)

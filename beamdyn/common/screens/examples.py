@@ -1,0 +1,86 @@
+"""The examples that come with the packages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import shorten
+
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.screens.screens import Document, Program
+
+_LONGEST = 110  # characters of a title
+_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # its end
+_CLAUSE = re.compile(r"[;:,] ")
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example of a program.
+
+    Parameters
+    ----------
+    name : str
+        Name of its file, without the suffix.
+    title : str
+        Description in a sentence.
+    document : Document
+        The kind of file.
+    text : str
+        The file.
+    """
+
+    name: str
+    title: str
+    document: Document
+    text: str
+
+
+_KNOWN: dict[str, tuple[Example, ...]] = {}  # by program: it takes a second to check them
+
+
+def examples_of(program: Program) -> tuple[Example, ...]:
+    """The examples that one of a program's documents accepts, in the order of their names."""
+    if program.name not in _KNOWN:
+        _KNOWN[program.name] = tuple(_accepted(program))
+    return _KNOWN[program.name]
+
+
+def _accepted(program: Program) -> Iterator[Example]:
+    for file in sorted(_texts(), key=lambda file: file.name):
+        text, name = file.read_text(encoding="utf-8"), file.name.removesuffix(".toml")
+        for document in program.documents:
+            try:
+                document.opened(text, file.name)
+            except ConfigError:
+                continue
+            yield Example(name, _title(text, name), document, text)
+            break
+
+
+def _texts() -> Iterator[Path]:
+    """The TOML files of the examples: in the installed package, or in the source tree around it."""
+    packed = Path(__file__).with_name("shipped_examples")
+    folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
+    for place in (folder, folder / "calipers"):
+        if place.is_dir():
+            yield from (file for file in place.iterdir() if file.name.endswith(".toml"))
+
+
+def _title(text: str, name: str) -> str:
+    """The first sentence of the comment at the head of a file, or its clauses that are not too long.
+
+    The file's name where there is none.
+    """
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.lstrip("# "))
+    words = _SENTENCE.split(" ".join(lines))[0]
+    if len(words) > _LONGEST:
+        ends = [end for found in _CLAUSE.finditer(words) if (end := found.start()) <= _LONGEST]
+        words = words[: ends[-1]] if ends else shorten(words, _LONGEST, placeholder=" ...")
+    return words.rstrip(" .:") or name

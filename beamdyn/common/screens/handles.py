@@ -1,0 +1,260 @@
+"""Draggable points of a drawing: their positions in the picture, and the field values for a new position."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from beamdyn.common.drawing.layout import Layout
+from beamdyn.common.drawing.sheet import WIDTH, Paper, Rows, lay_out
+from beamdyn.common.drawing.svg import as_file, element
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.units import quantity
+from beamdyn.common.inputs.checks import reason_of
+from beamdyn.common.screens.comparison import with_ghost
+from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.screens.screens import Handle, Screen
+
+Place = tuple[float, float]
+_UNITS = {"m": "mm", "rad": "deg"}  # of fields that have none
+_NARROW = 400.0  # width of the paper on a narrow page [pt]
+_ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
+
+
+# In the picture -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Viewport:
+    """Position of the first drawing of a picture in that picture.
+
+    Parameters
+    ----------
+    limits : ndarray, shape (2, 2)
+        Lower left and upper right corner of the drawing, in its own coordinates.
+    corners : ndarray, shape (2, 2)
+        The same corners in the picture: part of its width from the left, of its height from the top.
+    paper : Paper
+        Paper of all drawings of the picture.
+    layout : Layout
+        Layout of the first drawing.
+    """
+
+    limits: np.ndarray
+    corners: np.ndarray
+    paper: Paper
+    layout: Layout
+
+    @classmethod
+    def of_layout(cls, layout: Layout, paper: Paper) -> Viewport:
+        """The viewport of the first drawing, by its layout."""
+        left, top, right, bottom = layout.frame
+        places = np.array([(left, bottom), (right, top)])
+        corners = places / (paper.width, paper.height)
+        return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
+
+    def holds(self, rows: Rows) -> bool:
+        """Whether it belongs to a picture with as many rows of drawings."""
+        return len(self.paper.heights) == len(rows)
+
+    def place(self, point: Place) -> Place:
+        """The place in the picture of a point of the drawing."""
+        return _mapped(point, self.limits, self.corners)
+
+    def point(self, place: Place) -> Place:
+        """The point of the drawing at a place of the picture."""
+        return _mapped(place, self.corners, self.limits)
+
+
+def _mapped(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
+    """A point of one rectangle in another one; each is given by two of its corners (2, 2)."""
+    x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
+    return float(x), float(y)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A drawing and its handles.
+
+    Parameters
+    ----------
+    said : str
+        Why there is no drawing; empty if there is one.
+    handles : tuple of Handle
+        Its points that can be moved.
+    view : Viewport, optional
+        Viewport of the first drawing; None if there is no drawing.
+    ratio : float
+        Its width over its height.
+    element : str
+        The drawing as an element of the page, in its colours.
+    """
+
+    said: str
+    handles: tuple[Handle, ...] = ()
+    view: Viewport | None = None
+    ratio: float = 1.0
+    element: str = ""
+
+    @cached_property
+    def text(self) -> str:
+        """Its SVG file, or why there is none."""
+        return as_file(self.element) if self.element else self.said
+
+    @property
+    def name(self) -> str:
+        """Name of the picture, a checksum of its content."""
+        return f"p{crc32((self.element or self.said).encode()):08x}"
+
+    def place(self, handle: Handle) -> Place:
+        """The place of a handle in the picture."""
+        assert self.view is not None
+        x, y = handle.at
+        return self.view.place((handle.scale * x, handle.scale * y))
+
+
+def draw_sheet(
+    screen: Screen,
+    answer: Any,
+    progress: float,
+    view: Viewport | None = None,
+    other: Rows = (),
+    name: str = "",
+    narrow: bool = False,
+) -> Sheet:
+    """The drawing of an answer with its handles.
+
+    Parameters
+    ----------
+    screen : Screen
+        The screen that shows the answer.
+    answer : object
+        The answer.
+    progress : float
+        Position of the slider.
+    view : Viewport, optional
+        Viewport to keep, so that the picture stays in place while a point of it moves.
+    other : sequence of sequences of Drawing
+        Drawings of another design, to be drawn beneath.
+    name : str
+        Name of that design.
+    narrow : bool
+        Whether the page is narrow: then drawings stand below one another, on narrow paper.
+    """
+    rows = screen.drawings(answer, progress)
+    if not rows:
+        return Sheet("")
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            rows = rows if view is not None else _with_room(screen, answer, rows)
+            rows = with_ghost(rows, other, name) if other else rows
+            rows = [[drawing] for row in rows for drawing in row] if narrow else rows
+            width = _NARROW if narrow else WIDTH
+            return _sheet_of_drawings(rows, tuple(screen.handles(answer, progress)), view, width)
+    except (ValueError, ArithmeticError) as error:
+        return Sheet(f"There is no drawing: {reason_of(error)}")
+
+
+def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:
+    """The same drawings; the first keeps room for its shapes at each mark of the slider."""
+    marks = len(screen.slider.marks) if screen.slider is not None else 0
+    corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
+    if not corners:
+        return rows
+    (first, *others), *more = rows
+    return [[replace(first, room=np.vstack(corners)), *others], *more]
+
+
+def _sheet_of_drawings(rows: Rows, handles: tuple[Handle, ...], view: Viewport | None, width: float) -> Sheet:
+    points = {handle.label: np.multiply(handle.scale, handle.at) for handle in handles}
+    (first, *others), *more = rows
+    rows = [[replace(first, points=points), *others], *more]
+    held = view if view is not None and view.holds(rows) else None
+    paper = Paper.of(rows, width) if held is None else held.paper
+    layouts = lay_out(rows, paper, None if held is None else held.layout)
+    made = element(layouts, paper)
+    ratio = paper.width / paper.height
+    return Sheet("", handles, Viewport.of_layout(layouts[0], paper), ratio, made)
+
+
+# In the fields ------------------------------------------------------------------------------------------
+
+
+def changed_texts(
+    handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]
+) -> Entries:
+    """Texts of the fields that change when a handle is moved, by path.
+
+    Parameters
+    ----------
+    handle : Handle
+        The handle.
+    target : tuple of float
+        Its new place (x, y) [m].
+    entries : mapping
+        Texts of the fields; a field keeps its unit.
+    inputs : sequence of Input
+        Descriptions of the fields.
+    """
+    texts = _texts(handle, target, entries, inputs)
+    return {path: text for path, text in texts.items() if text != entries.get(path, "")}
+
+
+def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
+    """Position of a handle in words, by the fields that it sets."""
+    texts = _texts(handle, handle.at, entries, inputs)
+    return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
+
+
+def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
+    known = {entry.path: entry for entry in inputs}
+    return {
+        path: _text(value, entries.get(path, ""), known[path], handle.grain)
+        for path, value in handle.moved(*target).items()
+        if path in known  # the drawing may be that of another kind, the last good one
+    }
+
+
+def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:
+    """A value as text for its field; parts of the old text that still hold are kept."""
+    unit = entry.quantity.unit
+    if not isinstance(value, tuple):
+        return _number(value, text, unit, grain)
+    there = _coordinates(text, entry)
+    return toml_value([_number(v, t, unit, grain) for v, t in zip(value, there, strict=True)])
+
+
+def _coordinates(text: str, entry: Input) -> Sequence[str]:
+    """Texts of a point's coordinates: as given, or the defaults."""
+    if not text.strip() and isinstance(entry.default, tuple):
+        return [f"{1e3 * value:.6g} mm" for value in entry.default]
+    values = tables_of({"point": text}, ()).get("point")
+    return [str(part) for part in values] if isinstance(values, list) and len(values) == 2 else ["", ""]
+
+
+def _number(value: float, text: str, unit: str, grain: float) -> str:
+    """A quantity in the unit of the old text, rounded; the old text if it agrees within rounding."""
+    grain = grain if unit == "m" else _ANGLE
+    try:
+        if abs(quantity(text, unit) - value) <= grain / 2:
+            return text
+    except ValueError:
+        pass
+    shown = _unit_of(text, unit)
+    size = quantity(f"1 {shown}", unit)
+    decimals = max(0, -math.floor(math.log10(grain / size) + 1e-9))
+    return f"{round(value / size, decimals) + 0.0:.{decimals}f} {shown}"
+
+
+def _unit_of(text: str, unit: str) -> str:
+    """The unit of a text, if it is one of those in common use."""
+    by_length = sorted(units_for(unit), key=len, reverse=True)
+    return next((u for u in by_length if text.rstrip().endswith(u)), _UNITS.get(unit, unit))

@@ -1,0 +1,332 @@
+"""Worker processes that compute answers: the serving process stays responsive, and can end each of them."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import pickle
+import sys
+from asyncio import subprocess
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import BrokenExecutor
+from contextlib import suppress
+from functools import cache
+from typing import Any, Protocol
+
+from beamdyn.common.screens.screens import Document, Program, Screen
+
+LONGEST = 120.0  # time limit of an answer [s]
+MEMORY = 400  # memory that an answer may take beyond that of an idle process [MB]
+_MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
+_NICE = 5  # niceness of the processes: the server and the browser come first
+_SPARE = 0.5  # time after which a task that still runs has an idle process started, for other tasks [s]
+_SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
+_ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
+
+Task = Callable[..., Any]  # of a document, one of its screens, and what else is submitted
+
+
+class TakesTooLong(Exception):
+    """An answer was given up, as it took more time or memory than allowed."""
+
+
+class TaskTaker(Protocol):
+    """Runs tasks: `Processes`, or the `Share` of a page in them."""
+
+    def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
+        """Start ``task(document, screen, *rest)``; cancelling the future ends the task."""
+        ...
+
+
+class Processes:
+    """Worker processes of one program, which belong to the event loop in which they are first used.
+
+    Each runs one task at a time; other tasks wait in their order.  A task that is cancelled or takes too long
+    is ended with its process, and another one is started.  The first process starts when `start` is called,
+    further ones while all are busy.  They end with the calling process, however that ends.
+
+    Parameters
+    ----------
+    make : callable
+        Makes the program; a function of a module, since each process calls it.
+    longest : float
+        Time limit of a task [s].
+    most : int
+        Largest number of processes.
+    """
+
+    def __init__(self, make: Callable[[], Program], longest: float = LONGEST, most: int = _MOST) -> None:
+        self.make, self.longest, self.most = make, longest, most
+        self._idle: list[_Worker] = []
+        self._all: set[_Worker] = set()
+        self._waiting: deque[asyncio.Future[_Worker]] = deque()
+        self._starts: set[asyncio.Task[None]] = set()
+        self._count = 0  # of processes, with those that are being started
+
+    @property
+    def ids(self) -> set[int]:
+        """Process ids of the present processes."""
+        return {worker.id for worker in self._all}
+
+    def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
+        """Start ``task(document, screen, *rest)``; cancelling the future ends the task.
+
+        Parameters
+        ----------
+        task : callable
+            A function of a module.
+        document, screen : Document, Screen
+            A document of the program and one of its screens.
+        *rest
+            Further arguments, which must pickle.
+
+        Returns
+        -------
+        asyncio.Future
+            It may raise what the task raises, `TakesTooLong`, or `BrokenExecutor` where its process died.
+        """
+        wanted = pickle.dumps((_do, (self.make, task, document.name, screen.name, *rest), {}))
+        return asyncio.ensure_future(self._run(wanted))
+
+    def start(self) -> None:
+        """Start a process before it is needed, unless there are enough: it takes a second to be ready."""
+        if self._count < self.most:
+            self._count += 1
+            start = asyncio.ensure_future(self._start())
+            self._starts.add(start)
+            start.add_done_callback(self._starts.discard)
+
+    async def close(self) -> None:
+        """End all processes; no other one starts."""
+        self.most = 0
+        for start in self._starts:
+            start.cancel()
+        await asyncio.gather(*self._starts, return_exceptions=True)
+        for worker in [*self._all]:
+            await self._end(worker)
+
+    async def _start(self) -> None:
+        try:
+            worker = await _Worker.started()
+        except OSError as error:
+            self._count -= 1
+            return self._fail(str(error))
+        self._all.add(worker)
+        try:
+            await worker.ask(pickle.dumps((_prepare, (self.make, MEMORY), {})))
+        except (EOFError, OSError):
+            await self._end(worker)
+            return self._fail("it ended while it started")
+        except asyncio.CancelledError:
+            await self._end(worker)
+            raise
+        self._free(worker)
+
+    def _fail(self, why: str) -> None:
+        """Fail the tasks that wait for a process, as none can be started."""
+        while self._waiting:
+            if not (place := self._waiting.popleft()).done():
+                place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
+
+    async def _run(self, wanted: bytes) -> Any:
+        worker = await self._take()
+        spare = asyncio.get_running_loop().call_later(_SPARE, self._keep_one_idle)
+        try:
+            async with asyncio.timeout(self.longest):
+                answer = await worker.ask(wanted)
+        except BaseException as error:
+            await self._end(worker)
+            self.start()
+            raise self._why(error) from None
+        finally:
+            spare.cancel()
+        self._free(worker)
+        done, result = pickle.loads(answer)
+        if done:
+            return result
+        if isinstance(result, MemoryError):
+            raise TakesTooLong(f"it takes more than {MEMORY} MB of memory")
+        raise result
+
+    def _keep_one_idle(self) -> None:
+        if not self._idle:
+            self.start()
+
+    def _why(self, error: BaseException) -> BaseException:
+        if isinstance(error, TimeoutError):
+            return TakesTooLong(f"it takes more than {self.longest:g} s")
+        if isinstance(error, EOFError | OSError):
+            return BrokenExecutor("the process that computed it has died: out of memory?")
+        return error
+
+    async def _take(self) -> _Worker:
+        """An idle process; where there is none another is started, and the first that is free is taken."""
+        while self._idle:
+            worker = self._idle.pop()
+            if worker.lives:
+                return worker
+            await self._end(worker)
+        self.start()
+        self._waiting.append(place := asyncio.get_running_loop().create_future())
+        try:
+            return await place
+        except asyncio.CancelledError:
+            if place.done() and not place.cancelled():  # given at the same time
+                self._free(place.result())
+            raise
+
+    def _free(self, worker: _Worker) -> None:
+        while self._waiting:
+            if not (place := self._waiting.popleft()).done():
+                return place.set_result(worker)
+        self._idle.append(worker)
+
+    async def _end(self, worker: _Worker) -> None:
+        if worker in self._all:
+            self._all.remove(worker)
+            self._count -= 1
+        await worker.end()
+
+
+class Share:
+    """The processes as one page may use them: never all at once, so that one is left for other pages.
+
+    Parameters
+    ----------
+    solver : TaskTaker
+        The processes.
+    most : int
+        Number of tasks of the page that may be under way; others wait in their order.
+    """
+
+    def __init__(self, solver: TaskTaker, most: int = _MOST - 1) -> None:
+        self._solver, self._room = solver, most
+        self._waiting: deque[asyncio.Future[None]] = deque()
+
+    def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
+        """Start ``task(document, screen, *rest)``, or let it wait; cancelling the future ends the task."""
+        given = task, document, screen, *rest
+        if not self._room:
+            return asyncio.ensure_future(self._later(given))
+        self._room -= 1
+        return self._start(given)
+
+    def _start(self, given: tuple[Any, ...]) -> asyncio.Future[Any]:
+        try:
+            future = self._solver.submit(*given)
+        except BaseException:
+            self._leave()
+            raise
+        if future.done():
+            self._leave()
+        else:
+            future.add_done_callback(lambda _: self._leave())
+        return future
+
+    async def _later(self, given: tuple[Any, ...]) -> Any:
+        self._waiting.append(place := asyncio.get_running_loop().create_future())
+        try:
+            await place
+        except asyncio.CancelledError:
+            if not place.cancelled():  # given at the same time
+                self._leave()
+            raise
+        return await self._start(given)
+
+    def _leave(self) -> None:
+        """Let the next task that waits take the room of one that has ended."""
+        while self._waiting:
+            if not (place := self._waiting.popleft()).done():
+                return place.set_result(None)
+        self._room += 1
+
+
+class _Worker:
+    """A process that takes pickled tasks on its standard input and answers on its standard output."""
+
+    def __init__(self, process: subprocess.Process) -> None:
+        assert process.stdin is not None and process.stdout is not None
+        self._process, self._tasks, self._answers = process, process.stdin, process.stdout
+        self.id = process.pid
+
+    @classmethod
+    async def started(cls) -> _Worker:
+        path = os.pathsep.join(p or os.getcwd() for p in sys.path)
+        environment = {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
+        given = [sys.executable, "-P", "-c", _SERVE.format(caller=os.getpid())]
+        pipe = subprocess.PIPE
+        return cls(await asyncio.create_subprocess_exec(*given, stdin=pipe, stdout=pipe, env=environment))
+
+    @property
+    def lives(self) -> bool:
+        return self._process.returncode is None
+
+    async def ask(self, task: bytes) -> bytes:
+        """The pickled answer to a task; `EOFError` or `OSError` if the process dies."""
+        self._tasks.write(len(task).to_bytes(8, "big") + task)
+        await self._tasks.drain()
+        return await self._answers.readexactly(int.from_bytes(await self._answers.readexactly(8), "big"))
+
+    async def end(self) -> None:
+        with suppress(ProcessLookupError):
+            self._process.kill()
+        await self._process.wait()
+
+
+# In a worker process --------------------------------------------------------------------------------------
+
+
+def serve_tasks(caller: int) -> None:
+    """Run the tasks that arrive on the standard input; end with the caller, also in the middle of a task."""
+    import signal
+
+    from beamdyn.common.parallel.workers import serve
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+    _end_with(caller)
+    serve()
+
+
+def _end_with(caller: int) -> None:
+    """End this process when its caller is gone; the closed input would be seen only between two tasks."""
+    from threading import Thread
+    from time import sleep
+
+    def watch() -> None:
+        while os.name == "nt" or os.getppid() == caller:  # on Windows it stays the same
+            sleep(1.0)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
+
+
+def _prepare(make: Callable[[], Program], memory: int) -> None:
+    """Import the program, and limit the memory that may be taken beyond that [MB]."""
+    _screens(make)
+    _limit_memory(memory)
+
+
+def _limit_memory(memory: int) -> None:
+    """Raise `MemoryError` when so much more memory [MB] is taken, on systems that can limit it."""
+    try:
+        import resource
+
+        with open("/proc/self/statm") as file:
+            data = int(file.read().split()[5]) * resource.getpagesize()
+    except (ImportError, OSError):
+        return
+    limit = data + memory * 2**20
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+
+
+def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
+    """Run a task for the screen of that name."""
+    return task(*_screens(make)[document, screen], *rest)
+
+
+@cache
+def _screens(make: Callable[[], Program]) -> Mapping[tuple[str, str], tuple[Document, Screen]]:
+    return {(d.name, s.name): (d, s) for d in make().documents for s in d.screens}

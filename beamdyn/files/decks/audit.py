@@ -1,0 +1,223 @@
+"""What a deck amounts to: mass and its moments, steep steps, and its mode shapes beside ours."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from beamdyn.common.results.one_line import counted, number, warned
+from beamdyn.common.results.result import Result
+from beamdyn.equations.mass import moments_about_root
+from beamdyn.files.decks.blade import Blade
+from beamdyn.files.decks.mode_shapes import PLACES, polynomial, shape_of
+from beamdyn.scene.scene import Scene
+
+STEEP = 3.0  # factor between neighbouring stations from which a step is named
+_SUM_ERROR = 1e-3  # of the coefficients of a mode shape, which ElastoDyn lets pass
+_SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
+_STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
+_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
+_NAMES |= {"second_bending_stiffness": "edge stiffness"}
+
+
+@dataclass(frozen=True)
+class PropertyStep:
+    """A property that changes by a large factor between neighbouring stations.
+
+    Parameters
+    ----------
+    name : str
+        The property.
+    start, end : float
+        The stations x/L; they are the same at a jump.
+    factor : float
+        Value at the end over that at the start.
+
+    Examples
+    --------
+    >>> step = bd.PropertyStep("bending_stiffness", 0.2, 0.25, 3.0)
+    >>> step.sentence()
+    'bending_stiffness rises by a factor of 3 from x/L = 0.2 to 0.25, 0.05 of the length'
+    """
+
+    name: str
+    start: float
+    end: float
+    factor: float
+
+    def sentence(self) -> str:
+        """Say it."""
+        place = (
+            f"at x/L = {self.start:g}"
+            if self.start == self.end
+            else (f"from x/L = {self.start:g} to {self.end:g}, {self.end - self.start:.2g} of the length")
+        )
+        ratio = self.factor if self.factor >= 1 else 1 / self.factor
+        return f"{self.name} {'rises' if self.factor > 1 else 'falls'} by a factor of {ratio:.3g} {place}"
+
+
+@dataclass(frozen=True)
+class ShapeCheck:
+    """A mode shape that a deck states, beside that of its own stations.
+
+    Parameters
+    ----------
+    mode : str
+        Such as "flap 1".
+    coefficient_sum : float
+        Sum of its nondimensional coefficients: its deflection at the tip, which should be 1.
+    difference : float
+        Largest difference of the two shapes, relative to the tip deflection, which is the same.
+    place : float
+        Where it is, x/L.
+    frequency : float
+        Frequency of the mode of the stations [Hz].
+
+    Examples
+    --------
+    >>> check = bd.ShapeCheck("flap 1", coefficient_sum=1.0, difference=0.003, place=0.4, frequency=0.68)
+    >>> check.difference < 0.01
+    True
+    """
+
+    field_units: ClassVar[dict[str, str]] = {"Hz": "frequency"}
+
+    mode: str
+    coefficient_sum: float
+    difference: float
+    place: float
+    frequency: float
+
+
+@dataclass(frozen=True)
+class DeckAudit(Result):
+    """What a deck amounts to.
+
+    Properties are linear between stations.  Mass and moments are those of the blade with
+    point masses along it, without its tip body.
+
+    Parameters
+    ----------
+    stations : int
+        Number of stations.
+    mass : float
+        Mass [kg].
+    first_moment, second_moment : float
+        Moments of the mass about the root [kg m, kg m2].
+    hub_second_moment : float
+        Second moment of the mass about the axis of rotation [kg m2], without cone.
+    centre : float
+        Distance of the centre of mass from the root [m].
+    stiffness_ratios : tuple of float
+        Smallest over largest stiffness, for flap and, where there is one, edge.
+    steps : tuple of PropertyStep
+        Steep steps, from root to tip.
+    shapes : tuple of ShapeCheck
+        The deck's mode shapes; empty if it states none.
+    shape_speed : float
+        Speed at which shapes are compared [rad/s].
+    warnings : tuple of str
+        What looks like a mistake in the deck.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.audit.stations, round(deck.audit.centre / 40.0, 2)  # centre of mass over the length
+    (9, 0.3)
+    """
+
+    field_units: ClassVar[dict[str, str]] = {
+        "kg": "mass",
+        "kg m": "first_moment",
+        "kg m2": "second_moment hub_second_moment",
+        "m": "centre",
+        "rad/s": "shape_speed",
+    }
+
+    stations: int
+    mass: float
+    first_moment: float
+    second_moment: float
+    hub_second_moment: float
+    centre: float
+    stiffness_ratios: tuple[float, ...]
+    steps: tuple[PropertyStep, ...]
+    shapes: tuple[ShapeCheck, ...]
+    shape_speed: float
+    warnings: tuple[str, ...]
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{counted(self.stations, 'station')}, {number(self.mass, 'kg')}"
+        yield f"centre at {number(self.centre, 'm')}"
+        yield counted(len(self.steps), "steep step") if self.steps else ""
+        yield warned(self.warnings)
+
+
+def audit(blade: Blade, scene: Scene) -> DeckAudit:
+    """Audit a blade, by the beam of its scene."""
+    beam, hub = scene.beam, scene.mount.radius
+    mass, first, second = moments_about_root(beam)
+    speed = blade.speed * math.pi / 30
+    shapes = tuple(_check_shape(scene, mode, row, speed) for mode, row in blade.polynomials.items())
+    return DeckAudit(
+        stations=len(blade.stations),
+        mass=mass,
+        first_moment=first,
+        second_moment=second,
+        hub_second_moment=second + 2 * hub * first + hub**2 * mass,
+        centre=first / mass,
+        stiffness_ratios=tuple(
+            float(values.min() / values.max())
+            for name in _STEPPED[1:]
+            if (values := blade.columns.get(name)) is not None
+        ),
+        steps=find_steps(blade),
+        shapes=shapes,
+        shape_speed=speed,
+        warnings=(*blade.doubts, *_warnings(shapes)),
+    )
+
+
+def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
+    """Properties that change by a factor of `STEEP` or more between neighbouring stations."""
+    x = blade.stations
+    found: list[PropertyStep] = []
+    for name in _STEPPED:
+        if (values := blade.columns.get(name)) is not None:
+            factors = values[1:] / values[:-1]
+            steep = np.flatnonzero(np.maximum(factors, 1 / factors) >= STEEP)
+            found += [
+                PropertyStep(_NAMES[name], float(x[k]), float(x[k + 1]), float(factors[k])) for k in steep
+            ]
+    return tuple(sorted(found, key=lambda step: step.start))
+
+
+# Mode shapes --------------------------------------------------------------------------------------
+
+
+def _check_shape(scene: Scene, mode: str, coefficients: np.ndarray, speed: float) -> ShapeCheck:
+    """Compare a polynomial with the mode of the same plane, without twist, at the speed of the deck."""
+    total = float(coefficients.sum())
+    shape, frequency = shape_of(scene, mode, speed)
+    apart = np.abs(polynomial(coefficients) / total - shape) if total else np.full(len(shape), math.inf)
+    k = int(apart.argmax())
+    return ShapeCheck(mode, total, float(apart[k]), float(PLACES[k]), frequency)
+
+
+def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:
+    wrong_sums = [
+        f"the coefficients of {shape.mode} add up to {shape.coefficient_sum:.6g}; they must add up to 1"
+        for shape in shapes
+        if abs(shape.coefficient_sum - 1) > _SUM_ERROR
+    ]
+    return wrong_sums + [
+        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that of its "
+        f"stations, at x/L = {shape.place:.3g}"
+        for shape in shapes
+        if shape.difference > _SHAPE_ERROR
+    ]

@@ -1,0 +1,203 @@
+"""Blades of BModes: its main file (.bmi) with the section properties, or these alone.
+
+Positive twist and pitch turn the section about -z (z from root to tip), x being downwind and y to the
+trailing edge, as in ElastoDyn: BModes turns the angles and the offsets along y round when it passes to the
+axes of a helicopter blade (y to the leading edge, nose-up positive), which it computes in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from beamdyn.common.edge.data_text import (
+    DataText,
+    check_all_there,
+    check_named,
+    named_number,
+    named_values,
+    plain_name,
+    read_data,
+)
+from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
+from beamdyn.files.decks.elastodyn import named_file
+from beamdyn.files.decks.stations import Column, Stations, read_stations
+
+COLUMNS = (
+    Column("sec_loc", "-", required=True),
+    Column("str_tw", "deg", required=True),
+    Column("tw_iner", "deg", required=True),
+    Column("mass_den", "kg/m", required=True, positive=True),
+    Column("flp_iner", "kg-m", required=True),
+    Column("edge_iner", "kg-m", required=True),
+    Column("flp_stff", "Nm^2", required=True, positive=True),
+    Column("edge_stff", "Nm^2", required=True, positive=True),
+    Column("tor_stff", "Nm^2", required=True),
+    Column("axial_stff", "N", required=True),
+    Column("cg_offst", "m", required=True),
+    Column("sc_offst", "m", required=True),
+    Column("tc_offst", "m", required=True),
+)
+_LINE = "the axes of mass, shear and tension are one straight line"
+_REASONS = {
+    "tor_stff": "no torsion is modelled",
+    "cg_offst": _LINE,
+    "sc_offst": _LINE,
+    "tc_offst": _LINE,
+}
+_USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
+# By the name that Beam.from_stiffness has: column and multiplier.
+_PROPERTIES = {
+    "mass_per_length": ("mass_den", "sec_mass_mult"),
+    "bending_stiffness": ("flp_stff", "flp_stff_mult"),
+    "second_bending_stiffness": ("edge_stff", "edge_stff_mult"),
+    "axial_stiffness": ("axial_stff", "axial_stff_mult"),
+    "rotary_inertia": ("flp_iner", "flp_iner_mult"),
+    "second_rotary_inertia": ("edge_iner", "lag_iner_mult"),
+}
+_TIP = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
+_NEEDED = ("beam_type", "radius", "hub_rad", "precone", "bl_thp", "hub_conn", *_TIP, "sec_props_file")
+_NEEDED = (*_NEEDED, *(multiplier for _, multiplier in _PROPERTIES.values()))
+_MAIN_NAMES = {plain_name(name): name for name in _NEEDED}
+# Version 3 has the axial offset, and other names than version 1 for the speed.
+_MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult")
+
+
+def is_section_file(text: DataText) -> bool:
+    """Whether the text is that of a file of section properties."""
+    return bool(named_values(text, {"nsecs"}))
+
+
+def is_main_file(text: DataText) -> bool:
+    """Whether the text is that of a main file."""
+    return bool(named_values(text, {"secpropsfile"}))
+
+
+def read_main_file(text: DataText) -> Blade:
+    """Read the main file and the section properties that it names."""
+    found = named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
+    check_all_there(text, found, _MAIN_NAMES)
+    values = {name: named_number(text, named) for name, named in found.items() if name != "secpropsfile"}
+    _check_kind(text, found, values)
+    multipliers = {name: values[plain_name(name)] for _, name in _PROPERTIES.values()}
+    sections = read_data(named_file(text, found["secpropsfile"]))
+    hub_radius = values["hubrad"]
+    blade = read_section_file(sections, values["radius"] - hub_radius, hub_radius, multipliers)
+    tip, left_out = _tip_body(values)
+    return replace(
+        blade,
+        kind="BModes main file with section properties",
+        title=text.lines[1].strip() if len(text.lines) > 1 else "",
+        sources=(text.path, *blade.sources),
+        tip=tip,
+        pitch=values["blthp"],
+        speed=_speed(values),
+        precone=values["precone"],
+        ignored=(*left_out, *blade.ignored),
+    )
+
+
+def _check_kind(text: DataText, found: dict, values: dict[str, float]) -> None:
+    """Refuse what is no cantilevered blade."""
+
+    def check(key: str, good: bool, wanted: str) -> None:
+        check_named(text, found[key], good, wanted)
+
+    check("beamtype", values["beamtype"] == 1, "= 1, a blade (towers are not read)")
+    check("hubconn", values["hubconn"] == 1, "= 1, a cantilever (other roots are not read)")
+    check("hubrad", values["hubrad"] >= 0, "of 0 or more")
+    check("radius", values["radius"] > values["hubrad"], f"above hub_rad = {values['hubrad']:g}")
+    check("tipmass", values["tipmass"] >= 0, "of 0 or more")
+    check("precone", abs(values["precone"]) < 90, "below 90 deg either way")
+    for _, multiplier in _PROPERTIES.values():
+        key = plain_name(multiplier)
+        check(key, values[key] > 0, "above 0")
+
+
+def _speed(values: dict[str, float]) -> float:
+    """Speed of rotation [rpm]."""
+    speed = values.get("rotrpm", values.get("romg", 0.0))
+    return speed * values.get("rpmmult", values.get("romgmult", 1.0))
+
+
+def _tip_body(values: dict[str, float]) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:
+    """Arguments of `TipMass`, and what is not in them.
+
+    BModes takes the moments of inertia about the centre of gravity, x for lag, y for flap, z for torsion.
+    """
+    flap, lag, torsion = (values[f"i{2 * axis}tip"] for axis in "yxz")
+    tip = {"mass": values["tipmass"], "offset": values.get("cmaxial", 0.0)}
+    left_out = ignore("cm_loc", values["cmloc"], "m", "the tip body is centred on the axis of the blade")
+    reason = "the axes of the tip body are those of its section"
+    left_out += ignore(
+        "ixy_tip, izx_tip, iyz_tip", [values[f"{i}tip"] for i in ("ixy", "izx", "iyz")], "kg-m^2", reason
+    )
+    if 2 * max(flap, lag, torsion) > (flap + lag + torsion) * (1 + 1e-12) or min(flap, lag, torsion) < 0:
+        reason = "no rigid body has such moments: each is at most the sum of the other two"
+        left_out += ignore("ixx_tip, iyy_tip, izz_tip", [lag, flap, torsion], "kg-m^2", reason)
+    else:
+        tip |= {"inertia": flap, "transverse_inertia": lag, "axial_inertia": torsion}
+    return (tip if any(tip.values()) else {}), left_out
+
+
+def read_section_file(
+    text: DataText, length: float, hub_radius: float, multipliers: dict[str, float] | None = None
+) -> Blade:
+    """Read section properties.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    length, hub_radius : float
+        Length of the blade and radius of the hub [m].
+    multipliers : dict of float, optional
+        By name, of the main file; 1 without it.
+
+    Raises
+    ------
+    ConfigError
+        If something is missing or not as expected.
+    """
+    found = named_values(text, {"nsecs"})
+    check_all_there(text, found, {"nsecs": "n_secs"})
+    table = read_stations(text, _columns(text), found["nsecs"])
+    columns, left_out = _properties(table, multipliers or {})
+    return Blade(
+        kind="BModes section properties",
+        title=text.lines[0].strip(),
+        sources=(text.path,),
+        length=length,
+        hub_radius=hub_radius,
+        stations=table.columns[_columns(text)[0].name],
+        columns=columns,
+        ignored=(*left_out, *ignore_columns(table, (*_USED, "span_loc", "axial_stff"), _REASONS)),
+    )
+
+
+def _columns(text: DataText) -> tuple[Column, ...]:
+    """The columns: the first is sec_loc, or span_loc in older files."""
+    firsts = {plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]}
+    return (replace(COLUMNS[0], name="span_loc"), *COLUMNS[1:]) if "spanloc" in firsts else COLUMNS
+
+
+def _properties(
+    table: Stations, multipliers: dict[str, float]
+) -> tuple[dict[str, np.ndarray], tuple[IgnoredProperty, ...]]:
+    """The properties of the beam, and what is not in them."""
+    given = {
+        name: multipliers.get(multiplier, 1.0) * table.columns[column]
+        for name, (column, multiplier) in _PROPERTIES.items()
+    }
+    left_out: tuple[IgnoredProperty, ...] = ()
+    for names in (("axial_stiffness",), ("rotary_inertia", "second_rotary_inertia")):
+        if min(given[name].min() for name in names) <= 0:
+            for name in names:
+                column = _PROPERTIES[name][0]
+                left_out += ignore(
+                    column, given.pop(name), table.units[column], "not above 0 at every station"
+                )
+    apart = table.columns["tw_iner"] - table.columns["str_tw"]
+    left_out += ignore("tw_iner - str_tw", apart, "deg", "inertia has the axes of stiffness")
+    return {"twist": -table.columns["str_tw"], **given}, left_out

@@ -1,0 +1,227 @@
+"""Decks: a blade of another program, as a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.data_text import DataText, read_data
+from beamdyn.common.inputs.checks import InvalidValue, moderate, not_negative, size
+from beamdyn.common.results.files import check_writable, write_text
+from beamdyn.common.results.one_line import counted, number
+from beamdyn.common.results.result import Result
+from beamdyn.files.decks import bmodes, csv_table, elastodyn
+from beamdyn.files.decks.audit import DeckAudit, audit
+from beamdyn.files.decks.blade import Blade, IgnoredProperty
+from beamdyn.files.decks.mode_shapes import ModePolynomial, fit_mode_polynomials
+from beamdyn.files.decks.scene_file import tables_of, text_of
+from beamdyn.files.scenes import scene_from_dict
+from beamdyn.scene.scene import Scene
+
+_KINDS = (
+    "a blade file or the main file of ElastoDyn, FAST 7 or OpenFAST, a .bmi or section properties of BModes, "
+    "or a CSV table with units in its heads"
+)
+
+
+@dataclass(frozen=True)
+class Deck(Result):
+    """A blade that was read from another program's files.
+
+    Parameters
+    ----------
+    kind : str
+        What the files are.
+    title : str
+        What they say they are of.
+    sources : tuple of str
+        The files that were read.
+    scene : Scene
+        The blade on its hub: it points outward, flap out of the plane of rotation, edge in it.
+    ignored : tuple of IgnoredProperty
+        What of the files the scene does not have.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.kind, deck.scene.beam.length
+    ('CSV table', 40.0)
+    """
+
+    kind: str
+    title: str
+    sources: tuple[str, ...]
+    scene: Scene
+    ignored: tuple[IgnoredProperty, ...]
+    tables: dict[str, Any] = field(repr=False)
+    blade: Blade = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield self.kind
+        yield repr(self.title) if self.title else ""
+        yield f"{number(self.scene.beam.length, 'm')} long"
+        yield f"{counted(len(self.ignored), 'property', 'properties')} ignored" if self.ignored else ""
+
+    @cached_property
+    def audit(self) -> DeckAudit:
+        """Mass and moments, steep steps, and the files' mode shapes beside ours."""
+        return audit(self.blade, self.scene)
+
+    def fit_mode_polynomials(self, speed: float | None = None) -> tuple[ModePolynomial, ...]:
+        """Polynomials of the mode shapes, such as a blade file of ElastoDyn states: flap 1, flap 2, edge 1.
+
+        Each is a mode of one plane without twist, as that program takes them.
+
+        Parameters
+        ----------
+        speed : float, optional
+            Speed of rotation [rad/s]; that of the deck if not given, which may be 0.
+
+        Returns
+        -------
+        tuple of ModePolynomial
+            Each with its coefficients, its largest difference from the mode shape, and the frequency.
+
+        Raises
+        ------
+        ValueError
+            If the speed is not finite.
+        """
+        stated = self.blade.speed * math.pi / 30
+        return fit_mode_polynomials(
+            self.scene, stated if speed is None else moderate("speed", speed, "rad/s")
+        )
+
+    def scene_text(self) -> str:
+        """The scene as the text of a TOML file: the stations as a table, what is ignored as comments."""
+        return text_of(self.tables, self._comments())
+
+    def write_scene(self, path: str | PathLike[str], force: bool = False) -> None:
+        """Write the scene as a TOML file, which `beamdyn.load_scene` and the commands read.
+
+        Parameters
+        ----------
+        path : str or path-like
+            File to write.
+        force : bool
+            Overwrite a file that exists.
+
+        Raises
+        ------
+        FileExistsError
+            If the file exists and `force` is not set.
+        OSError
+            If it cannot be written.
+        """
+        write_text(check_writable(Path(path), force=force), self.scene_text())
+
+    def _comments(self) -> dict[str, list[str]]:
+        names = ", ".join(Path(source).name for source in self.sources)
+        head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
+        if self.ignored:
+            head += ["", "Not in this scene:", *(f"  {entry.sentence()}" for entry in self.ignored)]
+        comments = {"": head, "beam": ["linear between stations; bending_stiffness is that of flap"]}
+        if "second_bending_stiffness" in self.blade.columns:
+            comments["beam"][0] += ", the second that of edge"
+            comments["beam"] += ["twist is added to the bending angle: minus the twist towards feather"]
+        comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
+        if self.blade.pitch:
+            comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
+        if "rotary_inertia" in self.blade.columns:
+            comments["physics"] = ["rotary_inertia = true adds that of the sections"]
+        return comments
+
+
+def read_deck(
+    path: str | PathLike[str], length: float | None = None, hub_radius: float | None = None
+) -> Deck:
+    """Read a blade of ElastoDyn, FAST 7 or BModes, or from a CSV table with units in its heads.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file: what it is follows from its content.  Files that it names are read, too.
+    length : float, optional
+        Length of the blade [m], where the file does not say it: a blade file alone, section properties
+        alone, a table of fractions.
+    hub_radius : float, optional
+        Distance of the root from the axis of rotation [m], likewise.
+
+    Returns
+    -------
+    Deck
+
+    Raises
+    ------
+    ConfigError
+        If a file cannot be read: names the file, the line, and what was expected.
+    ValueError
+        If `length` or `hub_radius` is wrong, or given though the files say it.
+
+    Examples
+    --------
+    >>> deck = bd.read_deck("examples/blade_stations.csv", length=40.0, hub_radius=1.25)
+    >>> deck.scene.mount.radius  # m
+    1.25
+    """
+    given = {"length": length, "hub_radius": hub_radius}
+    given |= {"length": None if length is None else size("length", length, "m")}
+    given |= {"hub_radius": None if hub_radius is None else not_negative("hub_radius", hub_radius, "m")}
+    blade = _read(read_data(path), given)
+    tables = tables_of(blade)
+    sources = tuple(str(source) for source in blade.sources)
+    scene = scene_from_dict(tables, sources[0])
+    return Deck(blade.kind, blade.title, sources, scene, blade.ignored, tables, blade)
+
+
+def _read(text: DataText, given: dict[str, float | None]) -> Blade:
+    """The blade of a file, whatever program wrote it."""
+    if elastodyn.is_blade_file(text):
+        return elastodyn.read_blade_file(text, *_needed(text, given, "the main file has TipRad and HubRad"))
+    if elastodyn.is_main_file(text):
+        _needed(text, given, "", length=False, hub_radius=False)
+        return elastodyn.read_main_file(text)
+    if elastodyn.is_openfast_file(text):
+        _needed(text, given, "", length=False, hub_radius=False)
+        return elastodyn.read_openfast_file(text)
+    if bmodes.is_main_file(text):
+        _needed(text, given, "", length=False, hub_radius=False)
+        return bmodes.read_main_file(text)
+    if bmodes.is_section_file(text):
+        return bmodes.read_section_file(text, *_needed(text, given, "the main file (.bmi) has both"))
+    if csv_table.is_csv(text):
+        length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
+        remedy = "a column r [m], from the axis of rotation, says both"
+        return csv_table.read_csv_blade(text, *_needed(text, given, remedy, length, hub_radius))
+    raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])
+
+
+def _needed(
+    text: DataText,
+    given: dict[str, float | None],
+    remedy: str,
+    length: bool = True,
+    hub_radius: bool = True,
+) -> tuple[float, float]:
+    """Length and radius of the hub, each of which must be given where it is needed, and only there."""
+    needed = {"length": length, "hub_radius": hub_radius}
+    for name, value in given.items():
+        if value is not None and not needed[name]:
+            raise InvalidValue(name, value, f"{text.path.name} says it", "leave it out", "m")
+    if missing := [name for name in needed if needed[name] and given[name] is None]:
+        words = {"length": "the length of the blade", "hub_radius": "the radius of the hub"}
+        names, unsaid = " and ".join(missing), " nor ".join(words[name] for name in missing)
+        options = " and ".join(f"--{name.replace('_', '-')}" for name in missing)
+        said = f"{names}: missing; the file does not say {unsaid}: give {names} ({options}); {remedy}"
+        raise ConfigError(str(text.path), [said])
+    values = (given[name] if needed[name] else math.nan for name in needed)
+    found_length, found_radius = values
+    assert found_length is not None and found_radius is not None
+    return found_length, found_radius

@@ -1,0 +1,237 @@
+"""Blade files of ElastoDyn and FAST, and the main files that name them.
+
+The blade's axes are x downwind, y to the trailing edge, z from root to tip; the rotor turns about +x.
+Positive structural twist and pitch turn the section about -z, to feather: the flap direction is
+cos(twist) x - sin(twist) y.  Here b1 = z, b2 = y, b3 = -x (the carrier turns about -n3), and the flap
+direction c b2 + s b3 is the same line at psi = 90 deg - twist - pitch: a twist is the deck's times -1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from beamdyn.common.edge.data_text import (
+    DataText,
+    NamedValue,
+    check_all_there,
+    check_named,
+    named_number,
+    named_values,
+    plain_name,
+    read_data,
+)
+from beamdyn.files.decks import mode_shapes
+from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
+from beamdyn.files.decks.stations import Column, Stations, read_stations
+
+COLUMNS = (
+    Column("BlFract", "-", required=True),
+    Column("StrcTwst", "deg", required=True),
+    Column("BMassDen", "kg/m", required=True, positive=True),
+    Column("FlpStff", "Nm^2", required=True, positive=True),
+    Column("EdgStff", "Nm^2", required=True, positive=True),
+    Column("PitchAxis", "-"),
+    Column("AeroCent", "-"),
+    Column("GJStff", "Nm^2"),
+    Column("EAStff", "N"),
+    Column("Alpha", "-"),
+    Column("FlpIner", "kg m"),
+    Column("EdgIner", "kg m"),
+    *(Column(name, "m") for name in ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")),
+)
+_USED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
+_UNUSED_SECOND = "PitchAxis", "AeroCent"
+_UNREAD = "ElastoDyn does not use it either"
+_REASONS = {
+    "PitchAxis": "of aerodynamics",
+    "AeroCent": "of aerodynamics",
+    "GJStff": f"no torsion is modelled; {_UNREAD}",
+    "EAStff": f"the blade is rigid along its axis; {_UNREAD}",
+    "Alpha": f"no coupling of flap and torsion is modelled; {_UNREAD}",
+    "PrecrvRef": f"the axis of the blade is straight; {_UNREAD}",
+    "PreswpRef": f"the axis of the blade is straight; {_UNREAD}",
+    **{name: f"sections have no rotary inertia here; {_UNREAD}" for name in ("FlpIner", "EdgIner")},
+    **{
+        name: f"the axes of mass and of stiffness are one straight line; {_UNREAD}"
+        for name in ("FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
+    },
+}
+_FACTORS = {"AdjBlMs": "BMassDen", "AdjFlSt": "FlpStff", "AdjEdSt": "EdgStff"}
+_DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
+_TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
+_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in mode_shapes.NAMES.items()}
+_BLADE_NAMES = {
+    plain_name(name): name
+    for name in (
+        "NBlInpSt",
+        *_DAMPING,
+        *_TUNERS,
+        *_FACTORS,
+        *(n for names in _SHAPES.values() for n in names),
+    )
+}
+_MAIN_NAMES = {
+    plain_name(name): name for name in ("TipRad", "HubRad", "PreCone(1)", "TipMass(1)", "BldFile(1)")
+}
+_ELASTODYN = 1  # CompElast: 2 is BeamDyn's blades with ElastoDyn's hub, 3 a simplified ElastoDyn
+_MAIN_MORE = {plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
+
+
+def is_blade_file(text: DataText) -> bool:
+    """Whether the text is that of a blade file."""
+    return bool(named_values(text, {"nblinpst"}))
+
+
+def is_main_file(text: DataText) -> bool:
+    """Whether the text is that of a main file of ElastoDyn or FAST 7."""
+    return len(named_values(text, {"tiprad", "bldfile1"})) == 2
+
+
+def is_openfast_file(text: DataText) -> bool:
+    """Whether the text is that of a main file of OpenFAST, which names that of ElastoDyn."""
+    return bool(named_values(text, {"edfile"}))
+
+
+def read_openfast_file(text: DataText) -> Blade:
+    """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
+    found = named_values(text, {"edfile", "compelast"})
+    blade = read_main_file(read_data(named_file(text, found["edfile"])))
+    ignored = (*_other_elastic_model(text, found), *blade.ignored)
+    return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
+
+
+def _other_elastic_model(text: DataText, found: Mapping[str, NamedValue]) -> tuple[IgnoredProperty, ...]:
+    """What to say where the turbine's blades are not those of ElastoDyn."""
+    model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
+    if model == _ELASTODYN:
+        return ()
+    reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
+    return ignore("CompElast", model, "", reason)
+
+
+def read_main_file(text: DataText) -> Blade:
+    """Read the first blade of a rotor: the main file, and the blade file that it names."""
+    found = named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())
+    check_all_there(text, found, _MAIN_NAMES)
+    values = {key: named_number(text, named) for key, named in found.items() if key != "bldfile1"}
+    hub_radius, tip_radius = values["hubrad"], values["tiprad"]
+    wanted = f"of 0 or more and below TipRad = {tip_radius:g}"
+    check_named(text, found["hubrad"], 0 <= hub_radius < tip_radius, wanted)
+    check_named(text, found["tipmass1"], values["tipmass1"] >= 0, "of 0 or more")
+    check_named(text, found["precone1"], abs(values["precone1"]) < 90, "below 90 deg either way")
+    blade = read_blade_file(
+        read_data(named_file(text, found["bldfile1"])), tip_radius - hub_radius, hub_radius
+    )
+    return replace(
+        blade,
+        kind=f"main file and {blade.kind}",
+        sources=(text.path, *blade.sources),
+        tip={"mass": values["tipmass1"]} if values["tipmass1"] else {},
+        pitch=values.get("blpitch1", 0.0),
+        precone=values["precone1"],
+        speed=values.get("rotspeed", 0.0),
+    )
+
+
+def named_file(text: DataText, named: NamedValue) -> Path:
+    """The file that a file names, from its own folder; it must be there."""
+    path = text.path.parent / named.word.replace("\\", "/")
+    if not path.is_file():
+        raise text.refusal(named.line, f"expected the file {named.name}, but there is none at {path}")
+    return path
+
+
+def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
+    """Read a blade file.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    length, hub_radius : float
+        Length of the blade, TipRad - HubRad, and radius of the hub, HubRad [m].
+
+    Raises
+    ------
+    ConfigError
+        If something is missing or not as expected.
+    """
+    found = named_values(text, _BLADE_NAMES.keys())
+    check_all_there(text, found, {"nblinpst": "NBlInpSt"})
+    table = read_stations(text, COLUMNS, found["nblinpst"])
+    check_all_there(text, found, _BLADE_NAMES)
+
+    def numbers(*names: str) -> np.ndarray:
+        return np.array([named_number(text, found[plain_name(name)]) for name in names])
+
+    damping = numbers(*_DAMPING) / 100
+    return Blade(
+        kind="ElastoDyn blade file",
+        title=_title(text),
+        sources=(text.path,),
+        length=length,
+        hub_radius=hub_radius,
+        stations=table.columns["BlFract"],
+        columns=_properties(table, _factors(text, found)),
+        damping=float(damping[0]) if np.ptp(damping) == 0 else 0.0,
+        polynomials={mode: numbers(*names) for mode, names in _SHAPES.items()},
+        ignored=(*_ignored_settings(damping, numbers(*_TUNERS)), *ignore_columns(table, _USED, _REASONS)),
+        doubts=tuple(_doubt_order([*table.columns])),
+    )
+
+
+def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
+    """Yield a warning of heads that stand in another order than that in which ElastoDyn reads the numbers.
+
+    Its second column, which it does not use, was AeroCent, then PitchAxis, and is gone in newer versions.
+    """
+    second = [name for name in heads[1:2] if name in _UNUSED_SECOND]
+    wanted = [_USED[0], *second, *_USED[1:]]
+    if heads[: len(wanted)] != wanted:
+        here = next(i for i, name in enumerate(wanted) if heads[i : i + 1] != [name])
+        said = (
+            f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
+        )
+        yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
+
+
+def _title(text: DataText) -> str:
+    """What the file says it is of: its second line, or that below two lines of dashes in FAST 7."""
+    plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
+    return next(plain, "")
+
+
+def _factors(text: DataText, found: Mapping[str, NamedValue]) -> dict[str, float]:
+    """The factor of each column; positive."""
+    factors = {}
+    for name, column in _FACTORS.items():
+        named = found[plain_name(name)]
+        factors[column] = named_number(text, named)
+        check_named(text, named, factors[column] > 0, "above 0")
+    return factors
+
+
+def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.ndarray]:
+    adjusted = {name: factor * table.columns[name] for name, factor in factors.items()}
+    return {
+        "twist": -table.columns["StrcTwst"],
+        "mass_per_length": adjusted["BMassDen"],
+        "bending_stiffness": adjusted["FlpStff"],
+        "second_bending_stiffness": adjusted["EdgStff"],
+    }
+
+
+def _ignored_settings(damping: np.ndarray, tuners: np.ndarray) -> tuple[IgnoredProperty, ...]:
+    """Damping, and tuners that are not 1."""
+    if np.ptp(damping) == 0:
+        reason = f"natural frequencies are undamped; damping_ratio = {damping[0]:.9g} in [model] has it"
+    else:
+        reason = "natural frequencies are undamped; a scene has one damping ratio for all modes"
+    ignored = ignore(", ".join(_DAMPING), 100 * damping, "%", reason)
+    if (tuners != 1).any():
+        ignored += ignore(", ".join(_TUNERS), tuners, "", "they change the stiffness of single modes")
+    return ignored

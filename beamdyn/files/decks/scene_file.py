@@ -1,0 +1,138 @@
+"""A blade as a scene file: its tables, and its text with the stations as a table with units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from beamdyn.files.decks.blade import Blade
+
+_UNITS = {
+    "twist": "deg",
+    "mass_per_length": "kg/m",
+    "bending_stiffness": "N m2",
+    "second_bending_stiffness": "N m2",
+    "axial_stiffness": "N",
+    "outer_fibre": "m",
+    "shear_stiffness": "N",
+    "second_shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "second_rotary_inertia": "kg m",
+}
+_TIP_UNITS = {
+    "mass": "kg",
+    "offset": "m",
+    "inertia": "kg m2",
+    "transverse_inertia": "kg m2",
+    "axial_inertia": "kg m2",
+}
+_DIGITS = 15  # of numbers in the file: those that a float keeps
+
+
+def tables_of(blade: Blade) -> dict[str, Any]:
+    """The tables of the scene of a blade, as tomllib reads them.
+
+    The blade points outward; its flap, in which `bending_stiffness` counts, bends out of the plane of
+    rotation where twist and pitch are 0.
+    """
+    tables: dict[str, Any] = {
+        "beam": {"length": f"{_number(blade.length)} m", "stations": _rows(blade)},
+        "mount": {
+            "radius": f"{_number(blade.hub_radius)} m",
+            "setting_angle": "180 deg",
+            "bending_angle": f"{_number(90 - blade.pitch)} deg",
+        },
+    }
+    if blade.precone:  # downwind is -b3
+        tables["mount"]["precone"] = f"{_number(-blade.precone)} deg"
+    if blade.tip:
+        units = {key: unit for key, unit in _TIP_UNITS.items() if key == "mass" or blade.tip.get(key)}
+        units |= {key: _TIP_UNITS[key] for key in ("transverse_inertia",) if key in blade.tip}
+        tables["beam"]["tip"] = {
+            key: f"{_number(blade.tip.get(key, 0.0))} {units[key]}" for key in _TIP_UNITS if key in units
+        }
+    if blade.speed:
+        tables["motion"] = {"kind": "steady", "speed": f"{_number(blade.speed)} rpm"}
+    if "second_bending_stiffness" in blade.columns:
+        tables["physics"] = {"planes": 2}
+    return tables
+
+
+def _rows(blade: Blade) -> list[list[Any]]:
+    """Heads and rows of the stations."""
+    names = [name for name in _UNITS if name in blade.columns and _is_needed(name, blade.columns)]
+    heads = ["x/L", *(f"{name} [{_UNITS[name]}]" for name in names)]
+    columns = [blade.stations, *(blade.columns[name] for name in names)]
+    return [heads, *([float(_number(value)) for value in row] for row in zip(*columns, strict=True))]
+
+
+def _is_needed(name: str, columns: Mapping[str, np.ndarray]) -> bool:
+    """Whether a column says something: a twist that is zero throughout does not."""
+    return name != "twist" or bool(columns[name].any())
+
+
+def _number(value: float) -> str:
+    """A number with as many digits as a float keeps, and without the sign of zero."""
+    return f"{value + 0.0:.{_DIGITS}g}"
+
+
+# Text ---------------------------------------------------------------------------------------------
+
+
+def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) -> str:
+    """The text of a scene file.
+
+    Parameters
+    ----------
+    tables : mapping
+        As `tables_of` makes them.
+    comments : mapping
+        Sentences by the table that they stand above, "" for the head of the file.
+    """
+    lines = [*_commented(comments.get("", ()))]
+    for name, table in tables.items():
+        inner = {key: value for key, value in table.items() if isinstance(value, dict)}
+        lines += ["", *_commented(comments.get(name, ())), f"[{name}]"]
+        lines += [
+            line for key, value in table.items() if key not in inner for line in _assignment(key, value)
+        ]
+        for key, value in inner.items():
+            lines += ["", f"[{name}.{key}]"]
+            lines += [line for k, v in value.items() for line in _assignment(k, v)]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _commented(sentences: Iterable[str]) -> Iterator[str]:
+    """Comment lines; what would end a comment early is shown as a blank."""
+    for sentence in sentences:
+        yield f"# {''.join(c if c.isprintable() else ' ' for c in sentence)}".rstrip()
+
+
+def _assignment(key: str, value: Any) -> Iterator[str]:
+    if isinstance(value, list):
+        yield f"{key} = ["
+        yield from _table(value)
+        yield "]"
+    else:
+        yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value}"
+
+
+def _table(rows: list[list[Any]]) -> Iterator[str]:
+    """The rows in columns that are aligned."""
+    heads, *numbers = rows
+    cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    for row in cells:
+        padded = (f"{cell},".ljust(width + 1) for cell, width in zip(row, widths, strict=True))
+        yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
+
+
+def _cell(value: float) -> str:
+    """A number as TOML writes it: large ones with an exponent."""
+    text = _number(value)
+    if "e" not in text and abs(value) >= 1e6:
+        mantissa, _, exponent = f"{value:.{_DIGITS - 1}e}".partition("e")
+        text = f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
+    return text

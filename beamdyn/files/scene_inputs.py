@@ -1,0 +1,311 @@
+"""The tables of a scene's TOML file, as texts with units, and the core objects that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, Discriminator, Field, Tag
+
+from beamdyn.common.edge.columns import read_columns
+from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.inputs import Quantity, Section, describe
+from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
+from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.files.property_inputs import BREAKPOINT, Along, Metres, Position, Varying
+from beamdyn.scene.beam import Beam, PointMass, PointSpring, TipMass
+from beamdyn.scene.damping import Damping
+from beamdyn.scene.motion import KINDS, Rotation
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
+from beamdyn.scene.profile import Table
+from beamdyn.scene.scene import Scene
+
+# Tables of the file -------------------------------------------------------------------------------
+
+
+# By kind, in the order of the list of motions
+ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if issubclass(made, Rotation)}
+_ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
+MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
+
+
+class _ChoosablePhysics(MadeSection):
+    """[physics], or the word "auto" in its place."""
+
+    auto: Annotated[
+        bool, Field(description="each analysis adds the effects whose size exceeds its tolerance")
+    ] = False
+
+    @cached_property
+    def core(self) -> Physics:
+        """The physics."""
+        with of_file(self.key_of):
+            given = self.made(**self.given)
+        if not self.auto:
+            return given
+        if given != Physics():
+            name = next(name for name, value in vars(given).items() if value != getattr(Physics(), name))
+            bound = "physics is auto: each analysis chooses the effects"
+            raise InvalidValue(f"physics.{name}", getattr(given, name), bound, "leave one of the two out")
+        return AUTO
+
+
+def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a scene, the word "auto" for its physics as the table that says the same."""
+    return tables | ({"physics": _auto_as_table(tables["physics"])} if "physics" in tables else {})
+
+
+def _auto_as_table(given: Any) -> Any:
+    """The word "auto" as the table that says the same."""
+    if isinstance(given, Mapping):
+        return given
+    if given != AUTO_NAME:
+        raise InvalidInput("", given, f'give "{AUTO_NAME}", or a table [physics]')
+    return {AUTO_NAME: True}
+
+
+def _in_a_list(key: str) -> BeforeValidator:
+    """A validator that refuses one table where there may be several."""
+
+    def refuse_one(given: Any) -> Any:
+        if isinstance(given, Mapping):
+            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets, one for each")
+        return given
+
+    return BeforeValidator(refuse_one)
+
+
+if TYPE_CHECKING:
+    _TipInput = _PointMassInput = _PointSpringInput = _MountInput = CoreSection
+    _MotionInput = _PhysicsInput = _DampingInput = CoreSection
+else:
+    _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
+    _PointSpringInput, _DampingInput = map(section_of, (PointSpring, Damping))
+    _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
+    _MotionInput = one_of_kinds(MOTIONS)
+
+
+class _BeamInput(CoreSection):
+    length: Annotated[float, Quantity("m", "L", "length", above=0)]
+    tip: _TipInput | None = None
+    breakpoints: list[Annotated[float, BREAKPOINT]] = []  # noqa: RUF012  (pydantic copies it)
+    stations: Annotated[
+        list[list[Any]] | None,
+        Field(
+            description="table of the sections: a row of heads such as x/L and twist [deg], then numbers, "
+            "a row a station; linear between stations, one given twice is a jump; or the name of a CSV file"
+        ),
+    ] = None
+    twist: Annotated[
+        Along | None,
+        Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
+    ] = None
+    point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
+    point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
+
+    @property
+    def _arguments(self) -> dict[str, Any]:
+        """What the constructors of `Beam` take."""
+        others = ("stations", "point_mass", "point_spring")
+        given = {name: value for name, value in self if value is not None and name not in others}
+        given = {name: _to_fractions(value, self.length) for name, value in given.items()}
+        points = {"point_masses": self.point_mass, "point_springs": self.point_spring}
+        made = {name: tuple(point.core for point in tables) for name, tables in points.items()}
+        return given | {"tip": self.tip and self.tip.core} | made
+
+
+class RectangularInput(_BeamInput):
+    """[beam]: a beam of rectangular section."""
+
+    width: Annotated[Along, Varying("m", "b", "width of the section", above=0)]
+    thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
+    youngs_modulus: Annotated[float, Quantity("Pa", "E", "Young's modulus", above=0)]
+    density: Annotated[float, Quantity("kg/m3", "rho", "density", above=0)]
+    poissons_ratio: Annotated[
+        float | None,
+        Quantity("", "nu", "Poisson's ratio, for shear", above=-1, most=0.5, remedy="steel has 0.3"),
+    ] = None
+
+    @cached_property
+    def core(self) -> Beam:
+        """The beam."""
+        with _of_stations(self.stations), _of_points():
+            return Beam.rectangular(**self._arguments)
+
+
+class StiffnessInput(_BeamInput):
+    """[beam]: a beam of any section, by its stiffness."""
+
+    mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
+    bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
+    axial_stiffness: Annotated[Along | None, Varying("N", "E A", "axial stiffness, for stretch", above=0)] = (
+        None
+    )
+    outer_fibre: Annotated[
+        Along | None,
+        Varying("m", "c", "distance of the outer fibre from the neutral axis, for strain", above=0),
+    ] = None
+    second_bending_stiffness: Annotated[
+        Along | None,
+        Varying("N m2", "E I2", "bending stiffness in the direction across, for two planes", above=0),
+    ] = None
+    shear_stiffness: Annotated[
+        Along | None, Varying("N", "kappa G A", "shear stiffness, for shear", above=0)
+    ] = None
+    second_shear_stiffness: Annotated[
+        Along | None,
+        Varying("N", "kappa G A2", "shear stiffness in the direction across; else as the first", above=0),
+    ] = None
+    rotary_inertia: Annotated[
+        Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
+    ] = None
+    second_rotary_inertia: Annotated[
+        Along | None,
+        Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0),
+    ] = None
+
+    @cached_property
+    def core(self) -> Beam:
+        """The beam."""
+        with _of_stations(self.stations), _of_points(), _naming_missing_key(StiffnessInput):
+            return Beam.from_stiffness(**self._arguments)
+
+
+def _to_fractions(given: Any, length: float) -> Any:
+    """The same with positions in metres turned into fractions of the length."""
+    if isinstance(given, Table):
+        return Table(_to_fractions(given.stations, length), given.values)
+    if isinstance(given, list | tuple):
+        # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
+        return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
+    return given
+
+
+@contextmanager
+def _of_points() -> Iterator[None]:
+    """Within it, what the core says about a point mass or spring is said of its table."""
+    try:
+        yield
+    except InvalidValue as error:
+        field = error.field.replace("point_masses[", "point_mass[")
+        raise replace(error, field=field.replace("point_springs[", "point_spring[")) from None
+
+
+@contextmanager
+def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
+    """Within it, a refusal for lack of a property says which key of the beam brings it."""
+    try:
+        yield
+    except InvalidValue as error:
+        if not error.other:
+            raise
+        key = error.other if error.other in beam.model_fields else "poissons_ratio"
+        raise replace(error, remedy=f"give beam.{key}") from None
+
+
+# A table of stations ------------------------------------------------------------------------------
+
+
+PLACES = {"x/L": Position(meaning="position"), "x": Position("m", meaning="position")}
+VARYING = {
+    entry.name: entry.quantity
+    for section in (RectangularInput, StiffnessInput)
+    for entry in describe(section)
+    if isinstance(entry.quantity, Varying)
+}
+
+
+def _with_columns(given: Any) -> Any:
+    """Add the columns of `stations` to the keys of the beam, each as the table of the property it names."""
+    if not isinstance(given, dict) or given.get("stations") is None:
+        return given
+    rows = given["stations"]
+    if isinstance(rows, str):
+        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        raise InvalidInput("stations", rows, f"{remedy}; only a scene in a file may name another file")
+    columns = read_columns("stations", rows, PLACES | VARYING)
+    places = [name for name in columns if name in PLACES]
+    if len(places) != 1 or len(columns) < 2:
+        remedy = 'give the position in one column, "x/L" or "x [m]", and properties in others'
+        raise InvalidInput("stations[0]", rows[0], remedy)
+    if twice := [name for name in columns if name in given]:
+        raise InvalidInput("stations[0]", rows[0], f"{twice[0]} is a key of its own, too; give it once")
+    x = tuple(columns.pop(places[0]))
+    return given | {name: Table(x, tuple(values)) for name, values in columns.items()}
+
+
+@contextmanager
+def _of_stations(rows: list[Any] | None) -> Iterator[None]:
+    """Within it, what the core says about a property's stations is said of the cells of the table."""
+    keys: dict[str, str] = {}
+    if rows:
+        place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in PLACES)
+        cells = {f"[{r - 1}]": f"stations[{r}][{place}]" for r in range(1, len(rows))}
+        for name in VARYING:
+            keys |= {f"{name}.stations": "stations", f"{name}.values": "stations"}
+            keys |= {f"{name}.stations{index}": cell for index, cell in cells.items()}
+    with of_file(keys):
+        yield
+
+
+def _own(section: type[Section]) -> list[str]:
+    return [name for name in section.model_fields if name not in _BeamInput.model_fields]
+
+
+def _kind_of_beam(given: Any) -> str:
+    keys = given.keys() if isinstance(given, dict) else set()
+    return "<stiffness>" if keys & set(_own(StiffnessInput)) else "<rectangular>"
+
+
+def _one_kind_of_beam(given: Any) -> Any:
+    keys = given.keys() if isinstance(given, dict) else set()
+    section, stiffness = ([k for k in _own(kind) if k in keys] for kind in (RectangularInput, StiffnessInput))
+    if section and stiffness:
+        raise ValueError(
+            f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
+            f"either by {', '.join(_own(RectangularInput))} or by {', '.join(_own(StiffnessInput))}"
+        )
+    return given
+
+
+BeamInput = Annotated[
+    Annotated[RectangularInput, Tag("<rectangular>")] | Annotated[StiffnessInput, Tag("<stiffness>")],
+    Discriminator(_kind_of_beam),
+    BeforeValidator(_one_kind_of_beam),
+    BeforeValidator(_with_columns),
+]
+
+
+class ModelInput(Section):
+    """[model]: what the model includes."""
+
+    damping_ratio: Annotated[
+        float,
+        Quantity("", "zeta", "modal damping ratio of every mode", least=0, below=1, remedy="1 % is 0.01"),
+    ] = Scene.damping_ratio
+    gravity: Annotated[float, Quantity("m/s2", "g", "gravity")] = Scene.gravity
+
+
+class SceneInput(CoreSection):
+    """A scene: the tables [beam], [mount], and where wanted [motion], [model], [damping] and [physics]."""
+
+    beam: BeamInput
+    mount: _MountInput
+    motion: _MotionInput | None = None
+    model: ModelInput = ModelInput()
+    damping: _DampingInput = _DampingInput()
+    physics: Annotated[_PhysicsInput, BeforeValidator(_auto_as_table)] = _PhysicsInput()
+
+    @cached_property
+    def core(self) -> Scene:
+        """The scene."""
+        motion = self.motion and self.motion.core
+        with _naming_missing_key(type(self.beam)):
+            made = {"physics": self.physics.core, "damping": self.damping.core}
+            return Scene(self.beam.core, self.mount.core, motion, **dict(self.model), **made)

@@ -1,0 +1,198 @@
+"""How many modes a linear model needs, and the error of what is computed with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
+from beamdyn.accuracy.refinement import refine
+from beamdyn.common.inputs.checks import InvalidValue, count, within
+from beamdyn.common.results.statements import Speeds, Words
+from beamdyn.linear.choice import model_at_speed, model_of_few_modes
+from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+
+Evaluation = Callable[[ModelAtSpeed], np.ndarray]
+
+_FIRST = 4  # modes of the first basis of "auto"
+_ACCURATE = 8  # modes for which its functions are chosen, at least
+_MOST = 40  # of the last
+_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
+_ROUNDING = 1e-12  # of the largest value
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A value with its error, of the model with enough modes.
+
+    Parameters
+    ----------
+    model : ModelAtSpeed
+        The model.
+    larger : ModelAtSpeed or None
+        The one with more modes, or all functions; None if the model has them all, or there is none.
+    value, error : ndarray
+        The value and its estimated error, of one shape.
+    truncation : float
+        Largest error by the modes left out.
+    method, compared_with : str
+        The model, and those that the error was estimated by.
+    """
+
+    model: ModelAtSpeed
+    larger: ModelAtSpeed | None
+    value: np.ndarray
+    error: np.ndarray
+    truncation: float
+    method: str
+    compared_with: str
+
+
+def evaluate_accurately(
+    scene: Scene,
+    speed: float,
+    top: float,
+    modes: int | str | None,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    evaluate: Evaluation,
+    most: int,
+) -> Refined:
+    """Evaluate with all functions where they are few, else with as many modes as the tolerance needs.
+
+    Parameters
+    ----------
+    scene, speed, discretization
+        As for `model_at_speed`.
+    top : float
+        Highest angular frequency at which the beam answers [rad/s], which the functions resolve.
+    modes : int, "auto" or None
+        Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
+        the tolerance; None: all functions.
+    tolerance : float
+        Truncation error aimed at, relative to the largest value.
+    evaluate : callable
+        The value by a model.
+    most : int
+        Number of functions up to which all are kept.
+    """
+    tolerance = within("tolerance", tolerance, 1e-14, 0.1)
+    if modes is None:
+        model = model_at_speed(scene, speed, None, discretization)
+        return _with_error(model, evaluate(model), None, evaluate)
+    if not (isinstance(modes, str) and modes == "auto"):
+        size = count("modes", modes, remedy='or "auto", or None, which keeps all functions')
+        model = model_at_speed(scene, speed, size, discretization)
+        larger = _all_of(model, most) or _larger(model, discretization)
+        return _with_error(model, evaluate(model), larger, evaluate)
+    model = _resolving(scene, speed, top, discretization)
+    if (whole := _all_of(model, most)) is not None:
+        return _with_error(whole, evaluate(whole), None, evaluate)
+    few = replace(model, modes=min(_FIRST, model.modes or _FIRST))
+    return _add_modes(few, tolerance, discretization, evaluate)
+
+
+def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
+    """Another value by the models of one that is refined, with its error."""
+    return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
+
+
+def _resolving(scene: Scene, speed: float, top: float, discretization: DiscretizationChoice) -> ModelAtSpeed:
+    """The model with functions for modes up to an angular frequency [rad/s], within limits."""
+
+    def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
+        return modes, model_of_few_modes(scene, speed, modes, discretization)
+
+    def of_more(found: tuple[int, ModelAtSpeed]) -> tuple[int, ModelAtSpeed] | None:
+        largest = not isinstance(discretization, str) or found[0] >= _MOST
+        return None if largest else of_modes(min(_MOST, 2 * found[0]))
+
+    return refine(of_modes(_ACCURATE), of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
+
+
+def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
+    """The model with all functions, unless they are many or some have no mass of their own."""
+    whole = replace(model, modes=None)
+    if whole.equations.size > most:
+        return None
+    values = np.linalg.eigvalsh(whole.M)
+    return whole if values[0] > _MASSLESS * values[-1] else None
+
+
+class _Doubled(NamedTuple):
+    """A value by a model, and by the one with twice as many modes, if there is one."""
+
+    model: ModelAtSpeed
+    value: np.ndarray
+    larger: ModelAtSpeed | None
+    finer: np.ndarray | None
+
+    def settles(self, share: float) -> bool:
+        """Whether more modes change the value by at most a share of the largest."""
+        if self.finer is None:
+            return False
+        return bool(np.abs(self.finer - self.value).max() <= share * np.abs(self.finer).max())
+
+
+def _add_modes(
+    model: ModelAtSpeed, tolerance: float, discretization: DiscretizationChoice, evaluate: Evaluation
+) -> Refined:
+    """Add modes until the error meets the tolerance."""
+
+    def doubled(model: ModelAtSpeed, value: np.ndarray) -> _Doubled:
+        larger = _larger(model, discretization)
+        return _Doubled(model, value, larger, None if larger is None else evaluate(larger))
+
+    def of_more(found: _Doubled) -> _Doubled | None:
+        if found.larger is None or found.finer is None or (found.larger.modes or 0) >= _MOST:
+            return None
+        return doubled(found.larger, found.finer)
+
+    first = doubled(model, evaluate(model))
+    found = refine(first, of_more, lambda found: found.settles(tolerance / LINEAR_MODES.factor))
+    return _with_error(found.model, found.value, found.larger, evaluate, found.finer)
+
+
+def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
+    """The model with twice as many modes; None if the discretization has too few."""
+    assert model.modes is not None
+    modes, coarser = 2 * model.modes, model.model.coarser.equations
+    if all(len(coarser.places(names)) >= modes for names in coarser.coupled):
+        return replace(model, modes=modes)
+    if not isinstance(discretization, str):
+        return None
+    try:
+        return model_at_speed(model.scene, model.speed, modes, discretization)
+    except InvalidValue:
+        return None
+
+
+def _with_error(
+    model: ModelAtSpeed,
+    value: np.ndarray,
+    larger: ModelAtSpeed | None,
+    evaluate: Evaluation,
+    finer: np.ndarray | None = None,
+) -> Refined:
+    """The value, with its distance from that of more modes and of a coarser discretization."""
+    coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
+    rounding = _ROUNDING * np.abs(
+        value
+    ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
+    error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
+    truncation, compared = np.zeros(()), [str(coarse.discretization)]
+    if model.modes is not None and larger is None:
+        truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
+    elif larger is not None:
+        finer = evaluate(larger) if finer is None else finer
+        more = "all functions" if larger.modes is None else f"{larger.modes} modes"
+        truncation, compared = LINEAR_MODES.factor * np.abs(finer - value), [*compared, more]
+    kept = ("all functions",) if model.modes is None else (f"{model.modes} modes at ", Speeds(model.speed))
+    method = Words(f"{model.discretization}, ", *kept)
+    largest = float(np.max(truncation))
+    return Refined(model, larger, value, error + truncation, largest, method, ", ".join(compared))

@@ -1,0 +1,240 @@
+"""Response over frequency at a steady speed: deflection, acceleration, moment or strain by one excitation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.linear.choice import check_linear, with_forces
+from beamdyn.linear.convergence import Refined, evaluate_accurately
+from beamdyn.linear.excitations import Excitation, as_excitation
+from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.linear.observations import Observation, as_observation
+from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
+from beamdyn.linear.transfer import check_stable, transfer
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_left_out
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2 * np.pi
+_HIGHEST = 1e12  # frequency [Hz], with which atoms vibrate
+_DIRECT = 300  # functions up to which all are kept: some milliseconds a frequency
+
+
+@dataclass(frozen=True)
+class FrequencyResponse(Result):
+    """Response to a harmonic excitation at a steady speed, over frequency.
+
+    An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
+    the rotation, of n turns per second: one, h = 0, unless the excitation has a fixed direction.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    frequencies : ndarray, shape (F,)
+        Frequencies f of the excitation [Hz].
+    response : ndarray of complex, shape (F, k)
+        H at each frequency for each harmonic [unit of the output per unit of the input].
+    harmonics : ndarray of int, shape (k,)
+        The harmonics h: 0, or -1 and 1.
+    error : ndarray, shape (F, k)
+        Estimated error of the response [same unit]: its distance from that of more modes and of a coarser
+        discretization, each with a margin.
+    peaks : beamdyn.linear.resonance_peaks.ResonancePeaks
+        Peaks between the lowest and the highest frequency, also between those given: `frequency`, `size`,
+        half-power `bandwidth`, and their errors.
+    input, output : str
+        The excitation and what is observed, with units.
+    unit : str
+        Unit of the response.
+    warnings : tuple of str
+        Limitations of the result.
+    provenance : Provenance
+        How the response was computed.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 50.0, np.geomspace(10, 200, 20))
+    >>> found.input, found.output, found.response.shape
+    ('base acceleration, bending [m/s2]', 'deflection at the tip [m]', (20, 1))
+    """
+
+    speed: float
+    frequencies: np.ndarray
+    response: np.ndarray
+    harmonics: np.ndarray
+    error: np.ndarray
+    peaks: ResonancePeaks
+    input: str
+    output: str
+    unit: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        at, size = self.peak
+        names = [text.partition(" [")[0] for text in (self.output, self.input)]
+        yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"
+        yield from (error_at_most(self.error), warned(self.warnings), " by ".join(names))
+
+    @property
+    def response_frequencies(self) -> np.ndarray:
+        """Frequencies at which the beam answers [Hz], shape (F, k); negative ones turn backwards."""
+        return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Frequency of the excitation [Hz] and magnitude of the largest response, peaks included."""
+        found = [(size.max(), f[size.argmax()]) for f, size in map(self._curve, range(len(self.harmonics)))]
+        size, at = max(found)
+        return float(at), float(size)
+
+    def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies of the excitation, given and at the peaks of a harmonic, and magnitudes there."""
+        own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
+        f = np.concatenate([self.frequencies, self.peaks.frequency[own]])
+        size = np.concatenate([np.abs(self.response[:, column]), self.peaks.size[own]])
+        order = np.argsort(f, kind="stable")
+        return f[order], size[order]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
+        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+
+        labels = [_label(h) for h in self.harmonics.tolist()]
+        value = f"{self.output.partition(' [')[0]} [{self.unit}]"
+        curves = [self._curve(k) for k in range(len(labels))]
+        return plot_frequency_response(curves, value, labels, ax)
+
+
+def _label(harmonic: int) -> str:
+    """What a harmonic of the rotation is, in the legend of a picture; empty if there is one only."""
+    return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
+
+
+@announced_of_plain_beam
+def frequency_response(
+    scene: Scene,
+    speed: float,
+    frequencies: Sequence[float] | np.ndarray,
+    input: Excitation | str = "bending",
+    output: Observation | str = "tip",
+    modes: int | str | None = "auto",
+    tolerance: float = 1e-9,
+    discretization: DiscretizationChoice = "ritz",
+) -> FrequencyResponse:
+    """Compute the response to a harmonic excitation at a steady speed, over frequency.
+
+    Small motions of the straight beam in the modes at the speed, with the static deflection of what these
+    leave out.  The parametric term is left out: an acceleration along the beam varies its stiffness, which
+    answers at other frequencies, too; `random_response` states its size.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    frequencies : sequence of float
+        Frequencies of the excitation [Hz], ascending from 0 or more, to 1e12.
+    input : BaseMotion, PointForce or str
+        What drives the beam.  A word may stand for it: "bending", "across", "n1", "n2" and "n3" are
+        accelerations of the base [m/s2], "tip force" and "tip force across" are forces [N].
+    output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        What is observed.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
+        "root strain".
+    modes : int, "auto" or None
+        Number of modes at the speed of each set of coupled fields; "auto": all functions of the
+        discretization up to 300 of them, else the fewest modes with which the truncation error meets the
+        tolerance; None keeps all functions.
+    tolerance : float
+        Truncation error aimed at by "auto", relative to the largest response.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    FrequencyResponse
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, the speed is past the critical speed, or an undamped beam is
+        excited at a natural frequency.
+
+    References
+    ----------
+    Modes with the residual flexibility of all others: Craig and Kurdila (2006), Fundamentals of Structural
+    Dynamics, section 11.4.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 50.0, [20.0, 200.0], input="n2", output="root strain")
+    >>> found.response.shape, found.unit  # answers at f - n and f + n
+    ((2, 2), '1 per m/s2')
+    """
+    start = perf_counter()
+    given = ascending("frequencies", frequencies)
+    refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
+    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit}", limit=_HIGHEST)
+    drive, seen = as_excitation("input", input), as_observation("output", output)
+    scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+
+    def evaluate(model: ModelAtSpeed) -> np.ndarray:
+        return transfer(model, drive, seen, given)[1]
+
+    top = _TURN * float(given[-1]) + abs(speed)
+    refined: Refined = evaluate_accurately(
+        with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
+    )
+    check_stable(refined.model)
+    harmonics, _ = transfer(refined.model, drive, seen, given[:1])
+    if not np.isfinite(refined.value).all():
+        bad = given[~np.isfinite(refined.value).all(axis=1)][0]
+        bound = "an undamped beam has no finite response at a natural frequency"
+        raise BeyondModel("frequencies", float(bad), bound, "give damping, or another frequency", "Hz")
+    return FrequencyResponse(
+        speed=speed,
+        frequencies=given,
+        response=refined.value,
+        harmonics=harmonics,
+        error=refined.error,
+        peaks=find_peaks(refined.model, refined.larger, drive, seen, (float(given[0]), float(given[-1]))),
+        input=f"{drive.label} [{drive.unit}]",
+        output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
+        unit=f"{seen.unit or '1'} per {drive.unit}",
+        warnings=(*_warnings(scene, tolerance, modes, refined),),
+        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        scene=scene,
+    )
+
+
+def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: Refined) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
+    yield from warn_of_rotation(refined.model.model, refined.model.speed)
+    if not scene.is_damped:
+        yield "there is no damping: near natural frequencies the response is that of no real beam"
+    largest = np.abs(refined.value).max()
+    if isinstance(modes, str) and refined.truncation > tolerance * largest:
+        yield (
+            f"tolerance = {tolerance:g} is not reached: the estimated error by the modes left out is "
+            f"{refined.truncation / largest:.1g} of the largest response"
+        )

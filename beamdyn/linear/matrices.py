@@ -1,0 +1,289 @@
+"""Matrices of the equations of motion at a steady speed, with what each row and coordinate means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, several
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.statements import GROWING, Speeds, Statement
+from beamdyn.equations.directions import check_direction
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.linear.choice import check_linear, model_at_speed, with_forces
+from beamdyn.linear.excitations import BaseMotion, Excitation, PointForce, as_excitation
+from beamdyn.linear.free_motion import free_motion
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear.pole_errors import pole_errors
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.scene.direction import ACROSS
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_left_out
+
+_NODAL = 1e-9  # by which a nodal value may differ from 1
+_FEW = 5  # modes, of which the lowest loses its stability first
+
+
+@dataclass(frozen=True)
+class Matrices(Result):
+    """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
+
+    Rotating axes, a fixed centre of the carrier, and no gravity.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    mass : ndarray, shape (n, n)
+        M, symmetric [unit of the row / (unit of the coordinate / s2)].
+    damping : ndarray, shape (n, n)
+        C, symmetric [unit of the row / (unit of the coordinate / s)].
+    gyroscopic : ndarray, shape (n, n)
+        G at this speed, skew [as C].
+    stiffness : ndarray, shape (n, n)
+        K at this speed: elastic, with centrifugal stiffening and spin softening
+        [unit of the row / unit of the coordinate].
+    stiffness_by_axial_acceleration : ndarray, shape (n, n)
+        What K loses for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
+        the parametric term of translation and gravity [unit of K / (m/s2)].
+    static_load : ndarray, shape (n,)
+        f, the load by the steady rotation [units of the rows].
+    input_matrix : ndarray, shape (n, k)
+        B: load by a unit of each input [unit of the row / unit of the input].
+    inputs : tuple of str
+        The inputs u, with units.
+    coordinates, rows : tuple of str
+        What each coordinate q and each equation is, with units.
+    error : ndarray, shape (2 n,)
+        Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
+        discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
+    warnings : tuple of str
+        What limits the validity of the matrices.
+    provenance : Provenance
+        How the matrices were computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+    >>> found.mass.shape, len(found.coordinates)
+    ((3, 3), 3)
+    """
+
+    speed: float
+    mass: np.ndarray
+    damping: np.ndarray
+    gyroscopic: np.ndarray
+    stiffness: np.ndarray
+    stiffness_by_axial_acceleration: np.ndarray
+    static_load: np.ndarray
+    input_matrix: np.ndarray
+    inputs: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    rows: tuple[str, ...]
+    error: np.ndarray
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    equations: Equations = field(repr=False)
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
+        yield counted(len(self.inputs), "input")
+        yield f"lowest pole: {error_at_most(self.error[:1])}"
+        yield warned(self.warnings)
+
+    @property
+    def poles(self) -> np.ndarray:
+        """Poles of the equations: the eigenvalues of the state matrix at this speed.
+
+        An imaginary part is a natural frequency [rad/s], a real part the rate of growth, negative where free
+        motion decays; without damping they come in pairs +-i lambda, within rounding.
+
+        Returns
+        -------
+        ndarray of complex, shape (2 n,)
+            Poles [1/s] in ascending order of their magnitude.  Those of coordinates without mass, as of shear
+            without rotary inertia, are infinite.
+
+        Examples
+        --------
+        >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+        >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+        >>> (np.abs(found.poles[::2].imag) / (2 * np.pi)).round(2)  # Hz
+        array([  61.96,  406.33, 1142.13])
+        """
+        return free_motion(self.mass, self.damping + self.gyroscopic, self.stiffness).poles
+
+    def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
+        """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
+
+        The direction is 0 for that of the bending angle, 1 for that across.
+
+        Raises
+        ------
+        ValueError
+            If a position is not on the beam.
+        """
+        positions, length = real_array("x", x), self.scene.beam.length
+        bound, remedy = "it must be on the beam, from 0 to {limit}", "it is the distance from the root"
+        off = (positions < 0) | (positions > length * (1 + 1e-12))
+        refuse(off, "x", positions, "m", bound, remedy, limit=length)
+        xi = np.minimum(positions / length, 1.0)
+        return self.equations.deflection(xi, direction=check_direction(direction)).T
+
+
+@announced_of_plain_beam
+def matrices(
+    scene: Scene,
+    speed: float,
+    modes: int | None = None,
+    discretization: DiscretizationChoice = "ritz",
+    inputs: Sequence[Excitation | str] | None = None,
+) -> Matrices:
+    """Give the matrices of the equations of motion at a steady speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    modes : int, optional
+        Number of modes of each set of coupled fields, without damping and at this speed, as coordinates;
+        all functions of the discretization if not given.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    inputs : sequence of BaseMotion, PointForce or str, optional
+        Columns of the input matrix: see `frequency_response`.  If not given, the acceleration of the base
+        and a force at the tip in each direction in which the beam bends.
+
+    Returns
+    -------
+    Matrices
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or an input is periodic at this speed.
+
+    References
+    ----------
+    Lee and Yoo (2019), eq. (14), corrected; section Equations of docs/conventions.md.
+
+    Examples
+    --------
+    >>> from scipy.linalg import eigh
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.matrices(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=3)
+    >>> (np.sqrt(eigh(found.stiffness, found.mass)[0]) / (2 * np.pi)).round(2)  # Hz
+    array([  61.96,  406.33, 1142.13])
+    """
+    start = perf_counter()
+    scene, speed = check_linear(scene, speed, modes)
+    given = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, given), speed, modes, discretization)
+    equations, pencil = model.equations, model.pencil
+    kept = "all functions" if modes is None else f"{modes} modes at {speed:.6g} rad/s"
+    axial = equations.matrices[0].get("root_axial", np.zeros_like(pencil.M))
+    coordinates = (*_name_coordinates(model),)
+    return Matrices(
+        speed=speed,
+        mass=model.M,
+        damping=pencil.C,
+        gyroscopic=speed * pencil.G,
+        stiffness=model.K,
+        stiffness_by_axial_acceleration=-axial,
+        static_load=speed**2 * pencil.f2,
+        input_matrix=np.column_stack([steady_drive(model, each).load for each in given]),
+        inputs=tuple(f"{each.label} [{each.unit}]" for each in given),
+        coordinates=coordinates,
+        rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
+        error=pole_errors(model),
+        warnings=(*warn_of_model(model),),
+        provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
+        equations=equations,
+        scene=scene,
+    )
+
+
+def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
+    """Yield what limits the validity of the equations at the speed, in the words of natural modes there."""
+    yield from warn_of_left_out(model.scene)
+    growing = _growing(model)
+    if growing:
+        end = f": {growing} mode(s) grow; see poles"
+        yield Statement("unstable at ", Speeds(model.speed), end, kind=GROWING)
+    yield from warn_of_rotation(model.model, model.speed)
+
+
+def _growing(model: ModelAtSpeed) -> int:
+    """How many of the lowest modes grow."""
+    solver = model.model.solver
+    found = solver.solve(np.array([model.speed]), min(model.modes or _FEW, solver.size))
+    return int((np.real(found.eigenvalue) > 0).sum())
+
+
+def listed(name: str, given: Any) -> tuple[Any, ...]:
+    """The members of a sequence, of which there is one at least."""
+    members = several(name, given, object)
+    if not members:
+        raise InvalidValue(name, given, "it is empty", "give one at least, or leave it out")
+    return members
+
+
+def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
+    """The excitations of a request, or the usual ones of a scene."""
+    if given is not None:
+        return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
+    usual: list[Excitation] = [BaseMotion(), PointForce()]
+    return usual if scene.physics.planes == 1 else [*usual, BaseMotion(ACROSS), PointForce(None, ACROSS)]
+
+
+def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
+    """Load of an excitation that is none of the rotating ones, which a model of constant matrices has not."""
+    drives = model.drives(excitation)
+    bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
+    refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
+    return drives[0]
+
+
+def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
+    """What each coordinate is: a mode, a nodal value, or the coefficient of a function."""
+    for name, place in model.equations.blocks.items():
+        size = place.stop - place.start
+        if model.modes is not None:
+            yield from (f"{name}, mode {k} [kg^1/2 m]" for k in range(1, size + 1))
+        else:
+            yield from _name_functions(model, name, size)
+
+
+def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator[str]:
+    """What each coordinate of a field is: a deflection or a slope at a node, or else a coefficient."""
+    deflection = model.equations.deflections.get(field_name)
+    nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
+    nodal: list[np.ndarray] = []
+    if nodes is not None and deflection is not None:
+        nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)]
+    for k in range(size):
+        at = [(order, int(values[k].argmax())) for order, values in enumerate(nodal) if _is_nodal(values[k])]
+        if nodes is None or not at:
+            yield f"{field_name}, coefficient of function {k + 1} [m]"
+            continue
+        (order, node), what = at[0], ("deflection", "slope by x/L")
+        yield f"{field_name}, {what[order]} at {nodes[node] * model.scene.beam.length:.6g} m [m]"
+
+
+def _is_nodal(values: np.ndarray) -> bool:
+    """Whether a function is 1 at one node and 0 at the others."""
+    return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1

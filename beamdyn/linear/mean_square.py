@@ -1,0 +1,167 @@
+"""Mean squares of responses to random inputs, by partial fractions of the transfer function.
+
+With H(s) = d + sum r_k / (s - p_k), on the imaginary axis
+
+    |H|^2 = |d|^2 + 2 Re sum c_k / (s - p_k),    c_k = r_k conj(H)(p_k),
+
+where conj(H)(s) = conj(d) + sum conj(r_j) / (-s - conj(p_j)).  So the integral of |H|^2 S over a piece on
+which S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 pi i).  Where mu_k is near,
+
+    int S / (f - mu) df = S(mu) log((b - mu) / (a - mu)) + int (S(f) - S(mu)) / (f - mu) df,
+
+whose last integrand is smooth: resonances, however sharp, are integrated in closed form.  The mean square by
+white noise is half its density times the sum of the c_k.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.linear.free_motion import FreeMotion
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear.observations import Observation, StrainAtRoot
+from beamdyn.linear.spectra import PowerSpectrum, SpectrumPiece
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_NEAR = 1.5  # distance of a pole from a piece, over its length, below which it is integrated apart
+_UNDAMPED = 1e-12  # decay rate of a pole over its size, that is rounding
+
+
+@dataclass(frozen=True)
+class PartialFractions:
+    """A transfer function H(s) = d + sum r_k / (s - p_k).
+
+    Parameters
+    ----------
+    direct : complex
+        d.
+    residues, poles : ndarray of complex, shape (m,)
+        r_k, and p_k [1/s], in the left half-plane.
+    """
+
+    direct: complex
+    residues: np.ndarray
+    poles: np.ndarray
+
+    def __call__(self, s: np.ndarray) -> np.ndarray:
+        """Evaluate at s [1/s]."""
+        return self.direct + (self.residues / (np.asarray(s)[..., None] - self.poles)).sum(axis=-1)
+
+    @property
+    def of_square(self) -> np.ndarray:
+        """Coefficients c_k (m,) of |H|^2."""
+        between = -self.poles[:, None] - np.conj(self.poles)
+        return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
+
+    def through_filter(self, delay: float) -> PartialFractions:
+        """The same divided by 1 + s delay."""
+        pole = -1 / delay
+        passed = self.residues / (1 + self.poles * delay)
+        residue = complex(self(np.array(pole)) / delay)
+        return PartialFractions(0.0, np.append(passed, residue), np.append(self.poles, pole))
+
+    def mean_square(self, spectrum: PowerSpectrum, shift: float = 0.0) -> float:
+        """Integral over f of a one-sided density times |H|^2 at f plus a shift [Hz]."""
+        integrals = pole_integrals(spectrum, self.poles / (2j * np.pi) - shift)
+        of_poles = (self.of_square / (2j * np.pi)) @ integrals.by_pole
+        return abs(self.direct) ** 2 * integrals.whole + 2 * float(np.real(of_poles))
+
+    def mean_square_of_white(self, density: float) -> float:
+        """Mean square by white noise of a one-sided density at all frequencies, without d."""
+        proper = PartialFractions(0.0, self.residues, self.poles)
+        return density / 2 * float(np.real(proper.of_square.sum()))
+
+
+@dataclass(frozen=True)
+class PoleIntegrals:
+    """Integrals over f of g(f) S(f), with a density S and a weight g.
+
+    Parameters
+    ----------
+    whole : float
+        Of g S.
+    by_pole : ndarray of complex, shape (m,)
+        Of g S / (f - mu_k).
+    """
+
+    whole: float
+    by_pole: np.ndarray
+
+
+def pole_integrals(
+    spectrum: PowerSpectrum, mu: np.ndarray, shift: float = 0.0, order: int = 0
+) -> PoleIntegrals:
+    """Integrate a density with the weight (2 pi (f + shift))^order and simple poles.
+
+    Parameters
+    ----------
+    spectrum : PowerSpectrum
+        The density.
+    mu : ndarray of complex, shape (m,)
+        Poles [Hz], none of them real.
+    shift : float
+        How far the response is from the input [Hz].
+    order : int
+        0 for mean squares of the response, 2 for those of its rate.
+    """
+
+    def weighted(piece: SpectrumPiece, f: np.ndarray) -> np.ndarray:
+        return piece(f) * (2 * np.pi * (f + shift)) ** order
+
+    whole, by_pole = 0.0, np.zeros(len(mu), dtype=complex)
+    for piece in (part for each in spectrum.pieces() for part in each.divided()):
+        half = (piece.end - piece.start) / 2
+        f, w = (piece.start + piece.end) / 2 + half * _POINTS, half * _WEIGHTS
+        S = weighted(piece, f)
+        near = np.abs(mu - np.clip(np.real(mu), piece.start, piece.end)) < _NEAR * 2 * half
+        whole += float(w @ S)
+        by_pole[~near] += (w * S) @ (1 / (f[:, None] - mu[~near]))
+        at_pole = weighted(piece, mu[near])
+        smooth = w @ ((S[:, None] - at_pole) / (f[:, None] - mu[near]))
+        by_pole[near] += smooth + at_pole * np.log((piece.end - mu[near]) / (piece.start - mu[near]))
+    return PoleIntegrals(whole, by_pole)
+
+
+def damped_motion(model: ModelAtSpeed) -> FreeMotion:
+    """Free motion of a model of which every mode decays.
+
+    Raises
+    ------
+    InvalidValue
+        If a mode is not damped: its mean square is not finite.
+    """
+    inverse = model.free_motion.inverse_poles
+    if (np.real(inverse) > -_UNDAMPED * np.abs(inverse)).any():
+        bound = "a mode is not damped, and its mean square grows without limit"
+        raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
+    return model.free_motion
+
+
+def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
+    """Residues (n, m) at the poles of the coordinates' answer to a load (n,)."""
+    return -free.poles * free.shapes * free.shares(load[:, None])[:, 0]
+
+
+def partial_fractions(
+    model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation
+) -> PartialFractions:
+    """Expand the transfer function of one drive.
+
+    What an acceleration gains by the modes left out, s^2 times their static deflection, is not in it.
+
+    Raises
+    ------
+    InvalidValue
+        If a mode is not damped: its mean square is not finite.
+    """
+    free, pushed = damped_motion(model), np.linalg.solve(model.M, drive.load)
+    q, poles = residues(free, drive.load), free.poles
+    row, extra = model.row(observation), model.residual(observation, drive)
+    seen = row.position @ q + poles * (row.velocity @ q) + poles**2 * (row.acceleration @ q)
+    fractions = PartialFractions(complex(row.acceleration @ pushed + extra[0]), seen, poles)
+    delay = model.scene.damping.stiffness_factor
+    filtered = isinstance(observation, StrainAtRoot) and delay
+    return fractions.through_filter(delay) if filtered else fractions

@@ -1,0 +1,248 @@
+"""The linear equations of a scene at one steady speed, in modes at that speed and with what they leave out.
+
+The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
+functions of the discretization.  What modes leave out follows a slow excitation without delay: its static
+deflection is that of all functions minus that of the modes, the residual flexibility (Craig and Kurdila,
+Fundamentals of Structural Dynamics (2006), section 11.4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.equations.fields.transverse import plane_components
+from beamdyn.equations.root_moment import RootMoment, StaticLoad, root_moment, static_moment
+from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
+from beamdyn.linear.excitations import Accelerations, Excitation
+from beamdyn.linear.free_motion import FreeMotion, free_motion
+from beamdyn.linear.observations import AccelerationAt, DeflectionAt, Observation, StrainAtRoot
+from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
+from beamdyn.modes.modal.model import Model
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class HarmonicDrive:
+    """Load and feedthrough of an excitation at one harmonic of the rotation, per unit of the input.
+
+    Parameters
+    ----------
+    load : ndarray, shape (n,)
+        Right-hand side of the equations.
+    residual : ndarray, shape (N,)
+        Static deflection beyond that of the kept coordinates, over all functions.
+    accelerations : dict of str to complex
+        Accelerations of the root.
+    force : tuple of (float, int), optional
+        Position x/L and direction of a unit force.
+    """
+
+    load: np.ndarray
+    residual: np.ndarray
+    accelerations: Accelerations
+    force: tuple[float, int] | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """An output as a linear function of coordinates, velocities, accelerations, and of one drive.
+
+    Parameters
+    ----------
+    position, velocity, acceleration : ndarray, shape (n,)
+        Output per unit of the coordinates and of their time derivatives.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+
+@dataclass(frozen=True)
+class ModelAtSpeed(FieldsOnly):
+    """Linear equations M q'' + C q' + K q = f of a scene at one steady speed.
+
+    Parameters
+    ----------
+    model : Model
+        The discretized scene.
+    speed : float
+        Speed [rad/s].
+    modes : int or None
+        Number of modes of each set of coupled fields; None for all functions.
+    """
+
+    model: Model
+    speed: float
+    modes: int | None
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.model.scene
+
+    @property
+    def discretization(self) -> Discretization:
+        """The discretization."""
+        return self.model.discretization
+
+    @cached_property
+    def equations(self) -> Equations:
+        """Equations in the kept coordinates."""
+        if self.modes is None:
+            return self.model.equations
+        return reduce_to_modes(self.model.equations, ModalBasis(self.modes, (self.speed,)))
+
+    @cached_property
+    def pencil(self) -> SteadyPencil:
+        """Matrices of the kept coordinates, as polynomials of the speed."""
+        return self.equations.steady()
+
+    @property
+    def M(self) -> np.ndarray:
+        """Mass, shape (n, n)."""
+        return self.pencil.M
+
+    @cached_property
+    def C(self) -> np.ndarray:
+        """Damping and gyroscopic matrix together, shape (n, n)."""
+        return self.pencil.C + self.speed * self.pencil.G
+
+    @cached_property
+    def K(self) -> np.ndarray:
+        """Stiffness, shape (n, n)."""
+        return self.pencil.K0 + self.speed**2 * self.pencil.K2
+
+    @cached_property
+    def shapes(self) -> np.ndarray:
+        """Coordinates of all functions (N,) per unit of each kept one: shape (N, n)."""
+        full, kept = self.model.equations, self.equations
+        shapes = np.zeros((full.size, kept.size))
+        for name, shape in kept.shapes.items():
+            shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
+        return shapes
+
+    @cached_property
+    def free_motion(self) -> FreeMotion:
+        """Poles and shapes of free motion."""
+        return free_motion(self.M, self.C, self.K)
+
+    # Inputs -----------------------------------------------------------------------------------------
+
+    def drives(self, excitation: Excitation) -> dict[int, HarmonicDrive]:
+        """Loads of an excitation, by harmonic of the rotation."""
+        accelerations = excitation.accelerations(self.scene.mount, self.speed)
+        return {h: self._drive(given, excitation) for h, given in accelerations.items()}
+
+    def _drive(self, accelerations: Accelerations, excitation: Excitation) -> HarmonicDrive:
+        full = self.model.equations
+        force = excitation.force(self.scene.beam)
+        load: np.ndarray = np.zeros(full.size, dtype=complex)
+        for quantity, value in accelerations.items():
+            load += value * full.vectors.get(quantity, np.zeros(full.size))
+        if force is not None:
+            self._check_direction("input", force[1])
+            load += full.deflection(np.array(force[:1]), direction=force[1])[:, 0]
+        load = load if np.imag(load).any() else np.real(load)
+        if not load.any():
+            bound = "it does not load the beam: it acts along it, or in a direction in which it is rigid"
+            raise InvalidValue("input", excitation.label, bound, "model both planes, or turn the beam")
+        return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
+
+    def _residual(self, load: np.ndarray) -> np.ndarray:
+        """Static deflection of all functions under a load, minus that of the kept coordinates."""
+        if self.modes is None:
+            return np.zeros_like(load)
+        of_all = np.linalg.solve(self._full_stiffness, load)
+        return of_all - self.shapes @ np.linalg.solve(self.K, self.shapes.T @ load)
+
+    @cached_property
+    def _full_stiffness(self) -> np.ndarray:
+        pencil = self.model.equations.steady()
+        return pencil.K0 + self.speed**2 * pencil.K2
+
+    def _check_direction(self, name: str, direction: int) -> None:
+        bound, remedy = "in the direction across, a beam of one plane is rigid", "give physics.planes = 2"
+        if direction >= self.equations.planes:
+            raise InvalidValue(name, "across", bound, remedy)
+
+    # Outputs ----------------------------------------------------------------------------------------
+
+    def row(self, observation: Observation) -> Row:
+        """An output by the kept coordinates."""
+        if isinstance(observation, DeflectionAt):
+            return self._row_at(observation, self.equations)
+        zero = np.zeros(self.equations.size)
+        moment, factor = self._moment, self._per_moment(observation)
+        position, velocity = (self._at_speed(rows, zero) for rows in (moment.position, moment.velocity))
+        return Row(factor * position, factor * velocity, zero)
+
+    def residual(self, observation: Observation, drive: HarmonicDrive) -> np.ndarray:
+        """What the static deflection beyond the kept coordinates adds to an output: shape (3,).
+
+        Per unit of the input, and of its first and second time derivative.
+        """
+        if isinstance(observation, DeflectionAt):
+            row = self._row_at(observation, self.model.equations)
+            added = np.array([x @ drive.residual for x in (row.position, row.velocity, row.acceleration)])
+            if isinstance(observation, AccelerationAt):
+                name = ("root_transverse", "root_across")[observation.place(self.scene.beam)[1]]
+                added = added + np.array([drive.accelerations.get(name, 0.0), 0.0, 0.0])
+            return added
+        kept = np.linalg.solve(self.K, drive.load)
+        deflection = drive.residual + self.shapes @ kept
+        load = StaticLoad(drive.accelerations, drive.force, deflection)
+        total = static_moment(self.scene, self.discretization, self.model.equations, self._root, load)
+        by_kept = self._at_speed(self._moment.position, np.zeros_like(kept)) @ kept
+        return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
+
+    def _row_at(self, observation: DeflectionAt, equations: Equations) -> Row:
+        xi, direction = observation.place(self.scene.beam)
+        self._check_direction("output", direction)
+        each = [equations.deflection(np.array([xi]), direction=i)[:, 0] for i in range(equations.planes)]
+        zero = np.zeros(equations.size)
+        if not isinstance(observation, AccelerationAt):
+            return Row(each[direction], zero, zero)
+        pull, turn = self._carried(direction)
+        position = sum((p * w for p, w in zip(pull, each, strict=False)), zero)
+        return Row(position, sum((t * w for t, w in zip(turn, each, strict=False)), zero), each[direction])
+
+    def _carried(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
+        """Acceleration along a direction by unit deflections, and velocities, in both: each of shape (2,).
+
+        Carrier: -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
+        other direction, with S the sine of the precone.
+        """
+        (d, n), (_, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
+        pull = -(self.speed**2) * (d[direction] * np.array(d) + sine**2 * n[direction] * np.array(n))
+        turn = np.zeros(2)
+        turn[1 - direction] = 2 * self.speed * sine * (1 if direction == 0 else -1)
+        return pull, turn
+
+    @cached_property
+    def _moment(self) -> RootMoment:
+        return root_moment(self.scene, self.discretization, self.equations)
+
+    def _per_moment(self, observation: Observation) -> float:
+        return observation.per_moment(self.scene.beam) if isinstance(observation, StrainAtRoot) else 1.0
+
+    def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
+        """Sum of rows by the quantities of the root's motion at the speed."""
+        root, total = self._root, zero
+        for quantity, row in by_quantity.items():
+            total = total + float(getattr(root, quantity)) * row
+        return total
+
+    @cached_property
+    def _root(self) -> RootMotion:
+        return root_motion(self.scene.mount, MotionSample.steady(self.speed))

@@ -1,0 +1,278 @@
+"""Response to a random input at a steady speed: power spectral density and root mean square."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.linear.choice import check_linear, with_forces
+from beamdyn.linear.convergence import evaluate_accurately, evaluate_also
+from beamdyn.linear.excitations import Excitation
+from beamdyn.linear.frequency_grid import about_resonances, frequencies_of_response, one_of_each
+from beamdyn.linear.mean_square import PartialFractions, damped_motion, partial_fractions
+from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.linear.observations import AccelerationAt, DeflectionAt, Observation, as_observation
+from beamdyn.linear.parametric import ParametricTerm, parametric_term
+from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
+from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.transfer import check_stable
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TURN = 2 * np.pi
+_POINTS = 500  # frequencies of the result by white noise, beside those about resonances
+_DECADES = 3  # below the highest frequency, at which they begin
+_DIRECT = 0  # functions up to which all are kept: their poles are too far apart, and lose digits
+_SEVERAL = 3.0  # standard deviations that a deflection rarely passes
+
+
+@dataclass(frozen=True)
+class RandomResponse(Result):
+    """Response to a random input at a steady speed.
+
+    Where the excitation has a fixed direction, the statistics vary within a turn, and these are their means
+    over a turn: the density of the input appears shifted by the speed, upwards and downwards.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    rms : float
+        Root mean square of the response, all frequencies included [unit of the output].
+    rms_error : float
+        Estimated error of `rms`, by the modes left out and the discretization [same unit].
+    frequencies : ndarray, shape (F,)
+        Frequencies of the response [Hz].
+    psd : ndarray, shape (F,)
+        One-sided power spectral density of the response at these [its unit squared per Hz].
+    psd_error : ndarray, shape (F,)
+        Estimated error of `psd` [same unit].
+    input_rms : float
+        Root mean square of the input [its unit]; inf for white noise.
+    parametric : ParametricTerm
+        Size of the term left out, by which accelerations along the beam vary its stiffness.
+    input, output : str
+        The excitation and what is observed, with units.
+    unit : str
+        Unit of the output.
+    warnings : tuple of str
+        Limitations of the result.
+    provenance : Provenance
+        How the response was computed.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.random_response(scene, 50.0, bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0]), input="bending")
+    >>> found.unit, found.psd.shape == found.frequencies.shape
+    ('m', True)
+    """
+
+    speed: float
+    rms: float
+    rms_error: float
+    frequencies: np.ndarray
+    psd: np.ndarray
+    psd_error: np.ndarray
+    input_rms: float
+    parametric: ParametricTerm
+    input: str
+    output: str
+    unit: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
+        yield f"rms {number(self.rms, self.unit)}"
+        yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the density over frequency, both logarithmic."""
+        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+
+        unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
+        label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
+        return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
+
+
+@announced_of_plain_beam
+def random_response(
+    scene: Scene,
+    speed: float,
+    psd: PowerSpectrum | RoadRoughness | float,
+    input: Excitation | str | None = None,
+    output: Observation | str = "tip",
+    frequencies: Sequence[float] | np.ndarray | None = None,
+    modes: int | str = "auto",
+    tolerance: float = 1e-9,
+    discretization: DiscretizationChoice = "ritz",
+) -> RandomResponse:
+    """Compute the response to a stationary random input at a steady speed.
+
+    The mean square is the integral of the density in closed form about each resonance: see
+    `beamdyn.linear.mean_square`.  The parametric term is left out, and `parametric` states its size.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, damped.  Of its motion only the rolling radius is used, for a road.
+    speed : float
+        Speed [rad/s].
+    psd : PowerSpectrum, RoadRoughness or float
+        One-sided density of the input; a road that the wheel of a `RollingWheel` follows; or the density of
+        white noise, at all frequencies [unit of the input squared per Hz].
+    input : BaseMotion, PointForce or str, optional
+        As for `frequency_response`; that of a road is "n2".
+    output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        As for `frequency_response`.
+    frequencies : sequence of float, optional
+        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more; by
+        default those of the input, and so dense about resonances that straight lines between the densities
+        have nearly the mean square as their area.
+    modes : int or "auto"
+        Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
+        truncation error meets the tolerance.
+    tolerance : float
+        Truncation error aimed at by "auto", relative to the root mean square.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    RandomResponse
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a density is negative, a mode is not damped, the speed is past
+        the critical speed, or a road is given without a wheel, or with white noise an acceleration or a
+        moment, whose mean square is not finite.
+
+    References
+    ----------
+    Spectral density |H|^2 G (standard), integrated by partial fractions (own: docs/responses.md); parametric
+    term: Roberts and Spanos (1986), International Journal of Non-Linear Mechanics 21, 111-134.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])  # (m/s2)^2/Hz
+    >>> found = bd.random_response(scene, 50.0, flat, input="bending", output="tip")
+    >>> found.rms_error < 1e-6 * found.rms
+    True
+    """
+    start = perf_counter()
+    seen = as_observation("output", output)
+    scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+    drive, spectrum = random_input(scene, speed, psd, input)
+    if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
+        bound = "by white noise its mean square is not finite, or takes all modes"
+        raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
+    top, loaded = highest_frequency(spectrum), with_forces(scene, [drive])
+    refined = evaluate_accurately(
+        loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
+        lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
+        _DIRECT,
+    )  # fmt: skip
+    model, rms = refined.model, float(refined.value[0])
+    f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
+    of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
+    parametric = parametric_term(model, drive, spectrum)
+    return RandomResponse(
+        speed=speed,
+        rms=rms,
+        rms_error=float(refined.error[0]),
+        frequencies=f,
+        psd=of_psd.value,
+        psd_error=of_psd.error,
+        input_rms=spectrum.rms if isinstance(spectrum, PowerSpectrum) else math.inf,
+        parametric=parametric,
+        input=f"{drive.label} [{drive.unit}]",
+        output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
+        unit=seen.unit,
+        warnings=(
+            *_warnings(scene, seen, rms, parametric),
+            *warn_of_rotation(model.model, speed),
+            *warn_of_band(spectrum, drive, model),
+        ),
+        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        scene=scene,
+    )
+
+
+# The response -------------------------------------------------------------------------------------
+
+
+def _given(frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
+    """The frequencies asked for [Hz], checked."""
+    f = ascending("frequencies", frequencies)
+    refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
+    return f
+
+
+def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation) -> np.ndarray:
+    """Frequencies of the response [Hz], such that straight lines between its densities have their area.
+
+    Those to white noise end at ten times the lowest resonance.
+    """
+    poles = damped_motion(model).poles
+    if isinstance(spectrum, PowerSpectrum):
+        shifts = [h * model.speed / _TURN for h in model.drives(drive)]
+        return frequencies_of_response(spectrum, poles, shifts)
+    resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
+    top = 10 * float(lowest.min())
+    bottom, about = top / 10**_DECADES, about_resonances(poles)
+    between = about[(about > bottom) & (about < top)]
+    return one_of_each(np.concatenate([np.geomspace(bottom, top, _POINTS), between]))
+
+
+def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
+    check_stable(model)
+    return {h: partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
+
+
+def _mean_square(
+    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float
+) -> float:
+    """Mean square over time and a turn: the sum of those of the harmonics, which are apart in frequency."""
+    if isinstance(spectrum, PowerSpectrum):
+        return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
+    return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
+
+
+def _density(
+    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float, f: np.ndarray
+) -> np.ndarray:
+    """One-sided density of the response at f [Hz]: the input at f - h n, of either sign, gives that at f."""
+    total = np.zeros(len(f))
+    for h, H in transfers.items():
+        size = np.abs(H(2j * np.pi * f)) ** 2
+        there = np.abs(f - h * speed / _TURN)
+        total += size * (spectrum.at(there) if isinstance(spectrum, PowerSpectrum) else spectrum)
+    return total
+
+
+def _warnings(scene: Scene, seen: Observation, rms: float, parametric: ParametricTerm) -> Iterator[str]:
+    yield from warn_of_left_out(scene)
+    yield from parametric.warnings()
+    if isinstance(seen, DeflectionAt) and not isinstance(seen, AccelerationAt):
+        yield from warn_of_deflection(np.array([_SEVERAL * rms]), scene.beam.length)

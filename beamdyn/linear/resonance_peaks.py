@@ -1,0 +1,273 @@
+"""Peaks of a response over frequency between any frequencies: where, how high and how wide they are.
+
+The magnitude of a transfer function that is a sum over poles turns where the derivative of its square is 0.
+That is sampled in steps of a fraction of the distance to the nearest pole, and each change of its sign is
+bisected: every maximum and every minimum, whether or not it lies at a natural frequency.  From a peak to the
+minima beside it the magnitude falls steadily, so that there is one half-power frequency on either side, or
+none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
+from beamdyn.linear.excitations import Excitation
+from beamdyn.linear.modal_sum import ModalSum, modal_sums
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.linear.observations import Observation
+from beamdyn.linear.transfer import respond
+
+_TURN = 2 * np.pi
+_DENSE = 0.1  # step of samples over the distance to the nearest pole
+_HALVINGS = 60  # of an interval, to rounding
+_UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
+_ROUNDING = 1e-9  # relative, within which the numbers of a peak are found
+_LEVEL = 1e-10  # relative, by which a peak stands above the minima beside it, or it is rounding
+_NOISE = 0.5  # relative distance of the sum from the equations' solution, where the response is rounding
+_STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is looked for
+
+
+class Peak(NamedTuple):
+    """One peak: frequency and bandwidth [Hz], magnitude, harmonic of the rotation, relative rounding."""
+
+    frequency: float
+    size: float
+    bandwidth: float
+    harmonic: int
+    rounding: float
+
+
+@dataclass(frozen=True)
+class ResonancePeaks:
+    """Peaks of a response between its lowest and its highest frequency, by ascending frequency.
+
+    All local maxima of the magnitude of each harmonic: a mode that answers in the flank of a higher neighbour
+    without a maximum of its own is none.  Two minima closer to each other than a tenth of their distance to
+    the nearest pole may pass for one, and what lies between them for no peak.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (p,)
+        Frequencies of the excitation at which the response is largest [Hz].
+    size : ndarray, shape (p,)
+        Magnitudes of the response there; inf without damping.
+    bandwidth : ndarray, shape (p,)
+        Widths between the frequencies on either side at which the magnitude is its 1/sqrt(2) [Hz]: half the
+        power; nan where it rises again before it has fallen so far on one side or both, towards a close
+        neighbour, or does not fall so far from 0 to twice the highest frequency: such a peak has no
+        half-power bandwidth of its own.
+    harmonic : ndarray of int, shape (p,)
+        Harmonics of the rotation that answer.
+    frequency_error, size_error, bandwidth_error : ndarray, shape (p,)
+        Estimated errors, by the distance from the nearest peak of a coarser discretization and, where modes
+        are left out, of more modes; inf where these have none, or no bandwidth, and nan of a magnitude that
+        is inf or a width that is nan.
+    """
+
+    frequency: np.ndarray
+    size: np.ndarray
+    bandwidth: np.ndarray
+    harmonic: np.ndarray
+    frequency_error: np.ndarray
+    size_error: np.ndarray
+    bandwidth_error: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.frequency)
+
+
+def find_peaks(
+    model: ModelAtSpeed,
+    larger: ModelAtSpeed | None,
+    drive: Excitation,
+    seen: Observation,
+    band: tuple[float, float],
+) -> ResonancePeaks:
+    """Find the peaks of a response within a band of frequencies of the excitation [Hz].
+
+    Parameters
+    ----------
+    model : ModelAtSpeed
+        The model.
+    larger : ModelAtSpeed or None
+        One with more modes; None if there is none, or the model keeps all functions.
+    drive, seen : Excitation, Observation
+        Input and output.
+    band : tuple of float
+        Lowest and highest frequency [Hz].
+    """
+    top = 2 * band[1] + abs(model.speed) / _TURN  # flanks reach out of the band
+    found = sorted(peak for peak in _peaks(model, drive, seen, top) if band[0] < peak.frequency < band[1])
+    compared = list[tuple[float, list[Peak]]]()
+    if found:
+        coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
+        compared.append((LINEAR_MESHES.factor, [*_peaks(coarse, drive, seen, top)]))
+    if found and model.modes is not None:
+        compared.append((LINEAR_MODES.factor, [*_peaks(larger, drive, seen, top)] if larger else []))
+    errors = np.reshape([_error(each, compared) for each in found], (-1, 3))
+    columns = [np.array(column) for column in zip(*found, strict=True)] or [np.zeros(0)] * 5
+    frequency, size, bandwidth, harmonic, _ = columns
+    return ResonancePeaks(frequency, size, bandwidth, harmonic.astype(int), *errors.T)
+
+
+def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
+    """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
+    own = np.array(peak[:3])
+    with np.errstate(invalid="ignore"):  # of a magnitude that is inf
+        width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
+        error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
+        for margin, others in compared:
+            error += margin * np.nan_to_num(np.abs(_nearest(peak, others) - own), nan=np.inf, posinf=np.inf)
+    return np.where(np.isfinite(own), error, np.nan)
+
+
+def _nearest(peak: Peak, others: list[Peak]) -> np.ndarray:
+    """Frequency, magnitude and bandwidth of the nearest peak of the same harmonic; inf if there is none."""
+    same = [each for each in others if each.harmonic == peak.harmonic]
+    if not same:
+        return np.full(3, np.inf)
+    return np.array(min(same, key=lambda each: abs(each.frequency - peak.frequency))[:3])
+
+
+def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float) -> Iterator[Peak]:
+    """All peaks at frequencies of the excitation from 0 to a highest one [Hz]."""
+    drives = model.drives(drive)
+    for h, total in modal_sums(model, drives, seen).items():
+        magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)
+        yield from _undamped_peaks(magnitude, top)
+        yield from _damped_peaks(magnitude, top)
+
+
+@dataclass(frozen=True)
+class HarmonicMagnitude:
+    """Magnitude of the response at one harmonic of the rotation over the frequency of the excitation [Hz].
+
+    Parameters
+    ----------
+    model, drive, seen : ModelAtSpeed, HarmonicDrive, Observation
+        Model, input and output.
+    total : ModalSum
+        Their transfer function.
+    harmonic : int
+        The harmonic.
+    """
+
+    model: ModelAtSpeed
+    drive: HarmonicDrive
+    seen: Observation
+    total: ModalSum
+    harmonic: int
+
+    @property
+    def shift(self) -> float:
+        """How far the response is from the excitation [Hz]."""
+        return self.harmonic * self.model.speed / _TURN
+
+    @cached_property
+    def poles(self) -> np.ndarray:
+        """Those that peaks may belong to [1/s]: a response that turns backwards has a negative frequency."""
+        poles = self.total.poles
+        return poles if self.harmonic else poles[np.imag(poles) >= 0]
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """Frequencies of the excitation at the poles [Hz]."""
+        return np.imag(self.poles) / _TURN - self.shift
+
+    @cached_property
+    def undamped(self) -> np.ndarray:
+        """Which of the poles have no damping within rounding."""
+        return -np.real(self.poles) <= _UNDAMPED * np.abs(self.poles)
+
+    def size(self, f: np.ndarray) -> np.ndarray:
+        """Magnitudes at frequencies (F,)."""
+        return np.abs(self.total(self._s(f))[0])
+
+    def rises(self, f: np.ndarray) -> np.ndarray:
+        """Whether the magnitude rises with the frequency at frequencies (F,)."""
+        value, slope = self.total(self._s(f))
+        return np.real(np.conj(value) * 1j * slope) > 0
+
+    def solved(self, f: np.ndarray) -> np.ndarray:
+        """Complex values at frequencies (F,) by the equations themselves."""
+        return respond(self.model, self.drive, self.seen, self._s(f))
+
+    def rounding(self, f: np.ndarray) -> np.ndarray:
+        """Relative distance of the sum over poles from the equations' solution at frequencies (F,)."""
+        value = self.solved(f)
+        distance = np.abs(self.total(self._s(f))[0] - value)
+        return np.divide(distance, np.abs(value), out=np.full(len(f), np.inf), where=value != 0)
+
+    def samples(self, top: float) -> np.ndarray:
+        """Frequencies from 0 to a highest one, in steps of a fraction of the distance to the nearest pole."""
+        order = np.argsort(self.places)
+        places = self.places[order]
+        halves = np.maximum(-np.real(self.poles), _UNDAMPED * np.abs(self.poles))[order] / _TURN
+        ends = [min(0.0, places[0]), *(places[1:] + places[:-1]) / 2, max(top, places[-1])]
+        each = [np.array([0.0, top])]
+        for place, half, low, high in zip(places, halves, ends[:-1], ends[1:], strict=True):
+            first, last = np.ceil(np.arcsinh((np.array([low, high]) - place) / half) / _DENSE - 0.5)
+            each.append(place + half * np.sinh((np.arange(first, last) + 0.5) * _DENSE))
+        f = np.unique(np.concatenate(each))
+        return f[(f >= 0) & (f <= top)]
+
+    def _s(self, f: np.ndarray) -> np.ndarray:
+        return 1j * _TURN * (f + self.shift)
+
+
+def _undamped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
+    """Natural frequencies without damping, at which the response is infinite."""
+    at = magnitude.undamped & (magnitude.places > 0) & (magnitude.places < top)
+    for pole, place in zip(magnitude.poles[at], magnitude.places[at].tolist(), strict=True):
+        step = _STEP * abs(pole) / _TURN
+        near, far = np.abs(magnitude.solved(np.array([place + step, place + 2 * step])))
+        if near > 1.5 * far > 0:
+            yield Peak(place, np.inf, 0.0, magnitude.harmonic, 0.0)
+
+
+def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
+    """Maxima of a finite magnitude, with the minima beside them."""
+    f = magnitude.samples(top)
+    rises = magnitude.rises(f)
+    turns = np.flatnonzero(rises[1:] != rises[:-1])
+    singular = magnitude.places[magnitude.undamped]
+    turns = turns[~((f[turns, None] < singular) & (singular < f[turns + 1, None])).any(axis=1)]
+    rises_before = rises[turns]
+    at = _bisect(lambda x: magnitude.rises(x) == rises_before, f[turns], f[turns + 1])
+    limits = np.concatenate([[0.0], at, [top]])
+    k = np.flatnonzero(rises_before)
+    if not k.size:
+        return
+    tops, sides = at[k], np.array([limits[k], limits[k + 2]])
+    size, beside = magnitude.size(tops), magnitude.size(sides.ravel()).reshape(2, -1)
+    rounding = magnitude.rounding(tops)
+    width = _bandwidth(magnitude, tops, size, sides, beside)
+    real = (size > (1 + _LEVEL) * beside.max(axis=0)) & (rounding < _NOISE)
+    for j in np.flatnonzero(real).tolist():
+        yield Peak(float(tops[j]), float(size[j]), float(width[j]), magnitude.harmonic, float(rounding[j]))
+
+
+def _bandwidth(
+    magnitude: HarmonicMagnitude, tops: np.ndarray, size: np.ndarray, sides: np.ndarray, beside: np.ndarray
+) -> np.ndarray:
+    """Widths between half-power frequencies [Hz] (p,); nan where a minimum beside a peak is not so low."""
+    level = np.tile(size / np.sqrt(2), 2)
+    ends = _bisect(lambda f: magnitude.size(f) > level, np.tile(tops, 2), sides.ravel()).reshape(2, -1)
+    return np.where((beside < size / np.sqrt(2)).all(axis=0), ends[1] - ends[0], np.nan)
+
+
+def _bisect(
+    as_at_start: Callable[[np.ndarray], np.ndarray], start: np.ndarray, end: np.ndarray
+) -> np.ndarray:
+    """Where what holds at the start of each interval (p,) ceases to hold, to rounding."""
+    for _ in range(_HALVINGS):
+        middle = (start + end) / 2
+        same = as_at_start(middle)
+        start, end = np.where(same, middle, start), np.where(same, end, middle)
+    return (start + end) / 2

@@ -1,0 +1,208 @@
+"""Power spectral densities of inputs: tables, and roads by ISO 8608."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import (
+    InvalidValue,
+    ascending,
+    one_of,
+    positive,
+    real_array,
+    refuse,
+    set_fields,
+)
+from beamdyn.common.inputs.described import Described
+
+BetweenPoints = Literal["linear", "log"]
+_WIDEST = 1.5  # ratio of the ends of a piece of a power law, on which polynomials of some degree are exact
+
+REFERENCE = 0.1  # spatial frequency n0 of ISO 8608 [1/m]
+# Geometric means of the displacement PSD at n0 [m3]: ISO 8608:2016, table C.1.
+ISO_CLASSES = {name: 16e-6 * 4.0**k for k, name in enumerate("ABCDEFGH")}
+
+
+@dataclass(frozen=True)
+class SpectrumPiece:
+    """A part of a spectrum on which it is one analytic function of frequency.
+
+    Parameters
+    ----------
+    start, end : float
+        Its ends [Hz].
+    constant, slope : float
+        Of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
+    power : float
+        Of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
+    """
+
+    start: float
+    end: float
+    constant: float
+    slope: float = 0.0
+    power: float = 0.0
+
+    def __call__(self, f: np.ndarray) -> np.ndarray:
+        """Evaluate at real or complex frequencies [Hz]."""
+        if self.power:
+            return self.constant * (f / self.start) ** self.power
+        return self.constant + self.slope * f
+
+    def divided(self) -> Iterator[SpectrumPiece]:
+        """Yield parts on which a power law is nearly a polynomial."""
+        if not self.power:
+            yield self
+            return
+        parts = math.ceil(math.log(self.end / self.start, _WIDEST))
+        for a, b in pairwise(np.geomspace(self.start, self.end, parts + 1).tolist()):
+            yield SpectrumPiece(a, b, float(self(np.array(a))), 0.0, self.power)
+
+
+@dataclass(frozen=True)
+class PowerSpectrum:
+    """One-sided power spectral density of an input, whose integral over frequency is its mean square.
+
+    Parameters
+    ----------
+    frequencies : sequence of float
+        Frequencies [Hz], ascending from 0 or more; the density is 0 outside.
+    values : sequence of float
+        Density at these [unit of the input squared per Hz], 0 or more.
+    interpolation : "log" or "linear"
+        Straight lines between points on logarithmic axes, as standards draw them, or on linear ones.
+
+    Raises
+    ------
+    ValueError
+        If a density is negative, the frequencies do not ascend from 0 or more, their numbers differ, or a
+        frequency or a density is 0 on logarithmic axes.
+
+    References
+    ----------
+    Standard: one-sided spectral densities.
+
+    Examples
+    --------
+    >>> flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])
+    >>> round(float(flat.rms), 3)  # sqrt(495)
+    22.249
+    """
+
+    frequencies: Sequence[float]
+    values: Sequence[float]
+    interpolation: BetweenPoints = "log"
+
+    def __post_init__(self) -> None:
+        one_of("interpolation", self.interpolation, get_args(BetweenPoints))
+        f, S = ascending("psd.frequencies", self.frequencies), real_array("psd.values", self.values)
+        if len(f) != len(S) or len(f) < 2:
+            bound = f"{len(S)} values at {len(f)} frequencies; give as many, at least two"
+            raise InvalidValue("psd.values", self.values, bound)
+        refuse(f < 0, "psd.frequencies", f, "Hz", "give 0 or more: the density is one-sided")
+        refuse(
+            S < 0, "psd.values", S, "", "a power spectral density is not negative", "check signs and units"
+        )
+        if self.interpolation == "log":
+            remedy = 'leave the point out, or give interpolation = "linear"'
+            refuse(f == 0, "psd.frequencies", f, "Hz", "logarithmic axes have no 0", remedy)
+            refuse(S == 0, "psd.values", S, "", "logarithmic axes have no 0", remedy)
+        set_fields(self, frequencies=tuple(f.tolist()), values=tuple(S.tolist()))
+
+    def pieces(self) -> Iterator[SpectrumPiece]:
+        """Yield the parts between the points."""
+        f, S = self.frequencies, self.values
+        for a, b, low, high in zip(f[:-1], f[1:], S[:-1], S[1:], strict=True):
+            if self.interpolation == "log":
+                power = math.log(high / low) / math.log(b / a)
+                yield SpectrumPiece(a, b, low, 0.0, round(power, 12))
+            else:
+                slope = (high - low) / (b - a)
+                yield SpectrumPiece(a, b, low - slope * a, slope)
+
+    def at(self, frequencies: np.ndarray) -> np.ndarray:
+        """Density at frequencies [Hz], 0 outside those given and for negative ones."""
+        f, points, values = np.asarray(frequencies, dtype=float), self.frequencies, self.values
+        inside = (f >= points[0]) & (f <= points[-1])
+        if self.interpolation == "linear":
+            return np.where(inside, np.interp(f, points, values), 0.0)
+        safe = np.where(inside, f, points[0])
+        return np.where(inside, np.exp(np.interp(np.log(safe), np.log(points), np.log(values))), 0.0)
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the input [its unit]."""
+        nodes, weights = np.polynomial.legendre.leggauss(16)
+        parts = [part for piece in self.pieces() for part in piece.divided()]
+        each = (
+            (p.end - p.start) / 2 * weights @ p((p.start + p.end) / 2 + nodes * (p.end - p.start) / 2)
+            for p in parts
+        )
+        return math.sqrt(math.fsum(float(v) for v in each))
+
+
+@dataclass(frozen=True)
+class RoadRoughness:
+    """A random road by ISO 8608: the height's density over spatial frequency, G(n0) (n/n0)^-w.
+
+    Parameters
+    ----------
+    roughness : float or str
+        G(n0) at n0 = 0.1 1/m [m3], or a class from "A" (very good, 16e-6 m3) to "H", each four times as
+        rough as the one before.
+    waviness : float
+        Exponent w, nondimensional.
+    lowest, highest : float
+        Spatial frequencies between which the road is rough [1/m].
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, the class is unknown, or the frequencies do not ascend.
+
+    References
+    ----------
+    ISO 8608:2016, table C.1.
+
+    Examples
+    --------
+    >>> bd.RoadRoughness("C").roughness  # m3, ISO 8608 at 0.1 1/m
+    'C'
+    """
+
+    roughness: Annotated[Any, Described("m3", "G", "density of the height at 0.1 1/m", above=0)]
+    waviness: float = 2.0
+    lowest: float = 0.011
+    highest: float = 2.83
+
+    def __post_init__(self) -> None:
+        if isinstance(self.roughness, str):
+            one_of("road.roughness", self.roughness, [*ISO_CLASSES])
+        for name, unit in (("waviness", ""), ("lowest", "1/m"), ("highest", "1/m")):
+            set_fields(self, **{name: positive(f"road.{name}", getattr(self, name), unit)})
+        if not isinstance(self.roughness, str):
+            set_fields(self, roughness=positive("road.roughness", self.roughness, "m3"))
+        bound = "it must be below road.highest = {limit}"
+        bad = self.lowest >= self.highest
+        refuse(bad, "road.lowest", self.lowest, "1/m", bound, "swap the two?", limit=self.highest)
+
+    @property
+    def density(self) -> float:
+        """G(n0) [m3]."""
+        return ISO_CLASSES[self.roughness] if isinstance(self.roughness, str) else self.roughness
+
+    def acceleration(self, velocity: float) -> PowerSpectrum:
+        """Density of the vertical acceleration [(m/s2)2/Hz] of what follows the road at a velocity [m/s].
+
+        At the frequency f = n v it is (2 pi f)^4 G(n) / v.
+        """
+        v = positive("velocity", abs(velocity), "m/s", "at rest a road does not shake")
+        n = np.array([self.lowest, self.highest])
+        height = self.density * (n / REFERENCE) ** -self.waviness / v
+        return PowerSpectrum((n * v).tolist(), ((2 * np.pi * n * v) ** 4 * height).tolist())

@@ -1,0 +1,343 @@
+"""Guaranteed bounds, from below and above, of the natural frequencies of bending, and of critical speeds.
+
+The theorem is that of `beamdyn.modes.split`, for coupled planes of `beamdyn.modes.coupled_split`; here,
+heads grow until the bounds hardly narrow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import count, real
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.one_line import listed, spanned, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement
+from beamdyn.equations.ritz import Ritz
+from beamdyn.modes.coupled_head import MOST_MOMENTS
+from beamdyn.modes.coupled_split import CoupledSplit
+from beamdyn.modes.flexibility import bound_flexibility
+from beamdyn.modes.head import basis, most_functions, segments_with_functions
+from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.planes import refuse_uncovered, separate_planes
+from beamdyn.modes.split import Enclosure, Split
+from beamdyn.scene.beam import Beam, PointMass, TipMass
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
+
+_EPS = float(np.finfo(float).eps)
+_NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
+_RESOLVED = 1e-8  # the same of two coupled planes, whose heads are twice as large: some times the allowances
+_PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of the critical speed is sought
+_CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
+# The parts of the squared Ritz value that are tried as such a bound.
+_SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
+_OF_DEFLECTION = 1e-3  # relative error of a model of which the static deflection is read
+
+
+@dataclass(frozen=True)
+class FrequencyBounds(Result):
+    """Guaranteed bounds of the exact natural frequencies of bending, the lowest first.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    lower, upper : ndarray, shape (m,)
+        Bounds of the frequency [Hz]; nan where the mode is, or for `lower` may be, unstable.
+    lower_squared, upper_squared : ndarray, shape (m,)
+        Bounds of the squared angular frequency [rad2/s2], negative for an unstable mode; nan where
+        none is guaranteed.
+    width : ndarray, shape (m,)
+        Relative width upper / lower - 1; nan where a bound is.
+    how : str
+        Argument by which the bounds are guaranteed.
+    warnings : tuple of str
+        Bounds that are missing, and why; that rotation bends the beam too far for the model they are of.
+    provenance : Provenance
+        Program version, discretization and computing time.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> bounds, modes = bd.frequency_bounds(scene, 50.0), bd.natural_modes(scene, 50.0)
+    >>> bool(((bounds.lower <= modes.frequency) & (modes.frequency <= bounds.upper)).all())
+    True
+    """
+
+    speed: float
+    lower: np.ndarray
+    upper: np.ndarray
+    lower_squared: np.ndarray
+    upper_squared: np.ndarray
+    width: np.ndarray
+    how: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
+        yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
+
+
+@announced_of_plain_beam
+def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
+    """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
+
+    They hold for the Euler-Bernoulli model without damping, in one plane or in two, which the twist or the
+    bending angle may couple; see docs/bounds.md.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.  Physics "auto" is the plain beam.
+    speed : float
+        Speed [rad/s].
+    modes : int
+        Number of modes.
+
+    Returns
+    -------
+    FrequencyBounds
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
+        rotary inertia, damping, springs at the root, or two planes that the precone couples.
+
+    References
+    ----------
+    The theorem that docs/bounds.md states and proves (own).
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> bounds = bd.frequency_bounds(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=2)
+    >>> bool((bounds.upper / bounds.lower - 1 < 1e-9).all())
+    True
+    """
+    start = perf_counter()
+    check_scene(scene)
+    unresolved, scene = scene, plain_physics(scene)
+    speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
+    _check_input(scene, speed, modes)
+    lower, upper, method = _enclose_planes(scene, speed, modes)
+    low, high = _frequency(lower, -8), _frequency(upper, 8)
+    return FrequencyBounds(
+        speed=speed,
+        lower=low,
+        upper=high,
+        lower_squared=lower,
+        upper_squared=upper,
+        width=high / low - 1,
+        how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
+        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *_warn_of_bending(scene, speed)),
+        provenance=Provenance(__version__, str(method), "its complement", perf_counter() - start),
+        scene=scene,
+    )
+
+
+def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.ndarray:
+    """The lowest bounds of all planes together, ascending; nan where none is known.
+
+    One that is missing in a plane is -inf from below, or what bounds the mode before it, and inf from above.
+    """
+    if len(of_planes) == 1:
+        return of_planes[0][:modes]
+    filled = [np.where(np.isnan(bounds), missing, bounds) for bounds in of_planes]
+    lowest = np.sort(np.concatenate([np.maximum.accumulate(bounds) for bounds in filled]))[:modes]
+    return np.where(np.isinf(lowest), np.nan, lowest)
+
+
+def _enclose_planes(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of the squared angular frequencies, and the last and largest basis."""
+    planes = separate_planes(scene, speed != 0)
+    if not planes:
+        return _enclose_scaled(_enclose_coupled, scene, speed, modes)
+    enclosed = [_enclose_scaled(_enclose, plane, speed, modes) for plane in planes]
+    lower, upper, bases = zip(*enclosed, strict=True)
+    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
+    low, high = _lowest(lower, modes, -np.inf), _lowest(upper, modes, np.inf)
+    return low, high, max(bases, key=lambda ritz: ritz.functions)
+
+
+def _enclose_scaled(
+    enclose: Callable, scene: Scene, speed: float, modes: int
+) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of the squared angular frequencies by those of the scaled problem, and the last basis."""
+    scaled, time = _nondimensional(scene)
+    lower, upper, ritz = enclose(scaled, speed * time, modes)
+    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
+
+
+def _check_input(scene: Scene, speed: float, modes: int) -> None:
+    refuse_uncovered(scene, speed)
+    check_speeds(speed, "speed")
+    planes = separate_planes(scene, speed != 0)
+    parts = (most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)
+    most = min(parts, default=MOST_MOMENTS)
+    if modes > most:
+        raise ValueError(
+            f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
+            "degree of its properties, the less"
+        )
+
+
+def _warn_of_bending(scene: Scene, speed: float) -> Iterator[Statement]:
+    """Yield a warning if rotation bends the beam too far for the model whose frequencies are bounded."""
+    speeds = np.array([speed])
+    tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
+    yield from warn_of_static_deflection(np.linalg.norm(tips, axis=1), scene.beam.length, speeds)
+
+
+def _widen(values: np.ndarray, units: int) -> np.ndarray:
+    """Move values up (units > 0) or down (units < 0) by a number of rounding units."""
+    return values + units * _EPS * np.abs(values)
+
+
+def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
+    """Frequencies [Hz] of squared angular frequencies, moved by rounding units; nan where not positive."""
+    return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
+
+
+def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
+    missing, unstable, undecided = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
+    if missing.any():
+        why = "the functions left out could not be bounded, even with the largest basis"
+        yield Statement(f"no lower bound of mode(s) {_list_modes(missing)}: {why}", kind=NO_ANSWER)
+    if unstable.any():
+        said = f"mode(s) {_list_modes(unstable)} are unstable: see the bounds of the squares"
+        yield Statement(said, kind=GROWING)
+    if undecided.any():
+        said = (
+            f"mode(s) {_list_modes(undecided)} may be stable or not: the bounds of the squares enclose zero"
+        )
+        yield Statement(said, kind=GROWING)
+
+
+def _list_modes(mask: np.ndarray) -> str:
+    """List the numbers of the masked modes in words."""
+    numbers = np.flatnonzero(mask) + 1
+    return ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
+
+
+def _nondimensional(scene: Scene) -> tuple[Scene, float]:
+    """Scale a scene to unit length, mass and stiffness, and compute its unit of time [s]."""
+    beam, length = scene.beam, scene.beam.length
+    m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
+    mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
+    tip = _nondimensional_tip(beam.tip or TipMass(0.0), m * length, length)
+    xi, lumped = (values.tolist() for values in beam.lumps)
+    lumps = tuple(PointMass(x, lump / (m * length)) for x, lump in zip(xi, lumped, strict=True))
+    scaled = Beam(1.0, mass, stiffness, tip=tip, point_masses=lumps)
+    if scene.physics.planes == 2 and beam.second_bending_stiffness is not None:
+        second = beam.second_bending_stiffness.scaled(1 / e)
+        scaled = replace(scaled, second_bending_stiffness=second, twist=beam.twist)
+    mount = replace(scene.mount, radius=scene.mount.radius / length)
+    return Scene(scaled, mount, physics=scene.physics), length**2 * float(np.sqrt(m / e))
+
+
+def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
+    moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
+    return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
+
+
+def bound_critical_speed(scene: Scene) -> float:
+    """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
+
+    By the theorem of this module with z = 0 and k = 1: the stiffness at that speed, and so at every slower
+    one, is positive.
+    """
+    scaled, time = _nondimensional(scene)
+    if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:
+        return 0.0
+    proved, most, segments = 0.0, most_functions(scaled.beam), segments_with_functions(scaled.beam)
+    for total in _PROOF_SIZES:
+        size = min(most, max(6, total // segments))
+        split = Split(scaled, size, 1.0, flexibility)
+        proved = max(proved, _prove_stiff(split))
+        if proved >= _CLOSE * split.ritz_critical_speed**2:
+            break
+    return float(_widen(np.sqrt(np.array(proved)), -8) / time)
+
+
+def _prove_stiff(split: Split) -> float:
+    """Largest squared speed, of a descending list, for which the stiffness is proved positive; 0 if none."""
+    softening = float(np.maximum(-split.spin, 0) @ split.tails)
+    largest = min(1 / max(softening, _EPS), split.ritz_critical_speed**2)
+    for squared in largest * _SHARES:
+        form = split.stiffness_form(squared)
+        if form is not None and np.isfinite(form).all() and np.linalg.eigvalsh(form)[0] >= 0:
+            return float(squared)
+    return 0.0
+
+
+# The search ---------------------------------------------------------------------------------------
+
+
+def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of z in one plane, and the last basis."""
+    flexibility = bound_flexibility(scene.beam.bending_stiffness)
+    lower, upper, functions = _narrow(
+        lambda size: Split(scene, size, speed, flexibility), _sizes(scene.beam, modes), modes, _NARROW
+    )
+    return lower, upper, basis(scene.beam, functions)
+
+
+def _enclose_coupled(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
+    """Bounds of z in two coupled planes, and the last basis; none where 1/EI could not be bounded."""
+    beam = scene.beam
+    assert beam.second_bending_stiffness is not None
+    first, second = map(bound_flexibility, (beam.bending_stiffness, beam.second_bending_stiffness))
+    if first is None or second is None:
+        return np.full(modes, np.nan), np.full(modes, np.nan), Ritz(1, "moments")
+    sizes = _numbers_of_moments(modes)
+    lower, upper, moments = _narrow(
+        lambda size: CoupledSplit(scene, size, speed, (first, second)), sizes, modes, _RESOLVED
+    )
+    return lower, upper, Ritz(moments, "moments")
+
+
+def _narrow(
+    split: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Bounds of z from growing bases, until they hardly narrow, and the size of the last."""
+    lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
+    size = 0
+    for size in sizes:
+        try:
+            low, high = split(size).bounds(modes)
+        except np.linalg.LinAlgError:  # rounding of so many functions at such a speed
+            break
+        last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
+        width = upper - lower
+        if (width <= narrow * np.abs(upper)).all() or (width > last_width / 2).all():
+            break
+    return lower, upper, size
+
+
+def _sizes(beam: Beam, modes: int) -> Iterator[int]:
+    """Yield growing numbers of functions on each segment."""
+    return _growing(max(6, (16 + 2 * modes) // segments_with_functions(beam)), most_functions(beam))
+
+
+def _numbers_of_moments(modes: int) -> Iterator[int]:
+    """Yield growing numbers of bending moments in each direction."""
+    return _growing(min(MOST_MOMENTS, 12 + 2 * modes), MOST_MOMENTS)
+
+
+def _growing(size: int, most: int) -> Iterator[int]:
+    while size < most:
+        yield size
+        size = 4 * size // 3
+    yield most

@@ -1,0 +1,410 @@
+"""Equilibria of a beam that rotation bends by any angle, and their branches over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
+from beamdyn.common.results.one_line import error_at_most, listed, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.statements import GROWING, Speeds, Statement
+from beamdyn.modes.modal.choice import TOLERANCES, DiscretizationChoice, choose_model, solve_to_tolerance
+from beamdyn.modes.modal.continuation import (
+    NotConverged,
+    Point,
+    count_negative,
+    find_at,
+    find_turning_point,
+    follow,
+    start_curve,
+)
+from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent
+from beamdyn.modes.modal.model import Model
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_FINE = 0.05  # arc length of a step, for smooth curves in a picture
+_MOST_POINTS = 2000  # of a branch
+_STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
+_ROUNDING = 1e-13  # error of a position over the length
+
+
+@dataclass(frozen=True)
+class Equilibrium(Result):
+    """Equilibrium of a beam at a steady speed, of any deflection.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    branch : str
+        "straight": it follows from rest as the speed rises; "bent": it stands beside that one.
+    tip : ndarray, shape (3,)
+        Position of the tip from the root along b1, b2, b3 [m].
+    tip_angle : float
+        Slope angle of the tip, from b1 towards the direction of bending [rad].
+    error : float
+        Estimated error of the position of the tip [m].
+    stable : bool
+        Whether no small motion about the equilibrium grows.
+    growth_rate : float
+        Largest growth rate of a small motion [1/s]; 0 if it is stable.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> mount = bd.Mount(radius=0.215, setting_angle=np.pi / 4)
+    >>> scene = bd.Scene(strip, mount, physics=bd.Physics(large_deflection=True))
+    >>> found = bd.equilibrium(scene, speed=100.0)
+    >>> found.stable, round(float(np.degrees(found.tip_angle)), 2)
+    (True, -27.24)
+    """
+
+    speed: float
+    branch: str
+    tip: np.ndarray
+    tip_angle: float
+    error: float
+    stable: bool
+    growth_rate: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    model: Model = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        unit = self.display_units.length_unit()
+        yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
+        yield error_at_most(self.error * unit.per_si, unit.name)
+        yield from ("stable" if self.stable else "unstable", warned(self.warnings))
+
+    def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
+        """Positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""
+        xi = np.asarray(x, dtype=float) / self.scene.beam.length
+        if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
+            raise InvalidValue("x", x, f"positions run from 0 to the length {self.scene.beam.length:g} m")
+        solver = _solver(self.model)
+        state = solver.elastica.at(solver.equilibria(np.array([self.speed]))[0])
+        return _in_space(state.positions(np.minimum(xi, 1.0)), self.scene)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the bent beam."""
+        from beamdyn.common.plots.plots_of_equilibria import plot_bent_beam
+
+        across = _direction(self.scene)
+        points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
+        title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
+        stable = "" if self.stable else ", unstable"
+        return plot_bent_beam(points[:, 0], points[:, 1:] @ across, ax, title + stable)
+
+
+def equilibrium(
+    scene: Scene,
+    speed: float,
+    branch: str | None = None,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> Equilibrium:
+    """Compute the equilibrium of the beam at a steady speed, about a fixed centre and without gravity.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.  Large deflection is modelled in any case.
+    speed : float
+        Speed [rad/s].
+    branch : {"straight", "bent"}, optional
+        "straight": the equilibrium that follows from rest as the speed rises; "bent": the stable one beside
+        it, past a critical speed or a turning point.  By default that of `scene.physics`.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`, for the first natural frequency about the equilibrium.
+
+    Returns
+    -------
+    Equilibrium
+
+    Raises
+    ------
+    NoEquilibrium
+        An ArithmeticError: if the branch has no equilibrium at this speed.
+
+    References
+    ----------
+    Inextensible elastica (Euler); own derivation: docs/conventions.md, section Large deflection.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> mount = bd.Mount(radius=0.215, setting_angle=np.pi / 4)
+    >>> scene = bd.Scene(strip, mount, physics=bd.Physics(large_deflection=True))
+    >>> bd.equilibrium(scene, speed=100.0).tip[:2].round(5)  # m, along the beam and across
+    array([ 0.04645, -0.01724])
+    """
+    start = perf_counter()
+    scene = _with_large_deflection(scene, branch)
+    speeds = np.array([real("speed", speed, "rad/s")])
+    check_speeds(speeds, "speed")
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
+    solver, coarse = _solver(solution.model), _solver(solution.coarse)
+    q = solver.equilibria(speeds)[0]
+    growth = float(np.real(solution.eigen.eigenvalue).max())
+    error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
+    names = str(solution.model.discretization), str(solution.coarse.discretization)
+    return Equilibrium(
+        speed=float(speeds[0]),
+        branch=scene.physics.branch,
+        tip=_in_space(solver.elastica.tip(q), scene),
+        tip_angle=float(q @ solver.elastica.angles[:, -1]),
+        error=float(error) + _ROUNDING * scene.beam.length,
+        stable=growth <= 0,
+        growth_rate=max(growth, 0.0),
+        warnings=() if growth <= 0 else (_describe_unstable(growth, float(speeds[0])),),
+        provenance=Provenance(__version__, *names, perf_counter() - start),
+        scene=scene,
+        model=solution.model,
+    )
+
+
+def _describe_unstable(growth: float, speed: float) -> Statement:
+    remedy = 'branch="bent" asks for the stable one beside it'
+    return Statement(
+        "the equilibrium is unstable at ",
+        Speeds(speed),
+        f": a small motion grows at {growth:.3g} 1/s; {remedy}",
+        kind=GROWING,
+        quantity="growth rate [1/s]",
+        value=growth,
+        limit=0.0,
+        remedy=remedy,
+    )
+
+
+def _with_large_deflection(scene: object, branch: str | None) -> Scene:
+    """The scene with large deflection, on a branch."""
+    check_scene(scene)
+    assert isinstance(scene, Scene)
+    if branch is not None:
+        one_of("branch", branch, ("straight", "bent"))
+    chosen = {} if branch is None else {"branch": branch}
+    return replace(scene, physics=replace(scene.physics, large_deflection=True, **chosen))
+
+
+def _solver(model: Model) -> DeflectedSolver:
+    assert isinstance(model.solver, DeflectedSolver)
+    return model.solver
+
+
+def _direction(scene: Scene) -> np.ndarray:
+    """Components of the direction of bending on b2, b3."""
+    angle = scene.mount.bending_angle
+    return np.round([np.cos(angle), np.sin(angle)])
+
+
+def _in_space(positions: np.ndarray, scene: Scene) -> np.ndarray:
+    """Positions (..., 3) along b1, b2, b3 from those along b1 and the direction of bending (..., 2)."""
+    across = positions[..., 1:] * _direction(scene)
+    return np.concatenate([positions[..., :1], across], axis=-1)
+
+
+# Branches over speed ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class EquilibriumBranch:
+    """Equilibria along a branch, in the order in which it is followed.
+
+    Parameters
+    ----------
+    name : str
+        "straight" or "bent".
+    speeds : ndarray, shape (k,)
+        Speeds [rad/s].
+    tip : ndarray, shape (k, 3)
+        Positions of the tip from the root along b1, b2, b3 [m].
+    stable : ndarray of bool, shape (k,)
+        Whether the potential energy, that of the centrifugal forces included, is least.
+    turning_speeds : ndarray, shape (t,)
+        Speeds at which the branch turns back, by a fold or where it meets the straight beam [rad/s].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> straight = bd.equilibrium_branches(scene, top_speed=180.0).branches[0]
+    >>> bool(straight.stable[0]), bool(straight.stable[-1])  # it buckles at 159.8 rad/s
+    (True, False)
+    """
+
+    name: str
+    speeds: np.ndarray
+    tip: np.ndarray
+    stable: np.ndarray
+    turning_speeds: np.ndarray
+
+
+@dataclass(frozen=True)
+class EquilibriumBranches(Result):
+    """Branches of equilibria from rest to a top speed.
+
+    Parameters
+    ----------
+    top_speed : float
+        Top speed [rad/s].
+    branches : tuple of EquilibriumBranch
+        The branch from rest, then that beside it at the top speed, if there is one.
+    critical_speed : float
+        Speed at which the straight beam buckles [rad/s]; inf where rotation bends it from rest on.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How they were found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> len(bd.equilibrium_branches(scene, top_speed=180.0).branches)
+    2
+    """
+
+    top_speed: float
+    branches: tuple[EquilibriumBranch, ...]
+    critical_speed: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{' and '.join(each.name for each in self.branches)} up to {self.say_speed(self.top_speed)}"
+        if np.isfinite(self.critical_speed):
+            yield f"straight beam buckles at {self.say_speed(self.critical_speed)}"
+        yield warned(self.warnings)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
+        from beamdyn.common.plots.plots_of_equilibria import plot_branches
+
+        across, length = _direction(self.scene), self.scene.beam.length
+        lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
+        return plot_branches(lines, ax, self.display_units)
+
+
+def equilibrium_branches(
+    scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
+) -> EquilibriumBranches:
+    """Follow the branches of equilibria over speed, through their turning points.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.  Large deflection is modelled in any case.
+    top_speed : float
+        Top speed [rad/s].
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    EquilibriumBranches
+
+    References
+    ----------
+    As `equilibrium`; followed by Keller's (1977) pseudo-arclength continuation.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), physics=bd.Physics(large_deflection=True))
+    >>> found = bd.equilibrium_branches(scene, top_speed=180.0)
+    >>> round(found.critical_speed, 3), [branch.name for branch in found.branches]
+    (159.818, ['straight', 'bent'])
+    """
+    start = perf_counter()
+    scene = _with_large_deflection(scene, "straight")
+    top = positive("top_speed", top_speed, "rad/s")
+    check_speeds(top, "top_speed")
+    model = choose_model(scene, discretization, np.array([0.0, top]), 1)
+    solver = _solver(model)
+    branches = [_straight(solver.load, top, scene)]
+    try:
+        branches.append(_bent(solver.load, top, scene))
+        warnings = ()
+    except NoEquilibrium as error:
+        warnings = (str(error),)
+    return EquilibriumBranches(
+        top_speed=top,
+        branches=tuple(branches),
+        critical_speed=solver.critical_speed,
+        warnings=warnings,
+        provenance=Provenance(__version__, str(model.discretization), "", perf_counter() - start),
+        scene=scene,
+    )
+
+
+def _straight(load: SteadyLoad, top: float, scene: Scene) -> EquilibriumBranch:
+    """The branch from rest."""
+    if load.transverse:
+        return _collect(
+            "straight", load, start_curve(load, np.zeros(load.elastica.size), 0.0, 1.0), top, scene
+        )
+    speeds, q = np.linspace(0, top, 101), np.zeros(load.elastica.size)
+    stable = [np.linalg.eigvalsh(load.jacobian(q, speed**2))[0] >= 0 for speed in speeds]
+    tips = np.tile(_in_space(load.elastica.tip(q), scene), (len(speeds), 1))
+    return EquilibriumBranch("straight", speeds, tips, np.array(stable), np.empty(0))
+
+
+def _bent(load: SteadyLoad, top: float, scene: Scene) -> EquilibriumBranch:
+    """The branch beside that from rest, from the top speed down and through its turning points."""
+    return _collect("bent", load, start_curve(load, find_bent(load, top), top**2, -1.0), top, scene)
+
+
+def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene) -> EquilibriumBranch:
+    """The points of a branch until it passes the top speed, or the beam has made a turn."""
+    points, turning = [start], []
+    for point in _steps(load, start):
+        if point.p_rate * points[-1].p_rate < 0:
+            turning.append(find_turning_point(load, points[-1], point))
+            points.append(turning[-1])
+        if point.p >= top**2:
+            points.append(replace(point, q=find_at(load, points[-1], point, top**2), p=top**2))
+            break
+        points.append(point)
+        if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
+            break
+    tips = load.elastica.tip(np.array([point.q for point in points]))
+    return EquilibriumBranch(
+        name,
+        np.sqrt([max(point.p, 0.0) for point in points]),
+        _in_space(tips, scene),
+        np.array([count_negative(load, point) == 0 for point in points]),
+        np.sqrt([point.p for point in turning]),
+    )
+
+
+def _steps(load: SteadyLoad, start: Point) -> Iterator[Point]:
+    """The points of a curve, as far as it can be followed."""
+    curve = follow(load, start, _FINE)
+    while True:
+        try:
+            yield next(curve)
+        except NotConverged:
+            return

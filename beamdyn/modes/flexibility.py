@@ -1,0 +1,75 @@
+"""Upper bounds of the flexibility 1/EI, and of what all deflections of unit energy do to the loads.
+
+All quantities are nondimensional, as in `beamdyn.modes.split`.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from beamdyn.common.legendre import gauss_rule, legendre_series
+from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import outboard_moments
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.profile import Profile
+
+_EPS = float(np.finfo(float).eps)
+_DEGREES = (0, 8, 16, 32, 64, 128)
+_EXCESS = 1e-10  # relative, of the bound over 1/EI
+_HALVINGS = 40  # of a segment on which no degree suffices
+
+
+def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
+    """Upper bounds of the traces of P1 ... P4 relative to a: shape (4,).
+
+    The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
+    sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
+    int_s^1 (x - s)^2 rho A dx is twice the threefold one.
+    """
+    tip = beam.tip or TipMass(0.0)
+    n_a, n_b = axial_tension(beam)
+    moment = outboard_moments(beam)[0].outboard_integral().outboard_integral().scaled(2.0)
+    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # 1 - s + eps
+    loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
+    tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)
+    inertia += tip.mass * _integral(flexibility * (arm * arm))
+    return np.array([tension_b, tension_a, inertia, _integral(flexibility)])
+
+
+def _integral(profile: Profile) -> float:
+    return float(np.diff(profile.breakpoints) @ profile.series[0])
+
+
+def bound_on_cells(profile: Profile, ends: np.ndarray) -> np.ndarray:
+    """Upper bounds of the absolute values of a property on cells between ends (c + 1,), by |P_k| <= 1."""
+    parts = profile.split(ends.tolist())
+    first = np.searchsorted(parts.breakpoints, ends[:-1])
+    return np.maximum.reduceat(np.abs(parts.series).sum(axis=0), first)
+
+
+def bound_flexibility(stiffness: Profile) -> Profile | None:
+    """Piecewise polynomial that is a close upper bound of 1/EI; None if the search fails."""
+    for _ in range(_HALVINGS):
+        rows = [bound_reciprocal(np.array(row)) for row in stiffness.coefficients]
+        bounds = tuple(row for row in rows if row is not None)
+        if len(bounds) == len(rows):
+            return Profile(stiffness.breakpoints, bounds)
+        parts = zip(pairwise(stiffness.breakpoints), rows, strict=True)
+        stiffness = stiffness.split([(a + b) / 2 for (a, b), row in parts if row is None])
+    return None
+
+
+def bound_reciprocal(row: np.ndarray) -> tuple[float, ...] | None:
+    """Legendre coefficients of g / (1 - misfit) >= 1/EI, if |1 - EI g| <= misfit < 1; None if too large."""
+    for degree in _DEGREES:
+        t, _ = gauss_rule(degree + 1)
+        g = legendre_series(degree + 1) @ (1 / legendre.legval(t, row))
+        product = legendre.legmul(row, g)
+        rounding = 4 * _EPS * (degree + len(row)) * np.abs(row).sum() * np.abs(g).sum()
+        misfit = np.abs(legendre.legsub(product, [1.0])).sum() + rounding
+        if misfit <= _EXCESS:
+            return tuple((g / (1 - misfit)).tolist())
+    return None

@@ -1,0 +1,256 @@
+"""Loci of natural modes over speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import ascending, count
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results.announced import announced
+from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.modes.modal.choice import (
+    DiscretizationChoice,
+    solve_to_tolerance,
+)
+from beamdyn.modes.modal.error_estimate import EstimatedModes
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.modes.modal.static_load import static_load
+from beamdyn.modes.modal.tracking import track
+from beamdyn.modes.model_error.choice import choose_physics
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.of_modes import left_out_of_modes
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import (
+    check_speeds,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+from beamdyn.modes.modes import (
+    check_tolerance,
+    drawn_order,
+    frequency_of,
+    provenance_of,
+    status_of,
+    warn_of_modes,
+)
+
+_MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
+_EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
+
+
+@dataclass(frozen=True)
+class Locus(StatesModelError):
+    """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
+
+    `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    frequency : ndarray, shape (S, m)
+        Frequencies [Hz]; nan where a mode is unstable or does not oscillate.
+    growth_rate : ndarray, shape (S, m)
+        Growth rates [1/s].
+    confidence : ndarray, shape (S, m)
+        Confidence that a mode continues the one at the speed before: 1 is certain, 0 a guess.
+    error : ndarray, shape (S, m)
+        Estimated relative error of the eigenvalues.
+    status : ndarray of str, shape (S, m)
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
+    eigenvalue : ndarray of complex, shape (S, m)
+        s in exp(s t) [1/s].
+    plane_share : ndarray, shape (S, m, 2)
+        Share of each direction of bending at the root in the kinetic energy of the mode's deflection.
+    static_deflection : ndarray, shape (S,)
+        Static tip deflection under the rotation [m], signed or a magnitude as in `Modes`.
+    axial_strain : ndarray, shape (S,)
+        Largest static axial strain; nan if it is unknown.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> locus = bd.frequency_locus(bd.Scene(strip, bd.Mount(radius=0.215)), np.linspace(0, 200, 5), modes=1)
+    >>> locus.frequency[:, 0].round(2), locus.growth_rate[:, 0].round(2)  # past 159.8 rad/s it buckles
+    (array([65.23, 61.96, 50.91, 22.54,   nan]), array([  0.  ,   0.  ,   0.  ,   0.  , 308.99]))
+    """
+
+    speeds: np.ndarray
+    frequency: np.ndarray
+    growth_rate: np.ndarray
+    confidence: np.ndarray
+    error: np.ndarray
+    status: np.ndarray
+    eigenvalue: np.ndarray
+    plane_share: np.ndarray
+    static_deflection: np.ndarray
+    axial_strain: np.ndarray
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    model: Model = field(repr=False)
+    ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
+    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        count, modes = self.frequency.shape
+        yield f"{counted(modes, 'mode')}, {counted(count, 'speed')}, {self.say_speed(self.speeds)}"
+        yield spanned(self.frequency, "Hz")
+        yield from (
+            error_at_most(self.error),
+            states(self.status, ("stable", "neutral")),
+            warned(self.warnings),
+        )
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
+        return self.left_out_at(self._judged)
+
+    @property
+    def left_out_speeds(self) -> np.ndarray:
+        """Speeds of the locus at which its model error is computed [rad/s], (k,).
+
+        The ends are among them, and those before and after a mode becomes unstable or stable.
+        """
+        return self.speeds[self._judged]
+
+    @property
+    def _judged(self) -> np.ndarray:
+        """Indices of the speeds at which the model error is computed (k,)."""
+        changed = (self.status[1:] != self.status[:-1]).any(axis=1)
+        before = np.flatnonzero(changed)[:_MOST_JUDGED]
+        return np.unique(np.concatenate([_spread(len(self.speeds), _MOST_JUDGED), before, before + 1]))
+
+    def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
+        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
+        at = np.asarray(indices, dtype=int)
+        return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies over speed."""
+        from beamdyn.common.plots.plots import plot_locus
+        from beamdyn.common.plots.plots_by_plane import plot_locus_by_plane
+
+        units = self.display_units
+        if self.scene.physics.planes == 2:
+            (solid, _), words = drawn_order(self.scene)
+            share = self.plane_share[:, :, solid]
+            return plot_locus_by_plane(self.speeds, self.frequency, share, words, ax, units=units)
+        return plot_locus(self.speeds, self.frequency, ax, units=units)
+
+
+@announced
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
+def frequency_locus(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float] | float,
+    modes: int = 3,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> Locus:
+    """Compute natural frequencies over speed, and follow the modes.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speeds : sequence of float
+        Speeds [rad/s], ascending.
+    modes : int
+        Number of modes to follow.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`; kept at every speed.
+
+    Returns
+    -------
+    Locus
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+
+    References
+    ----------
+    As `natural_modes`; between Chebyshev points of the speed by interpolation (standard).
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> locus = bd.frequency_locus(bd.Scene(strip, bd.Mount(radius=0.215)), [0.0, 50.0, 100.0], modes=1)
+    >>> locus.frequency[:, 0].round(3)  # Hz
+    array([65.23 , 61.963, 50.907])
+    """
+    start = perf_counter()
+    check_scene(scene)
+    speeds, modes = ascending("speeds", speeds), count("modes", modes)
+    check_speeds(speeds)
+    tolerance = check_tolerance(tolerance)
+    scene = choose_physics(scene, speeds, modes, tolerance)
+    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
+    order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
+    s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
+    error = _track_error(solution, order[:, :modes])
+    growth_rate = np.real(s) + 0.0
+    deflection, strain = static_load(solution.model, speeds)
+    return Locus(
+        speeds=speeds,
+        frequency=frequency_of(s),
+        growth_rate=growth_rate,
+        confidence=confidence[:, :modes],
+        error=error,
+        status=status_of(s),
+        eigenvalue=s,
+        plane_share=_track_shares(solution, order[:, :modes]),
+        static_deflection=deflection,
+        axial_strain=strain,
+        warnings=tuple(
+            warn_of_modes(solution.model, speeds, deflection, strain, error, growth_rate, tolerance)
+        ),
+        provenance=provenance_of(solution, start),
+        scene=scene,
+        model=solution.model,
+        ascending=solution.eigen.eigenvalue,
+        place=order[:, :modes],
+    )
+
+
+def _spread(count: int, most: int) -> np.ndarray:
+    """Indices of at most so many of a number of speeds, evenly spread, the ends among them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
+
+
+def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
+    """Shares of the planes (S, m, 2) in tracked order."""
+    shares = plane_share(solution.model.equations, solution.eigen.vector)
+    return np.take_along_axis(shares, order[:, :, None], axis=1)
+
+
+def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
+    """Errors in tracked order; an extra mode gets the largest error at its speed."""
+    modes = solution.error.shape[1]
+    errors = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
+    errors[:, :modes] = solution.error[:, : errors.shape[1]]
+    return np.take_along_axis(errors, order, axis=1)

@@ -1,0 +1,260 @@
+"""Equilibria at steady speed of a beam that bends by any angle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from beamdyn.equations.elastica import QUANTITIES, DeflectedState, Elastica
+from beamdyn.equations.root_motion import Quantity, root_motion
+from beamdyn.modes.modal.continuation import (
+    NotConverged,
+    Point,
+    find_at,
+    find_turning_point,
+    follow,
+    start_curve,
+)
+from beamdyn.scene.motion import MotionSample
+
+Branch = Literal["straight", "bent"]
+_SAME = 1e-6  # difference of slope angles below which two equilibria are one [rad]
+_PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
+
+_FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
+
+
+class NoEquilibrium(ArithmeticError):
+    """The beam has no equilibrium on the branch at this speed.
+
+    Examples
+    --------
+    >>> issubclass(bd.NoEquilibrium, Exception)
+    True
+    """
+
+
+@dataclass(frozen=True)
+class SteadyLoad:
+    """Equilibrium of a beam under rotation, with the squared speed as the parameter.
+
+    Parameters
+    ----------
+    elastica : Elastica
+        Equations of motion.
+    scale : float
+        Squared speed at which rotation matters [rad2/s2].
+    push : float
+        Further transverse acceleration of the root per squared speed [m].
+    """
+
+    elastica: Elastica
+    scale: float
+    push: float = 0.0
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Slope angles per coordinate."""
+        return self.elastica.angles
+
+    @cached_property
+    def _values(self) -> dict[Quantity, float]:
+        root = root_motion(self.elastica.linear.mount, MotionSample.steady(1.0))
+        values: dict[Quantity, float] = {quantity: float(getattr(root, quantity)) for quantity in QUANTITIES}
+        values["root_transverse"] += self.push
+        return {quantity: value for quantity, value in values.items() if value}
+
+    @property
+    def transverse(self) -> float:
+        """Transverse acceleration of the root per squared speed [m]."""
+        return self._values.get("root_transverse", 0.0)
+
+    def load(self, state: DeflectedState) -> np.ndarray:
+        """Inertial force (n,) per squared speed."""
+        return sum(
+            (value * state.inertia_of(quantity) for quantity, value in self._values.items()),
+            np.zeros(self.elastica.size),
+        )
+
+    def residual(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Sum of elastic and inertial forces (n,)."""
+        return self.elastica.stiffness @ q + p * self.load(self.elastica.at(q))
+
+    def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Tangent stiffness (n, n)."""
+        state = self.elastica.at(q)
+        by_rotation = (value * state.stiffness_of(quantity) for quantity, value in self._values.items())
+        return self.elastica.stiffness + p * sum(by_rotation, np.zeros_like(self.elastica.stiffness))
+
+    def rate(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Derivative of the residual by the squared speed."""
+        return self.load(self.elastica.at(q))
+
+
+@dataclass(frozen=True)
+class Pushed:
+    """Equilibrium at a fixed speed, with a transverse acceleration of the root as the parameter.
+
+    Parameters
+    ----------
+    load : SteadyLoad
+        The beam under rotation, without a push.
+    squared : float
+        Squared speed [rad2/s2].
+    scale : float
+        Acceleration that counts as an angle of 1 [m/s2].
+    """
+
+    load: SteadyLoad
+    squared: float
+    scale: float
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Slope angles per coordinate."""
+        return self.load.angles
+
+    def residual(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Sum of elastic and inertial forces (n,)."""
+        return self.load.residual(q, self.squared) + p * self.rate(q, p)
+
+    def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Tangent stiffness (n, n)."""
+        state = self.load.elastica.at(q)
+        return self.load.jacobian(q, self.squared) + p * state.stiffness_of("root_transverse")
+
+    def rate(self, q: np.ndarray, p: float) -> np.ndarray:
+        """Derivative of the residual by the acceleration."""
+        return self.load.elastica.at(q).inertia_of("root_transverse")
+
+
+def check_reach(load: SteadyLoad, speeds: np.ndarray) -> None:
+    """Raise NoEquilibrium for speeds [rad/s] at which the beam bends too sharply for any basis."""
+    most = _FASTEST * math.sqrt(load.scale)
+    if np.abs(speeds).max(initial=0.0) > most:
+        raise NoEquilibrium(
+            f"equilibria are sought up to {most:.4g} rad/s, {_FASTEST:g} times the first angular frequency "
+            "at rest"
+        )
+
+
+def follow_to(
+    load: SteadyLoad, speeds: np.ndarray, q: np.ndarray | None = None, start: float = 0.0
+) -> np.ndarray:
+    """Follow the equilibria to each of some speeds [rad/s]: coordinates (S, n).
+
+    Parameters
+    ----------
+    load : SteadyLoad
+        The beam under rotation.
+    speeds : ndarray, shape (S,)
+        The speeds.
+    q : ndarray, shape (n,), optional
+        Coordinates in equilibrium at the speed `start` [rad/s]; by default the beam at rest.
+
+    Raises
+    ------
+    NoEquilibrium
+        If the branch turns back before a speed, or a speed is too large.
+    """
+    check_reach(load, speeds)
+    q = np.zeros(load.elastica.size) if q is None else q
+    squares = speeds**2
+    found = np.tile(q, (len(speeds), 1))
+    for towards in (1.0, -1.0):
+        pending = [
+            k for k in np.argsort(towards * squares, kind="stable") if towards * (squares[k] - start**2) > 0
+        ]
+        if pending and (
+            load.transverse or q.any()
+        ):  # else the straight beam is in equilibrium at every speed
+            found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
+    return found
+
+
+def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np.ndarray:
+    """Coordinates at squared speeds in the order in which a curve meets them."""
+    found, curve, towards = [], follow(load, before), np.sign(before.p_rate)
+    while len(found) < len(squares):
+        after = _next(curve, before)
+        turning = find_turning_point(load, before, after) if after.p_rate * before.p_rate < 0 else None
+        after = turning or after
+        while len(found) < len(squares) and towards * (after.p - squares[len(found)]) >= 0:
+            found.append(_find_between(load, before, after, float(squares[len(found)])))
+        if turning is not None and len(found) < len(squares):
+            raise NoEquilibrium(f"the branch turns back at {_speed(turning):.6g} rad/s")
+        before = after
+    return np.array(found)
+
+
+def _next(curve: Iterator[Point], before: Point) -> Point:
+    """The next point of a curve."""
+    try:
+        return next(curve)
+    except NotConverged:
+        raise NoEquilibrium(f"the branch could not be followed beyond {_speed(before):.6g} rad/s") from None
+
+
+def _find_between(load: SteadyLoad, before: Point, after: Point, squared: float) -> np.ndarray:
+    """Coordinates at a squared speed between two points of a curve."""
+    try:
+        return find_at(load, before, after, squared)
+    except NotConverged:
+        speed = math.sqrt(squared)
+        raise NoEquilibrium(f"the equilibrium at {speed:.6g} rad/s was not found to rounding") from None
+
+
+def _speed(point: Point) -> float:
+    return float(np.sqrt(max(point.p, 0.0)))
+
+
+def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
+    """Coordinates (n,) of the stable equilibrium on the other side than that of the branch from rest.
+
+    The root is pushed so that the beam bends to the other side, and then released.
+
+    Raises
+    ------
+    NoEquilibrium
+        If the beam does not stay there at this speed.
+    """
+    natural, squared = load.transverse, speed**2
+    side = 1.0 if natural >= 0 else -1.0
+    push = -2 * natural - side * _PUSH * load.elastica.length
+    try:
+        q = follow_to(replace(load, push=push), np.array([speed]))[0]
+        bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
+    except (NotConverged, NoEquilibrium):
+        bent = None
+    if bent is None or _is_on_branch_from_rest(load, speed, bent):
+        raise NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
+    return bent
+
+
+def _is_on_branch_from_rest(load: SteadyLoad, speed: float, q: np.ndarray) -> bool:
+    """Whether an equilibrium is on the branch from rest, which may turn back before."""
+    try:
+        from_rest = follow_to(load, np.array([speed]))[0]
+    except NoEquilibrium:
+        return False
+    return bool(np.abs((q - from_rest) @ load.angles).max() < _SAME)
+
+
+def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
+    """Follow an equilibrium until the push has ended; None if it is lost before."""
+    before = start_curve(pushed, q, push, -np.sign(push))
+    for after in follow(pushed, before):
+        turned = after.p_rate * before.p_rate < 0
+        if turned:
+            after = find_turning_point(pushed, before, after)
+        if after.p * push <= 0:
+            return find_at(pushed, before, after, 0.0)
+        if turned:
+            return None
+        before = after
+    return None

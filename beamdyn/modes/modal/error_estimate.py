@@ -1,0 +1,301 @@
+"""Error estimates of eigenvalues by comparison with a coarser model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from beamdyn.accuracy.margins import BASES_OF_FIELDS, SLOW_BASES
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.equations.discretization import Discretization
+from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
+from beamdyn.scene.scene import Scene
+
+UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
+# Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
+LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
+_HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
+_OF_ENTRIES = 3 * np.finfo(float).eps  # three deviations of the rounding of the stiffness's entries
+_LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
+_SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
+_OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
+_ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
+# Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
+# which slow convergence may make it larger; functions of several segments converge at several rates.
+REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
+_ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
+_FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
+
+
+Parts: TypeAlias = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class EstimatedModes:
+    """Modes over a batch of speeds, with estimated errors of their eigenvalues.
+
+    Parameters
+    ----------
+    model : Model
+        The model of the modes.
+    eigen : Eigen
+        Modes of `model`.
+    error : ndarray, shape (S, k)
+        Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved,
+        where the coarser model has no such mode, and where the model does not exceed the coarser one.
+    """
+
+    model: Model
+    eigen: Eigen
+    error: np.ndarray
+
+    @property
+    def coarse(self) -> Model:
+        """The coarser model that the modes are compared with."""
+        return self.model.coarser
+
+    def meet(self, tolerance: float) -> bool:
+        """Whether all errors are below the tolerance or at the level of rounding."""
+        rounding = self.eigen.rounding[:, : self.error.shape[1]]
+        return bool((self.error <= np.maximum(tolerance, 3 * rounding)).all())
+
+
+def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> EstimatedModes:
+    """Solve a model and estimate the errors of its eigenvalues by its coarser model.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    modes : int
+        Number of modes with an estimated error.
+    extra : int
+        Number of further modes, without an estimated error.
+
+    Returns
+    -------
+    EstimatedModes
+
+    Raises
+    ------
+    InvalidValue
+        If the model has fewer functions than modes.
+    """
+    _check_size(model, modes)
+    fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
+    coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
+    compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
+    s = fine.eigenvalue[:, :compared]
+    squared, distance = s**2, s**2 - coarse**2
+    order = model.discretization.order
+    if order is not None:  # Richardson extrapolation: removes the leading term of the error
+        within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)  # of one: no distance
+        squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
+        extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
+        fine = Eigen(extrapolated, fine.vector, fine.rounding)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.abs(distance) / (2 * np.abs(squared))
+        if order is not None:
+            before = coarse**2 - _coarsest_squares(model, speeds, compared)
+            noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
+            noise += _rounding_of_elements(model, fine.vector[:, :, :compared])
+            least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
+            left = extrapolation_error(distance, before, noise, least)
+            truncation = (left + noise) / (2 * np.abs(squared))
+            truncation = _not_below_lower_modes(truncation, np.abs(squared) / model.solver.lowest_at_rest)
+        else:
+            truncation = _ritz_error_of(model, fine, distance, squared)
+    error = truncation + _ROUNDING * fine.rounding[:, :compared] + model.discretization.rounding
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
+    neutral = (s == 0) & _is_free_to_turn(model, speeds)[:, None]
+    resolved |= neutral
+    resolved &= ~_may_be_passed(squared, distance, resolved)
+    resolved &= model.exceeds_coarser
+    stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
+    lacking = np.full((len(speeds), modes - compared), np.inf)
+    return EstimatedModes(model, fine, np.concatenate([stated, lacking], axis=1))
+
+
+def _check_size(model: Model, modes: int) -> None:
+    """Refuse more modes than the model has functions: of moments some may depend on others."""
+    if model.solver.size < modes:
+        bound = f"{model.discretization} has {model.solver.size} functions for this beam"
+        raise InvalidValue("modes", modes, bound, "ask for fewer")
+
+
+def extrapolation_error(
+    distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
+) -> np.ndarray:
+    """What extrapolation leaves of the error of a number, by its distances over three meshes.
+
+    Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
+    of the one before; where they are longer than a layer, or cross a steep change, it falls less.
+
+    Parameters
+    ----------
+    distance, before : ndarray, shape (..., k)
+        Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
+    noise : ndarray, shape (..., k)
+        Rounding error of these differences.
+    least : float
+        Least ratio of the two that is taken; larger where segments converge each at a rate of its own.
+
+    Returns
+    -------
+    ndarray, shape (..., k)
+        inf where the differences do not fall.
+    """
+    size = np.abs(distance)
+    ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), least)
+    of_lower = np.where(size <= _OF_NOISE * noise, least, np.minimum(ratio, _SHARED))
+    ratio = np.maximum(ratio, np.maximum.accumulate(of_lower, axis=-1))
+    left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
+    left = np.where(size <= _OF_NOISE * noise, size, size * np.where(size > 0, left, 0.0))
+    return np.maximum(left, np.nan_to_num(np.abs(before)) / _LEAST_OF_BEFORE)
+
+
+def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Raise errors (S, k) to those of lower modes: elements resolve these better, but for coincidences.
+
+    `size` are the squares over the lowest at rest: a small one has a larger relative error.
+    """
+    of_lower = np.where((size > 0) & np.isfinite(error), error * np.minimum(size, 1.0), 0.0)
+    return np.maximum(error, np.maximum.accumulate(of_lower, axis=1))
+
+
+def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
+    """Rounding error (S, k) of squared eigenvalues of modes (S, n, k): short elements have stiff entries."""
+    K, size = np.abs(model.solver.pencil.K0), np.abs(v)
+    return _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", size**2, K**2, size**2, optimize=True))
+
+
+def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
+    """Whether a mesh has about half the functions of a finer one, but for short segments."""
+    return mesh.size <= _HALVED * finer.size
+
+
+def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan where it has none."""
+    coarsest = model.coarser.coarser
+    if not is_halved(coarsest.solver, model.coarser.solver):
+        return np.full((len(speeds), count), np.nan)
+    found = eigenvalues_over_speeds(coarsest.solver, speeds, min(count, coarsest.solver.size)) ** 2
+    lacking = np.full((len(speeds), count - found.shape[1]), np.nan)
+    return np.concatenate([found, lacking], axis=1)
+
+
+def error_of_assumed_modes(
+    squared: np.ndarray,
+    distance: np.ndarray,
+    rounding: np.ndarray,
+    lowest_at_rest: np.ndarray,
+    is_slender: bool = True,
+    parts: Parts = REGULAR,
+) -> np.ndarray:
+    """Errors that `solve_with_error` states of assumed modes that stand on no hinge.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (S, k)
+        Squares of the eigenvalues.
+    distance : ndarray, shape (S, k)
+        Their distances from those of the coarser basis.
+    rounding : ndarray, shape (S, k)
+        Relative error of the eigenvalues by rounding.
+    lowest_at_rest : ndarray, shape (S,)
+        Lowest squared frequency at rest of each.
+    is_slender : bool
+        Whether the beams are slender, clamped, and bend in one plane.
+    parts : tuple of float
+        How the basis converges: see `parts_of_distances`.
+
+    Returns
+    -------
+    ndarray, shape (S, k)
+        inf where unresolved.
+    """
+    margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.abs(distance) / (2 * np.abs(squared))
+        error = _ritz_error(distance, squared, lowest_at_rest, margin, parts) + _ROUNDING * rounding
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
+    resolved &= ~_may_be_passed(squared, distance, resolved)
+    return np.where(resolved, error, np.inf)
+
+
+def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
+    """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
+    if not discretization.converges_regularly:
+        return _IRREGULAR
+    return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
+
+
+def _is_free_to_turn(model: Model, speeds: np.ndarray) -> np.ndarray:
+    """Whether nothing holds a root that turns without a spring: then a frequency within rounding of 0 is 0.
+
+    At speed, shape (S,), rotation holds it, or turns it over, unless the root is on the axis.
+    """
+    mount, planes = model.scene.mount, model.scene.physics.planes
+    return (0.0 in mount.root_stiffnesses[:planes]) & ((speeds == 0) | (mount.radius == 0))
+
+
+def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Eigenvalues of given squares that lie near s.
+
+    The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
+    themselves turn from imaginary to real where a square passes zero.
+    """
+    root = np.sqrt(squared)
+    return np.where(np.real(root * s.conj()) < 0, -root, root)
+
+
+def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
+    """Whether a higher mode that is not resolved may in truth be lower than this one: shape (S, k)."""
+    reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
+    lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
+    return -np.real(squared) > lowest
+
+
+def _ritz_error_of(model: Model, fine: Eigen, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
+    """The error `_ritz_error` of a model, by its basis and by what it may lack."""
+    margin = SLOW_BASES.factor if model.scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
+    parts = parts_of_distances(model.scene, model.discretization)
+    lowest = 0.0 if _are_above_rest(model, fine, squared) else model.solver.lowest_at_rest
+    return _ritz_error(distance, squared, np.asarray(lowest), margin, parts)
+
+
+def _are_above_rest(model: Model, fine: Eigen, squared: np.ndarray) -> bool:
+    """Whether no square is below the lowest at rest: a first mode's quotient there bounds that from above."""
+    pencil, first = model.solver.pencil, fine.vector[:, :, 0]
+    stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
+    return bool(np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift))
+
+
+def _ritz_error(
+    distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: Parts
+) -> np.ndarray:
+    """Relative truncation error of Ritz eigenvalues, by the distance of their squares from a smaller basis's.
+
+    Squares and distances have shape (S, k), as has the error; the lowest squared frequency at rest has shape
+    () or (S,).
+    Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are modes that
+    only every other function changes, and modes whose distance is small by accident: where convergence is
+    slow, a margin measured on random scenes is added, for the distances of all modes, relative to the higher
+    mode of two; it is `of_few` where a basis may have too few functions of one field.
+    Where an eigenvalue vanishes, the scale of its square is the lowest squared frequency at rest.
+    """
+    half, size = np.abs(distance) / 2, np.abs(squared)
+    scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])
+    largest = (half[:, None, :] / scale).max(axis=2)
+    relative = half / size
+    margin = np.where(largest > _FEW, of_few, SLOW_BASES.factor)
+    own, others, limit = parts
+    is_slow = largest > limit
+    of_largest = np.where(is_slow, margin / 10, others) * largest
+    return np.maximum(np.where(is_slow, own * margin, own) * relative, of_largest)

@@ -1,0 +1,160 @@
+"""Eigensolver of large equations, such as those of a blade tabulated at many stations.
+
+A few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse problem, with
+one factorization of the stiffness at each speed, in place of all eigenvalues of full matrices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
+
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modes.modal.eigen import (
+    LEAST_STIFFNESS,
+    Solver,
+    explained,
+    forward_error,
+    rounding_of_scene,
+    select_lowest,
+)
+from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modes.modal.one_speed import rounding_of_factored
+
+_EPS = np.finfo(float).eps
+_MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
+_RESTARTS = 50  # of the iteration, which converges after a few, if at all
+
+
+class LargeSolver(Eigensolver):
+    """Eigensolver for the lowest few of many modes.
+
+    Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
+    `Solver` does.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations at steady speed.
+    """
+
+    def __init__(self, pencil: SteadyPencil) -> None:
+        self.pencil = pencil
+        with explained():
+            self._at_rest = np.linalg.cholesky(pencil.K0 + pencil.shift * pencil.M)
+
+    @cached_property
+    def dense(self) -> Solver:
+        """Solver by full matrices."""
+        return Solver(self.pencil)
+
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """By the iteration."""
+        with suppress(ArpackNoConvergence):
+            return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
+        return self.dense.lowest_at_rest
+
+    @property
+    def softening(self) -> float:
+        """That of `dense`."""
+        return self.dense.softening
+
+    @property
+    def critical_rounding(self) -> float:
+        """That of `dense`."""
+        return self.dense.critical_rounding
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Speed by speed."""
+        each = [self._solve_at(speed, count) for speed in speeds]
+        return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Speed by speed, by a factorization of the stiffness."""
+        return np.array([self._static(speed, outputs) for speed in speeds])
+
+    def _static(self, speed: float, outputs: np.ndarray) -> np.ndarray:
+        try:
+            factor = cho_factor(self._stiffness(speed))
+        except LinAlgError:
+            return np.full(len(outputs), np.nan if speed else 0.0)
+        return outputs @ cho_solve(factor, speed**2 * self.pencil.f2)
+
+    def _stiffness(self, speed: float) -> np.ndarray:
+        return self.pencil.K0 + speed**2 * self.pencil.K2
+
+    def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        with suppress(ArpackNoConvergence):
+            found = None if self.pencil.shift else self._lowest(speed, count)
+            if found is not None:
+                return found if self.pencil.conservative else self._lowest_coupled(speed, count)
+        eigen = self.dense.solve(np.array([speed]), count)
+        return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
+
+    # Conservative equations --------------------------------------------------------------------------
+
+    def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Lowest modes without damping and gyroscopic terms; None if the stiffness is not safely positive."""
+        try:
+            L = np.linalg.cholesky(self._stiffness(speed)) if speed else self._at_rest
+        except np.linalg.LinAlgError:
+            return None
+        mu, x = self._largest(self._transformed(L, self.pencil.M), count)
+        if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
+            return None
+        v = solve_lower_transposed(L, x) / np.sqrt(mu)
+        size, squared = np.abs(v), 1 / mu
+        found = squared[None], size[None], rounding_of_factored(self.pencil, speed, squared, v, size)[None]
+        rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)[0]
+        return 1j / np.sqrt(mu), v, rounding
+
+    def _transformed(self, L: np.ndarray, A: np.ndarray) -> LinearOperator:
+        """The operator L^-1 A L^-T."""
+
+        def product(x: np.ndarray) -> np.ndarray:
+            half = solve_lower_transposed(L, x.reshape(len(L), -1))
+            return solve_lower(L, A @ half).reshape(x.shape)
+
+        return self._operator(product, self.size)
+
+    def _largest(self, operator: LinearOperator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Largest eigenvalues (k,), descending, and their vectors (n, k)."""
+        start = np.random.default_rng(0).standard_normal(self.size)
+        mu, x = eigsh(operator, count, which="LA", v0=start, tol=0, maxiter=_RESTARTS)
+        order = np.argsort(-mu)
+        return mu[order], x[:, order]
+
+    @staticmethod
+    def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearOperator:
+        return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
+
+    # Gyroscopic and damped equations -----------------------------------------------------------------
+
+    def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lowest modes of M q'' + C q' + K q = 0, by the largest 1/s."""
+        n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
+        factor = cho_factor(self._stiffness(speed))
+        time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
+
+        def product(y: np.ndarray) -> np.ndarray:
+            q, v = y[:n], y[n:]
+            force = C @ q / time + M @ v / time**2
+            return np.concatenate([-cho_solve(factor, force, check_finite=False), q])
+
+        start = np.random.default_rng(0).standard_normal(2 * n)
+        sought = 2 * (count + _MORE)
+        inverse, y = eigs(
+            self._operator(product, 2 * n), sought, which="LM", v0=start, tol=0, maxiter=_RESTARTS
+        )
+        s, q = select_lowest(inverse * time, y[:n], count)
+        mass = np.sqrt(np.einsum("nk,nk->k", q.conj(), M @ q).real)
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + self.size)
+        return s, q / mass, rounding

@@ -1,0 +1,326 @@
+"""Modes of many designs of one beam, in one basis, by batched eigenproblems.
+
+The designs differ in their matrices and in speed.  Nothing is gyroscopic in them, and if they are damped,
+then by one ratio of all modes at rest.  Modes of undamped designs are real; the errors are those that
+`beamdyn.modes.modal.error_estimate` states of a single one.
+
+Critical speeds and resonances need no search over speed: with B = m^2 M - K2,
+
+    K0 v = speed^2 B v
+
+holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  As K0 is positive
+definite, exactly j frequencies lie below the line m speed past the j-th lowest root (Sylvester's law of
+inertia): this is where mode j, counted at its speed, meets the line, and it meets it once at most.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.triangular import solve_lower
+from beamdyn.equations.rounding import BACKWARD
+from beamdyn.modes.modal.eigen import (
+    LEAST_STIFFNESS,
+    explained,
+    inverse_squares,
+    rounding_of_matrices,
+    select_lowest,
+    solve_diagonal,
+)
+from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_modes
+
+_EPS = float(np.finfo(float).eps)
+_MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
+
+
+@dataclass(frozen=True)
+class PencilStack:
+    """Matrices of N designs: M q'' + (K0 + speed^2 K2) q = 0.
+
+    Parameters
+    ----------
+    K0 : ndarray, shape (n, n) or (N, n, n)
+        Stiffness at rest of all designs, or of each.
+    M, K2 : ndarray, shape (N, n, n)
+        Mass, and stiffness per squared speed, of each.
+    """
+
+    K0: np.ndarray
+    M: np.ndarray
+    K2: np.ndarray
+
+    def part(self, coordinates: np.ndarray) -> PencilStack:
+        """The same over some of the coordinates."""
+        places = ..., *np.ix_(coordinates, coordinates)
+        return PencilStack(self.K0[places], self.M[places], self.K2[places])
+
+
+@dataclass(frozen=True)
+class ManyModes:
+    """The k lowest modes of N designs at S speeds each.
+
+    Parameters
+    ----------
+    eigenvalue : ndarray of complex, shape (N, S, k)
+        s in exp(s t) [1/s]: imaginary, or positive where the beam diverges; complex where it is damped.
+    error, rounding : ndarray, shape (N, S, k)
+        Estimated relative error of the frequency, inf where unresolved; and the part of rounding in it.
+    static : ndarray, shape (N, S)
+        Size of the displacement under the static load; nan from the critical speed on.
+    """
+
+    eigenvalue: np.ndarray
+    error: np.ndarray
+    rounding: np.ndarray
+    static: np.ndarray
+
+    def meet(self, target: float) -> np.ndarray:
+        """Which designs (N,) have all errors below a target or at the level of rounding."""
+        return np.all(self.error <= np.maximum(target, 3 * self.rounding), axis=(1, 2))
+
+
+class StackedSolver:
+    """Eigensolver of a stack, in coordinates in which the stiffness of each is diagonal at every speed.
+
+    It does for each design what `beamdyn.modes.modal.eigen.Solver` does for one.
+
+    Parameters
+    ----------
+    stack : PencilStack
+        The matrices.
+    """
+
+    def __init__(self, stack: PencilStack) -> None:
+        self.stack = stack
+        with explained():
+            inverse = _inverse_factor(stack.K0)
+        with explained():
+            self.growth, turned = np.linalg.eigh(
+                _symmetric(inverse @ stack.K2 @ np.swapaxes(inverse, -1, -2))
+            )
+        self.basis = np.swapaxes(inverse, -1, -2) @ turned
+        self.mass = _symmetric(np.swapaxes(self.basis, 1, 2) @ stack.M @ self.basis)
+
+    @cached_property
+    def lowest_at_rest(self) -> np.ndarray:
+        """Lowest squared frequency at rest of each design (N,)."""
+        return 1 / np.linalg.eigvalsh(self.mass)[:, -1]
+
+    def solve(self, speeds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Squared frequencies (N S, k) at the speeds (N, S) of the designs, and their rounding errors."""
+        design, spin = _rows(speeds)
+        terms = 1 + spin * np.abs(self.growth)[design]
+        stiffness = 1 + spin * self.growth[design]
+        with explained():
+            found = solve_diagonal(self.mass[design], stiffness, count, self.lowest_at_rest[design])
+        squared, z, rounding = found
+        size = np.abs(self.basis[design] @ z)
+        rounding = rounding + rounding_of_matrices(terms, squared, z, size, np.abs(self.stack.M)[design])
+        return squared, np.where(squared == 0, np.inf, rounding)
+
+    def squares(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Squared frequencies (N S, k) alone."""
+        design, spin = _rows(speeds)
+        stiffness = 1 + spin * self.growth[design]
+        stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
+        squared = np.empty((len(stiff), count))
+        with explained():
+            squared[stiff] = 1 / inverse_squares(self.mass[design[stiff]], stiffness[stiff], count)
+            if not stiff.all():
+                soft = design[~stiff]
+                lowest = self.lowest_at_rest[soft]
+                squared[~stiff] = solve_diagonal(self.mass[soft], stiffness[~stiff], count, lowest)[0]
+        return squared
+
+    def damped(self, speeds: np.ndarray, ratio: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues (N S, k) and their rounding errors, with a damping ratio (N,) of the modes at rest."""
+        design, spin = _rows(speeds)
+        time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]  # a unit in which frequencies are some 1
+        stiffness = (1 + spin * self.growth[design])[:, :, None]
+        n = stiffness.shape[1]
+        B = np.zeros((len(design), 2 * n, 2 * n))
+        B[:, :n, :n] = -2 * ratio[design, None, None] * self._root_of_mass[design] / (time * stiffness)
+        B[:, :n, n:] = -self.mass[design] / (time**2 * stiffness)
+        B[:, n:, :n] = np.eye(n)
+        with explained():
+            inverse = np.linalg.eigvals(B) * time[:, :, 0]
+        s = np.array([select_lowest(each, np.empty((0, 2 * n)), count)[0] for each in inverse])
+        terms = (1 + spin * np.abs(self.growth)[design]).max(axis=1) / np.abs(stiffness[:, :, 0]).min(axis=1)
+        return s, 8 * _EPS * (np.abs(s) * np.abs(inverse).max(axis=1)[:, None] + terms[:, None])
+
+    @cached_property
+    def _root_of_mass(self) -> np.ndarray:
+        """Square roots (N, n, n) of the mass: damping at a ratio of 1/2, as the stiffness at rest is 1."""
+        value, vector = np.linalg.eigh(self.mass)
+        return (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
+
+    def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
+
+        Of the multiple 0: at which the stiffness is singular.  Modes ascend; a value that is not positive
+        says that the mode meets the line at no speed.  The rounding error is that of the value.
+        """
+        n = self.growth.shape[1]
+        matrices = multiples[:, None, None] ** 2 * self.mass[:, None]
+        matrices[..., np.arange(n), np.arange(n)] -= self.growth[:, None]
+        with explained():
+            inverse = np.linalg.eigvalsh(matrices)
+        rounding = 2 * BACKWARD * np.abs(inverse).max(axis=2, keepdims=True)
+        return inverse[..., : -count - 1 : -1], rounding
+
+    def static(self, speeds: np.ndarray, load: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Size (N, S) of the static values of outputs (d, n) under loads (N, n) per squared speed."""
+        of_load = np.einsum("nik,ni->nk", self.basis, load)
+        spin = speeds[:, :, None] ** 2
+        stiffness = 1 + spin * self.growth[:, None, :]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            compliance = of_load[:, None, :] * spin / stiffness
+        tips = np.einsum("dk,nki,nsi->nsd", outputs, self.basis, compliance)
+        return np.where(stiffness.min(axis=2) > 0, np.sqrt((tips**2).sum(axis=2)), np.nan)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How the errors of a basis are estimated.
+
+    Parameters
+    ----------
+    is_slender : bool
+        Whether the designs are slender beams, clamped, in one plane.
+    parts : tuple of float
+        How the basis converges: see `parts_of_distances`.
+    rounding : float
+        Rounding errors over those of a slender beam, clamped, in one plane.
+    """
+
+    is_slender: bool = True
+    parts: Parts = REGULAR
+    rounding: float = 1.0
+
+
+def solve_many(
+    stack: PencilStack,
+    coarse: PencilStack,
+    speeds: np.ndarray,
+    count: int,
+    load: np.ndarray,
+    outputs: np.ndarray,
+    ratio: np.ndarray | None = None,
+    estimate: Estimate = Estimate(),
+) -> ManyModes:
+    """Solve the designs of a stack, and estimate the errors by a coarser basis.
+
+    Parameters
+    ----------
+    stack, coarse : PencilStack
+        Matrices of N designs, in a basis and in a coarser one.
+    speeds : ndarray, shape (N, S)
+        Speeds of each design [rad/s].
+    count : int
+        Number k of modes.
+    load : ndarray, shape (N, n)
+        Static load per squared speed.
+    outputs : ndarray, shape (d, n)
+        Components of the static displacement that is wanted, such as those of the tip.
+    ratio : ndarray, shape (N,), optional
+        Damping ratio of the modes at rest; undamped if not given.
+    estimate : Estimate
+        How the errors are estimated.
+
+    Returns
+    -------
+    ManyModes
+    """
+    fine, coarser = StackedSolver(stack), StackedSolver(coarse)
+    parts = np.split(speeds, range(_MOST_SPEEDS, speeds.shape[1], _MOST_SPEEDS), axis=1)
+    solved = [_solve_at(fine, coarser, part, count, ratio, estimate) for part in parts]
+    of_all = (np.concatenate(values, axis=1) for values in zip(*solved, strict=True))
+    return ManyModes(*of_all, static=fine.static(speeds, load, outputs))
+
+
+def _solve_at(
+    fine: StackedSolver,
+    coarser: StackedSolver,
+    speeds: np.ndarray,
+    count: int,
+    ratio: np.ndarray | None,
+    estimate: Estimate,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Eigenvalues, their errors and the part of rounding in these, (N, S, k), at speeds (N, S)."""
+    if ratio is None:
+        squared, rounding = fine.solve(speeds, count)
+        squared, distance = -squared, coarser.squares(speeds, count) - squared
+        # The eigenvalues s are imaginary where the beam vibrates: s^2 = -w^2.
+        s = np.sqrt(np.abs(squared)) * np.where(squared < 0, 1j, 1.0)
+    else:
+        s, rounding = fine.damped(speeds, ratio, count)
+        squared = s**2
+        distance = squared - coarser.damped(speeds, ratio, count)[0] ** 2
+    rounding = estimate.rounding * rounding
+    lowest = np.repeat(fine.lowest_at_rest, speeds.shape[1])
+    kind = estimate.is_slender, estimate.parts
+    error = error_of_assumed_modes(squared, distance, rounding, lowest, *kind)
+    shape = *speeds.shape, count
+    return s.reshape(shape), error.reshape(shape), rounding.reshape(shape)
+
+
+def speeds_of_meeting(
+    stack: PencilStack,
+    coarse: PencilStack,
+    multiples: np.ndarray,
+    count: int,
+    top: np.ndarray,
+    estimate: Estimate = Estimate(),
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Speeds at which modes meet lines, or at which the stiffness is singular, for the multiple 0.
+
+    Parameters
+    ----------
+    stack, coarse, estimate
+        As for `solve_many`.
+    multiples : ndarray, shape (L,)
+        Multiples of the speed.
+    count : int
+        Number k of modes.
+    top : ndarray, shape (N,)
+        Speeds [rad/s] up to which is sought; inf without an end.
+
+    Returns
+    -------
+    speed : ndarray, shape (N, L, k)
+        Speeds [rad/s]; inf where a mode meets the line at none up to the top.
+    error, rounding : ndarray, shape (N, L, k)
+        Estimated relative error of the speed, inf where there is none or it is unresolved; and the part of
+        rounding in it.
+    """
+    inverse, rounding = StackedSolver(stack).meeting(multiples, count)
+    coarser, _ = StackedSolver(coarse).meeting(multiples, count)
+    exists = inverse > np.maximum(rounding, top[:, None, None] ** -2.0)
+    squared = 1 / np.where(exists, inverse, 1.0)
+    of_coarser = 1 / np.where(
+        coarser > 0, coarser, np.where(exists, inverse / 2, 1.0)
+    )  # unresolved where that meets none
+    distance = np.where(exists, of_coarser - squared, 0.0)
+    relative = estimate.rounding * rounding * squared / 2
+    of_rows, off, sure = (values.reshape(-1, count) for values in (-squared, distance, relative))
+    kind = estimate.is_slender, estimate.parts
+    error = error_of_assumed_modes(of_rows, off, sure, squared[..., 0].ravel(), *kind).reshape(squared.shape)
+    return np.where(exists, np.sqrt(squared), np.inf), np.where(exists, error, np.inf), relative
+
+
+def _inverse_factor(K: np.ndarray) -> np.ndarray:
+    """The inverse of the lower Cholesky factor of K (n, n), or of each (N, n, n)."""
+    L, one = np.linalg.cholesky(K), np.eye(K.shape[-1])
+    return solve_lower(L, one) if K.ndim == 2 else np.linalg.solve(L, np.broadcast_to(one, K.shape))
+
+
+def _rows(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Design (N S,) and squared speed (N S, 1) of each problem."""
+    return np.repeat(np.arange(len(speeds)), speeds.shape[1]), speeds.reshape(-1, 1) ** 2
+
+
+def _symmetric(A: np.ndarray) -> np.ndarray:
+    return (A + np.swapaxes(A, -1, -2)) / 2

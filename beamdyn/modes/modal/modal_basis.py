@@ -1,0 +1,145 @@
+"""Modal bases: the lowest modes of the beam at rest, or at the slowest and fastest speed of a motion.
+
+The papers use modes at rest, which converge slowly under rotation.  Modes at the slowest and the fastest
+speed together reproduce the frequencies at both, and nearly those between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import count
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.modes.modal.eigen import Solver
+from beamdyn.scene.motion import Motion
+
+FEWEST_MODES = 2  # size of the first basis where no number is given
+SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
+_MOST_MODES = 60  # with more, the time steps that the fastest modes need are too small
+_MASSLESS = 1e-14  # pivot of the mass, over the largest, that rounding makes of 0
+_DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
+
+
+@dataclass(frozen=True)
+class ModalBasis:
+    """Modes that span the coordinates of a reduced model.
+
+    Parameters
+    ----------
+    modes : int or None
+        Number of modes at each speed of each set of coupled fields; None for all modes of the discretization.
+    speeds : tuple of float
+        Speeds of the modes [rad/s].
+    """
+
+    modes: int | None
+    speeds: tuple[float, ...] = (0.0,)
+
+    def __str__(self) -> str:
+        if self.modes is None:
+            return "all modes"
+        if self.is_at_rest:
+            return f"{self.modes} modes"
+        return f"{self.modes} modes at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the modes are those at rest."""
+        return self.speeds == (0.0,)
+
+    def refined(self) -> ModalBasis | None:
+        """Enlarge the basis by half as many modes, at least two; None if that is too many."""
+        assert self.modes is not None
+        modes = self.modes + max(2, self.modes // 2)
+        return replace(self, modes=modes) if modes <= _MOST_MODES else None
+
+    def with_one_more(self) -> ModalBasis | None:
+        """Enlarge the basis by one mode; None if that is too many."""
+        assert self.modes is not None
+        return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
+
+
+def given_basis(modes: int | str) -> ModalBasis | None:
+    """Basis of a number of modes at rest; None for "auto", which leaves the number to the tolerance."""
+    auto = isinstance(modes, str) and modes == "auto"
+    return None if auto else ModalBasis(count("modes", modes, remedy='or "auto"'))
+
+
+def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:
+    """Find the smallest and largest |speed| [rad/s] until `t_end` [s]; one value if it is constant."""
+    speed = np.abs(motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).speed)
+    return tuple(np.unique([speed.min(), speed.max()]).tolist())
+
+
+def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
+    """Transform the equations to modal coordinates of unit mass, signed for a positive tip deflection."""
+    pencil, count = equations.steady(), basis.modes or equations.size
+    bases = {}
+    for names in equations.coupled:
+        places = equations.places(names)
+        shapes = span_modes(pencil.part(places).undamped(), count, basis.speeds)
+        bases[names] = shapes * _signs(equations.tips[:, places] @ shapes)
+    return equations.reduced(bases)
+
+
+def _signs(tips: np.ndarray) -> np.ndarray:
+    """Signs (m,) by which the larger of the tip deflections (directions, m) becomes positive."""
+    larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
+    return np.where(larger < 0, -1.0, 1.0)
+
+
+def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
+    """Compute mass-normalised shapes that span the lowest modes of a conservative pencil at some speeds.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Conservative equations of size n.
+    modes : int
+        Number of modes at the last speed; at each other speed 2 + modes // 2, because higher modes
+        hardly change with speed.
+    speeds : sequence of float
+        Speeds [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+        Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
+        number of modes if those of different speeds are linearly dependent.
+    """
+    vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
+    if tuple(speeds) == (0.0,):
+        return vectors[0]
+    all_shapes = np.concatenate([*vectors[:-1, :, : 2 + modes // 2], vectors[-1]], axis=1)
+    independent = _orthonormal(pencil.M, all_shapes)
+    return independent @ np.linalg.eigh(independent.T @ pencil.K0 @ independent)[1]
+
+
+def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Combine shapes in columns to as many as are independent, orthonormal in the mass."""
+    try:
+        L = np.linalg.cholesky(M)
+    except np.linalg.LinAlgError:
+        return _orthonormal_of_massless(M, shapes)
+    pivots = np.diag(L) ** 2
+    if pivots.min() < _MASSLESS * pivots.max():
+        return _orthonormal_of_massless(M, shapes)
+    directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
+    return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
+
+
+def _orthonormal_of_massless(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """The same for a mass that is singular, as that of bending and shear without rotary inertia is.
+
+    The mass does not tell how much of a deflection is shear: only combinations of the given shapes do.
+    """
+    values, vectors = np.linalg.eigh(M)
+    root = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
+    _, size, weights = np.linalg.svd(root @ shapes, full_matrices=False)
+    known = size > _DEPENDENT * size[0]
+    combined = shapes @ (weights[known].T / size[known])
+    L = np.linalg.cholesky(combined.T @ M @ combined)  # removes the rounding of nearly dependent shapes
+    return np.linalg.solve(L, combined.T).T

@@ -1,0 +1,111 @@
+"""A discretized scene, with its equations and eigenproblem, which are computed once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.equations_of_motion import Equations, assemble_equations
+from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
+from beamdyn.modes.modal.uncoupled import solver_of, solver_over
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from beamdyn.equations.elastica import Elastica
+    from beamdyn.modes.modal.deflected import DeflectedSolver
+
+
+@dataclass(frozen=True)
+class Model(FieldsOnly):
+    """A discretized scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    discretization : Discretization
+        Discretization of the beam.
+    """
+
+    scene: Scene
+    discretization: Discretization
+
+    def of(self, scene: Scene) -> Model:
+        """The same beam and discretization with the physics, motion and damping of another scene."""
+        return Model(replace(scene, beam=self.scene.beam), self.discretization)
+
+    @cached_property
+    def equations(self) -> Equations:
+        """Equations of motion, linear about the straight beam."""
+        return assemble_equations(self.scene, self.discretization)
+
+    @cached_property
+    def solver(self) -> Eigensolver:
+        """Solver of the eigenproblem at steady speeds."""
+        return solver_of(self.equations) if self.elastica is None else self._deflected
+
+    @cached_property
+    def _deflected(self) -> DeflectedSolver:
+        """That of equations for deflections of any size."""
+        from beamdyn.modes.modal.deflected import (
+            DeflectedSolver,  # here, for the time that it takes to import
+        )
+
+        assert self.elastica is not None
+        return DeflectedSolver(self.elastica, self.scene.physics.branch)
+
+    @cached_property
+    def elastica(self) -> Elastica | None:
+        """Equations of motion for deflections of any size; None where they are linear."""
+        if not self.scene.physics.large_deflection:
+            return None
+        from beamdyn.equations.elastica import assemble_elastica  # here, for the time that it takes to import
+
+        return assemble_elastica(self.scene, self.discretization, self.equations)
+
+    @cached_property
+    def coarse_solver(self) -> Eigensolver:
+        """Solver of the coarser model: where functions of this one span its own, over these."""
+        if self.elastica is not None or self.equations.coarse is None:
+            return self.coarser.solver
+        return solver_over(self.equations, self.equations.coarse)
+
+    @property
+    def exceeds_coarser(self) -> bool:
+        """Whether each field has functions beyond those of the coarser model, which else says nothing of it.
+
+        Where the coarser model has other functions, it is enough that they are fewer in all.
+        """
+        coarse = self.equations.coarse
+        if coarse is None:
+            return self.coarser.equations.size < self.equations.size
+        added = np.ones(self.equations.size, dtype=bool)
+        added[coarse] = False
+        return all(added[block].any() for block in self.equations.blocks.values())
+
+    def equations_at(self, speed: float) -> Equations:
+        """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
+        if self.elastica is None:
+            return self.equations
+        return self._deflected.equations(np.array([speed]))[0]
+
+    def static_tips(self, speeds: np.ndarray) -> np.ndarray:
+        """Static deflections of the tip at steady speeds [rad/s] in each direction [m], shape (S, planes)."""
+        if self.elastica is None:
+            return self.solver.solve_static(speeds, self.equations.tips)
+        return self._deflected.tips(speeds)
+
+    def modal_equations(self, basis: ModalBasis | int) -> Equations:
+        """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""
+        return reduce_to_modes(self.equations, ModalBasis(basis) if isinstance(basis, int) else basis)
+
+    @cached_property
+    def coarser(self) -> Model:
+        """The coarser model, by whose results the error of this one is estimated."""
+        return Model(self.scene, self.discretization.coarser())

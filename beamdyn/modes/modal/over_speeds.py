@@ -1,0 +1,149 @@
+"""Modes over many speeds, by interpolation between those at a few.
+
+Without damping squared frequencies are smooth functions of the speed, and so are the modes, but for sharp
+veerings; without gyroscopic terms, of the squared speed.  They are interpolated in Chebyshev points of an
+interval.  The error of the interpolant is estimated by its coefficients of highest degree: where they exceed
+rounding, there are more points, and then the interval is halved, down to a few speeds, which are solved each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+
+_FEW = 160  # speeds that are solved each
+_INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
+_HIGHEST = 3  # the last third of the coefficients: where it is small, the series falls faster than that
+_MISFIT = 1e-12  # of interpolated squared frequencies, beside their rounding: it is in the stated error
+_MISFIT_OF_MODES = 1e-7  # of interpolated modes, relative to their largest coordinate: they are only compared
+_LEBESGUE = 3.0  # growth of rounding errors at the points by interpolation: constant of 17 to 33 points
+
+Solve = Callable[[np.ndarray], Eigen]  # modes at given speeds
+
+
+def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
+    """Compute the `count` lowest modes at speeds (S,) [rad/s], as `Eigensolver.solve` does."""
+    return _solve_over(solver, speeds, lambda some: solver.solve(some, count))
+
+
+def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Compute the eigenvalues of the `count` lowest modes at speeds (S,), shape (S, count)."""
+    if len(speeds) <= _FEW:
+        return solver.eigenvalues(speeds, count)
+    return _solve_over(solver, speeds, lambda some: _without_modes(solver.solve(some, count))).eigenvalue
+
+
+def _without_modes(eigen: Eigen) -> Eigen:
+    """The same eigenvalues with modes of no coordinates."""
+    return Eigen(eigen.eigenvalue, eigen.vector[:, :0], eigen.rounding)
+
+
+def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
+    if len(speeds) <= _FEW or solver.pencil.C.any():
+        return solve(speeds)
+    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
+    found = _solve_ascending(solver, sizes, solve)
+    if len(sizes) < len(speeds) or (speeds < 0).any():
+        found = Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
+    return _turn_round(found, speeds, solve) if np.iscomplexobj(found.vector) else found
+
+
+def _turn_round(found: Eigen, speeds: np.ndarray, solve: Solve) -> Eigen:
+    """Gyroscopic modes at speeds of either sign, by those at their sizes: the other sense has the conjugate.
+
+    Of a mode that grows it has the one that decays, which was not found: such speeds are solved each.
+    """
+    backwards = speeds < 0
+    vector = np.where(backwards[:, None, None], found.vector.conj(), found.vector)
+    turned = Eigen(found.eigenvalue.copy(), vector, found.rounding.copy())
+    growing = backwards & (np.real(found.eigenvalue) != 0).any(axis=1)
+    if growing.any():
+        each = solve(speeds[growing])
+        turned.eigenvalue[growing], turned.vector[growing] = each.eigenvalue, each.vector
+        turned.rounding[growing] = each.rounding
+    return turned
+
+
+def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
+    """The same at ascending speeds of 0 or more."""
+    if len(speeds) <= _FEW:
+        return solve(speeds)
+    for eigen in _solve_at_nodes(speeds[0], speeds[-1], _power(solver), solve):
+        if (found := _interpolate(solver, eigen, speeds)) is not None:
+            return found
+    parts = [_solve_ascending(solver, part, solve) for part in np.array_split(speeds, 2)]
+    joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
+    return Eigen(*map(np.concatenate, joined))
+
+
+def _solve_at_nodes(slowest: float, fastest: float, power: int, solve: Solve) -> Iterator[Eigen]:
+    """Solve at ever more Chebyshev points, of which each time half are known."""
+    known: Eigen | None = None
+    low, high = slowest**power, fastest**power
+    for intervals in _INTERVALS:
+        speeds = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
+        known = solve(speeds) if known is None else _interleave(known, solve(speeds[1::2]))
+        yield known
+
+
+def _power(solver: Eigensolver) -> int:
+    """Power of the speed of which the modes are smooth functions."""
+    return 2 if solver.conservative else 1
+
+
+def _nodes(intervals: int) -> np.ndarray:
+    """Chebyshev points of [-1, 1], with its ends, ascending."""
+    return -np.cos(np.pi * np.arange(intervals + 1) / intervals)
+
+
+def _interleave(first: Eigen, between: Eigen) -> Eigen:
+    """Put the modes at speeds between others in their places."""
+    places = np.arange(1, len(first.eigenvalue))
+    return Eigen(
+        np.insert(first.eigenvalue, places, between.eigenvalue, axis=0),
+        np.insert(first.vector, places, between.vector, axis=0),
+        np.insert(first.rounding, places, between.rounding, axis=0),
+    )
+
+
+def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen | None:
+    """The modes at ascending speeds by those at Chebyshev points; None where these are too few."""
+    if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter
+        return None
+    power, (points, count) = _power(solver), eigen.eigenvalue.shape
+    (low, high), t = speeds[[0, -1]] ** power, _nodes(points - 1)
+    squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
+    at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
+    series = np.linalg.solve(chebyshev.chebvander(t, points - 1), at_nodes)
+    misfit = np.abs(series[-(points // _HIGHEST) :]).sum(axis=0)
+    of_squares = _divide(misfit[:count], np.abs(squared).min(axis=0))
+    of_modes = misfit[count:].max(initial=0.0) <= _MISFIT_OF_MODES * np.abs(vector).max(initial=0.0)
+    if not (of_modes and (of_squares <= _MISFIT + eigen.rounding.min(axis=0)).all()):
+        return None
+    values = chebyshev.chebvander(2 * (speeds**power - low) / (high - low) - 1, points - 1) @ series
+    squares = np.real(values[:, :count])
+    root = np.sqrt(np.abs(squares))
+    return Eigen(
+        eigenvalue=np.where(squares > 0, 1j * root, root),
+        vector=values[:, count:].reshape(len(speeds), -1, count),
+        rounding=np.tile(_LEBESGUE * eigen.rounding.max(axis=0) + of_squares, (len(speeds), 1)),
+    )
+
+
+def _divide(misfit: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Relative misfits: 0 of what is 0 at all speeds; inf of what is 0 at one of them and misses others."""
+    return np.divide(misfit, size, out=np.where(misfit > 0, np.inf, 0.0), where=size > 0)
+
+
+def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
+    """Give modes (S, n, k) at successive speeds the same signs, or phases if they are complex."""
+    if not vector.size:
+        return vector
+    products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:].conj())
+    size = np.abs(products)
+    turns = np.where(size > 0, products / np.where(size > 0, size, 1.0), 1.0)
+    return np.concatenate([vector[:1], vector[1:] * np.cumprod(turns, axis=0)[:, None, :]])

@@ -1,0 +1,271 @@
+"""The effects that a model leaves out, each with the change that it would make in an answer, and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from copy import copy
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.result import plain
+from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, Words, joined
+from beamdyn.scene.physics_choice import OfChosenPhysics
+from beamdyn.scene.validity import list_speeds
+
+LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
+_NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
+_MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and all digits, say little
+
+
+@dataclass(frozen=True)
+class LeftOutEffects:
+    """What the effects that a model leaves out would change.
+
+    Parameters
+    ----------
+    changes : dict of str to ndarray
+        Relative change of each value of the answer by adding the effect of that name; nan where that is not
+        known.
+    not_known : dict of str to str
+        Effects whose change is not known, for some value at least, and why, or what to give.
+    assumed : dict of str to str
+        Effects whose change rests on an assumption, and on which.
+    not_modelled : tuple of str
+        Effects that no model here has.
+    reasons : dict of str to str
+        What the model assumes in place of each effect, and how to include it.
+    shape : tuple of int
+        Shape of the values, which each change has.
+    """
+
+    changes: dict[str, np.ndarray]
+    not_known: dict[str, str]
+    assumed: dict[str, str]
+    not_modelled: tuple[str, ...]
+    reasons: dict[str, str]
+    shape: tuple[int, ...] = ()
+
+    @property
+    def total(self) -> np.ndarray:
+        """Size of the sum of all changes; nan where one of them is not known."""
+        return np.abs(sum(self.changes.values(), np.zeros(self.shape)))
+
+    @property
+    def total_of_known(self) -> np.ndarray:
+        """Size of the sum of the changes that are known."""
+        return np.abs(sum(map(np.nan_to_num, self.changes.values()), np.zeros(self.shape)))
+
+    @property
+    def lack_data(self) -> bool:
+        """Whether the beam lacks the data of an effect, which is not in the sum then."""
+        return bool(self.not_known.keys() - self.changes.keys())
+
+    def at(self, index: Any) -> LeftOutEffects:
+        """The same for some of the values."""
+        changes = {name: change[index] for name, change in self.changes.items()}
+        return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape)
+
+    # In words -----------------------------------------------------------------------------------------
+
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
+        """One line: the largest change by each effect, what is not known, and what is not modelled.
+
+        Parameters
+        ----------
+        what : str
+            What the last axis of the values counts; "" where there is one value.
+        where : str
+            Where the values hold, said first: "at 100 rad/s".
+        speeds : ndarray, optional
+            Speeds [rad/s] of the first axis: what holds elsewhere than `where` is said with its own.
+        """
+        parts: list[str] = [
+            joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
+        ]
+        if self.not_known:
+            parts.append(Words("not known: ", joined(", ", self._say_not_known(where, speeds))))
+        if self.not_modelled:
+            parts.append(f"not modelled: {', '.join(self.not_modelled)}")
+        begin = ("left out ", where) if where else ("left out",)
+        return Words(*begin, ": ", joined("; ", parts))
+
+    def _say_not_known(self, where: str, speeds: np.ndarray | None) -> Iterator[str]:
+        """The effects that are not known, those of one reason together."""
+        reasons: dict[str, list[str]] = {}
+        for name, why in self.not_known.items():
+            place = self.where_unknown(name, speeds)
+            full = why if not place or place == where else Words(why, "; ", place)
+            reasons.setdefault(full, []).append(name)
+        yield from (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
+
+    def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
+        """The speeds at which a change is not known; empty if these are not given, or none is known."""
+        change = self.changes.get(name)
+        if speeds is None or change is None or not len(speeds):
+            return ""
+        unknown = np.asarray(np.isnan(change).reshape(len(change), -1).any(axis=1))
+        return Words("at ", list_speeds(speeds, unknown)) if unknown.any() else ""
+
+    def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:
+        change = self.changes[name]
+        if speeds is None or abs(_largest(change)) < _NEGLIGIBLE:
+            return ""
+        first = int(np.nanargmax(np.abs(change))) // (change.size // len(change))
+        return Words("at ", Speeds(speeds[first]))
+
+    def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
+        known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
+        for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
+            place = self._where_largest(name, speeds)
+            notes = [self._say_mode(name, what), place if place != where else "", self.assumed.get(name, "")]
+            note = joined(", ", filter(None, notes))
+            said = f"{name} {say_change(_largest(known[name]))}"
+            yield Words(said, " (", note, ")") if note else said
+
+    def _say_mode(self, name: str, what: str) -> str:
+        change = self.changes[name]
+        if not what or change.ndim == 0 or change.shape[-1] == 1 or abs(_largest(change)) < _NEGLIGIBLE:
+            return ""
+        return f"{what} {np.nanargmax(np.abs(change)) % change.shape[-1] + 1}"
+
+    def warnings(
+        self,
+        tolerance: float | None = None,
+        where: str = "",
+        where_unknown: Callable[[str], str] = lambda name: "",
+    ) -> Iterator[Statement]:
+        """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            The tolerance.
+        where : str
+            Where the largest change is, as for `sentence`.
+        where_unknown : callable
+            Where the change by an effect of a name is not known; empty if that is where the largest is.
+        """
+        limit = LARGE_MODEL_ERROR if tolerance is None else max(tolerance, _NEGLIGIBLE)
+        at_least = float(self.total_of_known.max(initial=0.0))
+        if at_least > limit:
+            begin = (where, " the model error") if where else ("the model error",)
+            said = *begin, f", {self._say_total(at_least)}, exceeds {say_size(limit)}: {self._say_largest()}"
+            yield Statement(*said, kind=MODEL_ERROR, quantity="model error", value=at_least, limit=limit)
+            return
+        unknown: dict[tuple[str, str], list[str]] = {}
+        for name, why in self.not_known.items():
+            if name in self.changes and np.isnan(self.changes[name]).any():
+                unknown.setdefault((where_unknown(name) or where, why), []).append(name)
+        for (place, why), names in unknown.items():
+            begin = (place, " the model error") if place else ("the model error",)
+            end = (
+                f" may exceed {say_size(limit)}: what {', '.join(names)}, left out, changes is not known: ",
+                why,
+            )
+            yield Statement(*begin, *end, kind=MODEL_ERROR, quantity="model error", limit=limit)
+
+    def _say_total(self, size: float) -> str:
+        where = self.total_of_known == size
+        return f"{'at least ' if np.isnan(self.total[where]).any() else ''}{say_size(size)}"
+
+    def _say_largest(self) -> str:
+        largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
+        change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
+        return f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
+
+
+def _largest(change: np.ndarray) -> float:
+    """The value of the largest size."""
+    known = change[np.isfinite(change)]
+    return float(known[np.abs(known).argmax()])
+
+
+def say_change(change: float) -> str:
+    """A relative change in percent, to two digits, with its sign."""
+    if abs(change) < _NEGLIGIBLE:
+        return "0 %" if change == 0 else "below 1e-7 %"
+    if abs(change) < _MANY_TIMES:
+        return percent(change, "+")
+    return f"{change:+.0f} times" if abs(change) < _COUNTLESS else f"{change:+.1e} times"
+
+
+def say_size(size: float) -> str:
+    """A relative size in percent, to two digits; in words where it is not known."""
+    return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
+
+
+# Results that carry it ----------------------------------------------------------------------------
+
+
+class NotJudged(LeftOutEffects):
+    """Stands for what the effects left out would change where that takes long and was not asked for."""
+
+    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
+        """Say how it is asked for."""
+        return Words(
+            "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
+        )
+
+
+class StatesModelError(OfChosenPhysics):
+    """Base of results that say what the effects left out of their model would change; see `OfChosenPhysics`.
+
+    A subclass has the cached property `left_out_effects`, which is computed when asked for.
+    """
+
+    kept = ("left_out_effects",)
+    left_out_effects: Any
+    judged_by_solving: ClassVar[bool] = False  # whether the model error takes longer than the answer
+
+    def without_waiting(self) -> Any:
+        """The same, with model errors that take long and were not asked for left out: to be shown at once."""
+        if not self.judged_by_solving or "left_out_effects" in vars(self):
+            return self
+        shape = np.shape(getattr(self, "left_out_speeds", 0.0))
+        shown = copy(self)
+        vars(shown)["left_out_effects"] = NotJudged({}, {}, {}, (), {}, shape)
+        return shown
+
+    @property
+    def left_out(self) -> Mapping[str, np.ndarray]:
+        """Relative change by adding each effect that the model leaves out, by the effect's name.
+
+        Effects that lack data, or that no model here has, are named by `left_out_effects`.
+        """
+        return MappingProxyType(self.left_out_effects.changes)
+
+    @property
+    def model_error(self) -> np.ndarray:
+        """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
+        return self.left_out_effects.total
+
+    def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
+        """Warnings of a model error past a tolerance, or 1 %, and of one that is not known."""
+        speeds = getattr(self, "left_out_speeds", None)
+        effects = self.left_out_effects
+        where = "" if speeds is None else where_worst(effects, speeds)
+        return [*effects.warnings(tolerance, where, lambda name: effects.where_unknown(name, speeds))]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out.
+
+        Its warnings include those of the model error past 1 %.
+        """
+        effects, values = self.left_out_effects, super().to_dict()
+        values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
+        judged = {"model_error": self.model_error, "left_out": effects.changes}
+        named = {"not_known": effects.not_known, "assumed": effects.assumed}
+        return values | plain(judged | named | {"not_modelled": effects.not_modelled})
+
+
+def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
+    """Where a model error over speeds (k,) is largest, "at 100 rad/s"; at which where it is not known."""
+    total = effects.total
+    if not np.isfinite(total).any():
+        return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""
+    worst = np.nanargmax(total) // (total.size // len(total))
+    return Words("at ", Speeds(speeds[worst]))

@@ -1,0 +1,331 @@
+"""Natural modes at a steady speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import count, real, within
+from beamdyn.common.results.announced import announced
+from beamdyn.common.results.one_line import error_at_most, listed, states, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
+from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.modes.modal.choice import (
+    TOLERANCES,
+    DiscretizationChoice,
+    solve_to_tolerance,
+    warn_of_missed_tolerance,
+)
+from beamdyn.modes.modal.error_estimate import EstimatedModes
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.modes.modal.static_load import static_load, warn_of_straight
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import (
+    check_speeds,
+    warn_of_left_out,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Modes(StatesModelError):
+    """Natural modes at one speed, the lowest first.
+
+    `error` is that of the numbers; `model_error` (m,) and `left_out`, computed when asked for, are what the
+    physics left out would change.
+
+    Parameters
+    ----------
+    speed : float
+        Speed [rad/s].
+    frequency : ndarray, shape (m,)
+        Frequency [Hz]; nan where a mode is unstable or does not oscillate.
+    error : ndarray, shape (m,)
+        Estimated relative error of the frequency, or of the growth rate where there is none.
+    growth_rate : ndarray, shape (m,)
+        Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
+    status : ndarray of str, shape (m,)
+        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
+    eigenvalue : ndarray of complex, shape (m,)
+        s in exp(s t) [1/s].
+    tip, tip_across : ndarray, shape (m,)
+        Tip deflections of the mass-normalised modes [kg^-1/2] in the direction of bending at the root and
+        across it, the larger one positive; 0 across where one plane is modelled.
+    plane_share : ndarray, shape (m, 2)
+        Share of each direction in the kinetic energy of the mode's deflection: without that of its stretch.
+    load, load_across : ndarray, shape (m,)
+        Modal loads under a unit root acceleration in either direction, P in modal coordinates [kg^1/2].
+    angular_load, angular_load_across : ndarray, shape (m,)
+        Modal loads under a unit angular acceleration in either plane, Q in modal coordinates [kg^1/2 m].
+    static_deflection : float
+        Static tip deflection under the rotation [m], with its sign; its magnitude where two planes are
+        modelled; nan past the critical speed.
+    axial_strain : float
+        Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> modes = bd.natural_modes(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=2)
+    >>> modes.status.tolist()
+    ['stable', 'stable']
+    >>> modes.shape(np.linspace(0, 0.05, 5)).shape
+    (2, 5)
+    """
+
+    speed: float
+    frequency: np.ndarray
+    error: np.ndarray
+    growth_rate: np.ndarray
+    status: np.ndarray
+    eigenvalue: np.ndarray
+    tip: np.ndarray
+    tip_across: np.ndarray
+    plane_share: np.ndarray
+    load: np.ndarray
+    load_across: np.ndarray
+    angular_load: np.ndarray
+    angular_load_across: np.ndarray
+    static_deflection: float
+    axial_strain: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    vectors: np.ndarray = field(repr=False)
+    model: Model = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{len(self.frequency)} at {self.say_speed(self.speed)}: {listed(self.frequency, 'Hz')}"
+        yield from (error_at_most(self.error), states(self.status, ("stable",)), warned(self.warnings))
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects that the model leaves out would change in each frequency (m,)."""
+        from beamdyn.modes.model_error.of_modes import (
+            left_out_of_modes,
+        )  # here, for the time that it takes to import
+
+        return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
+
+    def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
+        """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
+
+        The direction is 0 for that of the bending angle at the root, 1 for that across.
+        """
+        xi = np.asarray(x, dtype=float) / self.scene.beam.length
+        if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
+            raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
+        equations = self.model.equations_at(self.speed)
+        return self.vectors.T @ equations.deflection(np.minimum(xi, 1.0), direction=direction)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the mode shapes."""
+        from beamdyn.common.plots.plots import plot_shapes
+        from beamdyn.common.plots.plots_by_plane import plot_shapes_by_plane
+
+        x = np.linspace(0, self.scene.beam.length, 201)
+        if self.scene.physics.planes == 2:
+            order, words = drawn_order(self.scene)
+            shapes = np.stack([np.real(self.shape(x, direction)) for direction in order], axis=1)
+            return plot_shapes_by_plane(x, shapes, self.labels(), words, ax, self.display_units)
+        return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax, self.display_units)
+
+    def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
+        """Write the mode shapes as a mesh file for ParaView; see `common.plots.export.write_shapes`."""
+        from beamdyn.common.plots.export import write_shapes
+
+        x = np.linspace(0, self.scene.beam.length, 101)
+        write_shapes(path, x, np.real(self.shape(x)), self.labels(), width, force)
+
+    def labels(self) -> list[str]:
+        """One line of text for each mode."""
+        return [
+            _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
+        ]
+
+
+def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
+    """Directions that are drawn solid and dashed, and their names."""
+    solid, names = first_drawn(scene), name_directions(scene)
+    return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
+
+
+def _label(i: int, frequency: float, growth: float) -> str:
+    return f"mode {i}: {growth:.4g} 1/s" if np.isnan(frequency) else f"mode {i}: {frequency:.5g} Hz"
+
+
+@announced
+def natural_modes(
+    scene: Scene,
+    speed: float = 0.0,
+    modes: int = 3,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> Modes:
+    """Compute the natural modes at a steady speed, about a fixed centre.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    speed : float
+        Speed [rad/s].
+    modes : int
+        Number of modes.
+    discretization : {"ritz", "fem"} or Discretization
+        Assumed modes or finite elements, as large as needed; or a `Ritz` or `Fem` of given size.
+    tolerance : float, optional
+        Allowed relative error, from 1e-14 to 0.1: the smallest model that meets it is chosen.  By default
+        models are chosen for 1e-11, two digits beyond the promised 1e-9.
+
+    Returns
+    -------
+    Modes
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+
+    References
+    ----------
+    Lee and Yoo (2019), eq. (14), corrected as docs/conventions.md lists; errors by Richardson's
+    extrapolation (standard).
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> modes = bd.natural_modes(bd.Scene(strip, bd.Mount(radius=0.215)), speed=50.0, modes=2)
+    >>> modes.frequency.round(3)  # Hz; Lee and Yoo (2019): 61.963
+    array([ 61.963, 406.329])
+    >>> bool((modes.error < 1e-9).all())
+    True
+    """
+    start = perf_counter()
+    check_scene(scene)
+    speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
+    check_speeds(speeds, "speed")
+    tolerance = check_tolerance(tolerance)
+    if scene.chooses_physics:
+        from beamdyn.modes.model_error.choice import (
+            choose_physics,  # here, for the time that it takes to import
+        )
+
+        scene = choose_physics(scene, speeds, modes, tolerance)
+    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
+    equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
+    vectors = _with_positive_tip(equations.tips, solution.eigen.vector[0])
+    deflection, strain = static_load(solution.model, speeds)
+    growth_rate = np.real(s) + 0.0
+    warnings = warn_of_modes(
+        solution.model, speeds, deflection, strain, solution.error, growth_rate[None], tolerance
+    )
+    return Modes(
+        speed=float(speeds[0]),
+        frequency=frequency_of(s),
+        error=solution.error[0],
+        growth_rate=growth_rate,
+        status=status_of(s),
+        eigenvalue=s,
+        tip=np.real(equations.tip @ vectors),
+        tip_across=np.real(equations.tip_across @ vectors),
+        plane_share=plane_share(equations, vectors[None])[0],
+        load=np.real(equations.P(0) @ vectors),
+        load_across=np.real(equations.P(1) @ vectors),
+        angular_load=np.real(equations.Q(0) @ vectors),
+        angular_load_across=np.real(equations.Q(1) @ vectors),
+        static_deflection=float(deflection[0]),
+        axial_strain=float(strain[0]),
+        warnings=tuple(warnings),
+        provenance=provenance_of(solution, start),
+        scene=scene,
+        vectors=vectors,
+        model=solution.model,
+    )
+
+
+def check_tolerance(tolerance: float | None) -> float | None:
+    """Refuse a tolerance that no model is chosen for."""
+    return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+
+
+def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Give the vectors the phase at which the larger of their tip deflections is real and positive."""
+    each = tips @ vectors
+    deflection = each[np.abs(each).argmax(axis=0), np.arange(each.shape[1])]
+    deflection[deflection == 0] = 1.0
+    return vectors / (deflection / np.abs(deflection))
+
+
+def status_of(s: np.ndarray) -> np.ndarray:
+    """Status of modes in a word, by their eigenvalues [1/s]: both of one shape."""
+    growing, oscillating = np.real(s) > 0, np.imag(s) != 0
+    without_growth = np.where(oscillating, "stable", np.where(s == 0, "neutral", "overdamped"))
+    return np.where(growing, np.where(oscillating, "flutter", "divergence"), without_growth)
+
+
+def frequency_of(s: np.ndarray) -> np.ndarray:
+    """Frequencies [Hz] of modes by their eigenvalues [1/s], of one shape; nan of others than stable ones."""
+    vibrates = (np.real(s) <= 0) & ((np.imag(s) != 0) | (s == 0))
+    return np.where(vibrates, np.imag(s) / (2 * np.pi), np.nan)
+
+
+def warn_of_modes(
+    model: Model,
+    speeds: np.ndarray,
+    deflection: np.ndarray,
+    strain: np.ndarray,
+    error: np.ndarray,
+    growth_rate: np.ndarray,
+    tolerance: float | None,
+) -> Iterator[Statement]:
+    """Yield what limits the answer, by errors and growth rates (S, m) at speeds (S,), and static loads."""
+    scene = model.scene
+    yield from warn_of_left_out(scene)
+    unstable = growth_rate > 0
+    if unstable.any():
+        s = int(unstable.any(axis=1).argmax())
+        yield Statement(
+            "unstable at ",
+            Speeds(speeds[s]),
+            f": {unstable[s].sum()} mode(s) grow; see growth_rate",
+            kind=GROWING,
+            quantity="growth rate [1/s]",
+            value=growth_rate[s].max(),
+            limit=0.0,
+        )
+    yield from warn_of_strain(strain.max(initial=0))
+    if not scene.physics.large_deflection:
+        yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
+        yield from warn_of_straight(deflection, speeds, model)
+    if tolerance is not None:
+        yield from warn_of_missed_tolerance(error.max(), tolerance)
+    elif error.max() > 1e-6:
+        said = f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
+        quantity = "estimated relative error"
+        yield Statement(said, kind=TOLERANCE, quantity=quantity, value=error.max(), limit=1e-6)
+
+
+def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
+    """How modes were found, since a start by `perf_counter` [s]."""
+    names = str(solution.model.discretization), str(solution.coarse.discretization)
+    return Provenance(__version__, *names, wall_time=perf_counter() - start)

@@ -1,0 +1,118 @@
+"""Two planes of bending: those that nothing couples, each as a scene in one plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import RIGHT_ANGLE, aligned_cos_sin
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.scene import Scene
+
+_SPRINGS = "root_stiffness", "second_root_stiffness"
+_QUARTER = math.pi / 2
+
+
+def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
+    """Split a scene into scenes of slender beams in one plane.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spinning : bool
+        Whether the carrier turns; if it does not, no bending angle couples the planes of a straight section.
+
+    Returns
+    -------
+    tuple of Scene
+        The scene itself if it is of a slender beam in one plane.  Of one in two planes that nothing couples,
+        that of the direction of bending at the root, and that across; else nothing.
+    """
+    if scene.is_slender_beam_in_one_plane:
+        return (scene,)
+    slender = replace(scene.physics, planes=1, stretch=False) == Physics()
+    clamped = min(scene.mount.root_stiffnesses[: scene.physics.planes]) == math.inf
+    if not (slender and clamped) or (quarters := _quarter_turns(scene.beam)) is None:
+        return ()
+    if spinning and (scene.mount.precone or 0.0 not in aligned_cos_sin(scene.mount.bending_angle)):
+        return ()
+    angle = scene.mount.bending_angle
+    across = angle - math.copysign(_QUARTER, angle)
+    section = _one_plane(scene.beam), _other_plane(scene.beam)
+    first, second = section if quarters % 2 == 0 else reversed(section)
+    return _bending(scene, first, angle), _bending(scene, second, across)
+
+
+def refuse_uncovered(scene: Scene, speed: float) -> None:
+    """Refuse, by name, what the theorem of `beamdyn.modes.bounds` does not cover.
+
+    Raises
+    ------
+    InvalidValue
+        With the remedy.
+    """
+    bound = "bounds are known for an undamped slender beam on a clamped root"
+    for name in ("shear", "rotary_inertia", "stretch", "large_deflection"):
+        if getattr(scene.physics, name):
+            raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
+    if scene.damping_ratio:
+        raise InvalidValue("damping_ratio", scene.damping_ratio, bound, "give 0")
+    if scene.damping.damps:
+        raise InvalidValue("damping", scene.damping, bound, "leave it out")
+    if scene.beam.point_springs:
+        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, "leave them out")
+    springs = {name: getattr(scene.mount, name) for name in _SPRINGS[: scene.physics.planes]}
+    for name, value in springs.items():
+        if math.isfinite(value):
+            raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
+    _refuse_coupled_lumps(scene, speed)
+    if scene.physics.planes == 2 and speed and scene.mount.precone:
+        gyroscopic = (
+            "it couples the velocities of two planes, and bounds are of equations without such forces"
+        )
+        remedy = "give 0, or speed = 0, or model one plane"
+        raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
+
+
+def _refuse_coupled_lumps(scene: Scene, speed: float) -> None:
+    """Refuse point masses on a beam whose two planes are coupled."""
+    lumps = scene.beam.point_masses
+    if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
+        bound = "bounds of two planes that twist or bending angle couples are known without point masses"
+        raise InvalidValue("point_masses", len(lumps), bound, "leave them out, or model one plane")
+
+
+def _quarter_turns(beam: Beam) -> int | None:
+    """Number of quarter turns by which all sections are turned; None if that is not a whole number."""
+    if beam.twist is None:
+        return 0
+    if any(any(row[1:]) for row in beam.twist.coefficients):
+        return None
+    turned = {row[0] / _QUARTER for row in beam.twist.coefficients}
+    whole = {round(c) for c in turned if abs(c - round(c)) <= RIGHT_ANGLE / _QUARTER * max(1.0, abs(c))}
+    return whole.pop() if len(whole) == len(turned) == 1 else None
+
+
+def _one_plane(beam: Beam) -> Beam:
+    """The beam as it bends in the first direction of its section."""
+    unread = ("second_bending_stiffness", "twist", "shear_stiffness", "second_shear_stiffness")
+    inertia = ("rotary_inertia", "second_rotary_inertia")
+    return replace(beam, **dict.fromkeys((*unread, *inertia)))
+
+
+def _other_plane(beam: Beam) -> Beam:
+    """The beam as it bends in the second direction, where the tip body turns about another axis."""
+    assert beam.second_bending_stiffness is not None
+    tip = beam.tip
+    if tip is not None:
+        moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
+        tip = TipMass(tip.mass, tip.offset, *moments)
+    stiffness = beam.second_bending_stiffness
+    return replace(_one_plane(beam), bending_stiffness=stiffness, tip=tip, outer_fibre=None)
+
+
+def _bending(scene: Scene, beam: Beam, angle: float) -> Scene:
+    return replace(scene, beam=beam, mount=replace(scene.mount, bending_angle=angle), physics=Physics())

@@ -1,0 +1,233 @@
+"""Setting angles at which the locus of the first frequency changes its shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, positive
+from beamdyn.common.results.announced import announced_of_plain_beam
+from beamdyn.common.results.one_line import error_at_most, listed, warned
+from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modes.modal.choice import (
+    DiscretizationChoice,
+    choose_model,
+)
+from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.static_load import static_load
+from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
+
+_ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
+
+
+@dataclass(frozen=True)
+class SettingAngleLimits(Result):
+    """Setting angles between which the first frequency rises and then falls with speed; unpacks as two.
+
+    Below `first` it falls from rest on; between the two it rises and then falls below the top speed;
+    above `second` it rises up to the top speed.
+
+    Parameters
+    ----------
+    first, second : float
+        The limits [rad]; nan where there is none.
+    error : float
+        Estimated error of the two [rad].
+    top_speed : float
+        The top speed [rad/s].
+    static_deflection : float
+        Static tip deflection at the second limit and the top speed, as a fraction of the length.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> limits = bd.setting_angle_limits(bd.Scene(strip, bd.Mount(radius=0.215)), top_speed=50.0)
+    >>> limits.first < limits.second
+    True
+    """
+
+    first: float
+    second: float
+    error: float
+    top_speed: float
+    static_deflection: float
+    warnings: tuple[str, ...]
+    provenance: Provenance
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
+        yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
+
+    def __iter__(self) -> Iterator[float]:
+        return iter((self.first, self.second))
+
+
+@announced_of_plain_beam
+def setting_angle_limits(
+    scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
+) -> SettingAngleLimits:
+    """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
+        frequency is the lowest of both.  Physics "auto" is the plain beam.
+    top_speed : float
+        Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+
+    Returns
+    -------
+    SettingAngleLimits
+
+    Raises
+    ------
+    ValueError
+        If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
+
+    References
+    ----------
+    Lee and Yoo (2019), section 3.3; by the slopes of Southwell (1921), as docs/conventions.md has them.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> limits = bd.setting_angle_limits(bd.Scene(strip, bd.Mount(radius=0.215)), top_speed=50.0)
+    >>> round(float(np.degrees(limits.first)), 4)  # Lee and Yoo (2019): 88.35 to 88.36
+    88.3598
+    """
+    start = perf_counter()
+    check_scene(scene)
+    if scene.physics.large_deflection:
+        bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
+        remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
+    _refuse_hinge(scene)
+    if scene.mount.precone:
+        bound = "only a beam that points outward has a precone, and the limits are setting angles of others"
+        raise InvalidValue("precone", scene.mount.precone, bound, "leave it out", "rad")
+    top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
+    unresolved, scene = scene, plain_physics(scene)
+    scene = replace(scene.undamped, physics=replace(scene.physics, stretch=False))
+    speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
+    tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
+    model = choose_model(tangential, discretization, speeds, 1)
+    first, second = _limits(model, top_speed)
+    coarse = model.coarser
+    coarse_limits = _limits(coarse, top_speed)
+    deflection = _static_deflection(scene, second, top_speed, model)
+    return SettingAngleLimits(
+        first=first,
+        second=second,
+        error=_limits_error(first, second, coarse_limits, top_speed) if model.exceeds_coarser else np.inf,
+        top_speed=top_speed,
+        static_deflection=deflection,
+        warnings=(*warn_of_plain(unresolved), *_limit_warnings(first, second, deflection)),
+        provenance=Provenance(
+            __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
+        ),
+    )
+
+
+def _refuse_hinge(scene: Scene) -> None:
+    """Refuse a root that turns freely: there is no first frequency at rest that rises or falls."""
+    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
+    for name in names:
+        if getattr(scene.mount, name) == 0:
+            bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
+            raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
+
+
+def _check_top_speed(top_speed: float, bounded: bool) -> float:
+    """The top speed [rad/s], which may be infinite unless it is bounded."""
+    if not bounded and isinstance(top_speed, float) and top_speed == np.inf:
+        return top_speed
+    remedy = "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
+    top_speed = positive("top_speed", top_speed, "rad/s", remedy)
+    check_speeds(top_speed, "top_speed")
+    return top_speed
+
+
+def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
+    """Both limits [rad], from the stiffness per squared speed K2 = A - cos(phi) B with B = r KGA."""
+    pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
+    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # - KGA
+    A, B = pencil.K2, -tangential.scene.mount.radius * by_tension
+    v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
+    first = _arccos(float(v @ A @ v), float(v @ B @ v))
+    if np.isinf(top_speed):
+        return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
+    return first, _second_limit(pencil, A, B, first, top_speed)
+
+
+def _limits_error(first: float, second: float, coarse: tuple[float, float], top_speed: float) -> float:
+    """Distance from the coarser model [rad]; at infinite speed the limits are those of the given basis."""
+    if np.isinf(top_speed):
+        return _ROUNDING
+    return float(np.nanmax([abs(first - coarse[0]), abs(second - coarse[1]), 0.0])) + _ROUNDING
+
+
+def _arccos(a: float, b: float) -> float:
+    return float(np.arccos(a / b)) if abs(a) <= abs(b) and b else np.nan
+
+
+def _second_limit(
+    pencil: SteadyPencil, A: np.ndarray, B: np.ndarray, first: float, top_speed: float
+) -> float:
+    """Setting angle [rad] at which the slope of the first squared frequency vanishes at the top speed."""
+
+    def slope(phi: float) -> float:
+        K2 = A - np.cos(phi) * B
+        v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
+        return float(v @ K2 @ v)
+
+    low = 0.0 if np.isnan(first) else first
+    if slope(low) * slope(np.pi) >= 0:
+        return np.nan
+    return float(brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15))  # pyright: ignore[reportArgumentType]
+
+
+def _static_deflection(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
+    """Static tip deflection at a setting angle, relative to the length; nan if unknown."""
+    if np.isnan(phi) or np.isinf(top_speed):
+        return np.nan
+    mounted = replace(scene, mount=replace(scene.mount, setting_angle=phi))
+    deflection, _ = static_load(Model(mounted, model.discretization), np.array([top_speed]))
+    return float(abs(deflection[0]) / scene.beam.length)
+
+
+def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[Statement]:
+    if np.isnan(first):
+        said = "no first limit: at rest the first frequency changes the same way at every setting angle"
+        yield Statement(said, kind=NO_ANSWER)
+    if np.isnan(second):
+        said = "no second limit: at the top speed the frequency changes the same way at every setting angle"
+        yield Statement(said, kind=NO_ANSWER)
+    if not deflection <= LARGE_DEFLECTION:
+        text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
+        known = "" if np.isnan(deflection) else text
+        yield Statement(
+            f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}",
+            kind=OUTSIDE,
+            quantity="static tip deflection over the length",
+            value=deflection,
+            limit=LARGE_DEFLECTION,
+        )

@@ -1,0 +1,83 @@
+"""What must stand beside the numbers of a result: how its physics was chosen, and a large model error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.results.display_units import SI_UNITS
+from beamdyn.common.results.result import Result
+from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, Words, kind_of, of_kind, said_in, worded
+from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from beamdyn.modes.critical import CriticalPoint
+    from beamdyn.modes.modes import Modes
+
+
+def warnings_of(
+    result: Any,
+    tolerance: float | None = None,
+    without: str = "",
+    word: Callable[[Words], str | None] = lambda part: None,
+) -> list[str]:
+    """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files.
+
+    Statements of the kind `without` are left out; `word` may put inputs in words of its own.
+    """
+    warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
+    said = (each for each in warnings if not without or kind_of(each) != without)
+    units = result.display_units if isinstance(result, Result) else SI_UNITS
+    return [as_in_files(worded(each, lambda part: word(part) or part.in_units(units))) for each in said]
+
+
+def _in_units_of(result: Any, sentence: str) -> str:
+    """A sentence with its speeds in the unit in which the result shows them."""
+    return said_in(result.display_units, sentence) if isinstance(result, Result) else sentence
+
+
+def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
+    if isinstance(result, StatesModelError):
+        yield from result.model_warnings(tolerance)
+
+
+def describe_choice(result: Result) -> list[str]:
+    """The line on the physics of a result, where that was chosen."""
+    choice = getattr(result, "physics_choice", None)
+    return [] if choice is None else [choice.sentence()]
+
+
+def notes_of(result: Any) -> list[str]:
+    """What a picture or a file of numbers alone must say: large deflection included, or what is left out."""
+    scene = getattr(result, "scene", None)
+    if scene is not None and scene.physics.large_deflection:
+        return ["with large deflection"]
+    outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
+    each = [_in_units_of(result, said) for said in (*outside, *_of_model_error(result))]
+    return [said.partition(";")[0] for said in each]
+
+
+def critical_label(point: CriticalPoint) -> str:
+    """What a picture calls a critical speed."""
+    return "critical speed, were the beam straight:" if of_kind(point.warnings, OUTSIDE) else "critical speed"
+
+
+def labels_of(modes: Modes) -> list[str]:
+    """Labels of modes, with the model error where that is large."""
+    large = modes.model_error > LARGE_MODEL_ERROR
+    each = zip(modes.labels(), modes.model_error.tolist(), large.tolist(), strict=True)
+    return [f"{label}, model error {say_size(error)}" if it else label for label, error, it in each]
+
+
+def noted(draw: Callable[[], Figure], result: Any) -> Callable[[], Figure]:
+    """A function that draws a figure, with the notes of a result below it."""
+
+    def made() -> Figure:
+        from beamdyn.common.plots.notes import note_below
+
+        return note_below(draw(), notes_of(result))
+
+    return made

@@ -1,0 +1,199 @@
+"""Crossings of lines with tracked natural frequencies, refined to the accuracy of the locus."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.modes.locus import Locus
+from beamdyn.modes.modal.error_estimate import solve_with_error
+from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
+from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.scene.motion import Line
+
+
+@dataclass(frozen=True)
+class LineCrossing:
+    """Speed at which a line meets a natural frequency.
+
+    Parameters
+    ----------
+    label : str
+        Label of the scene.
+    line : Line
+        The line: a multiple of the speed.
+    mode : int
+        Number of the mode, from 1, as in the locus.
+    name : str
+        Its name, such as "flap 1".
+    speed : float
+        Speed [rad/s].
+    frequency : float
+        Natural frequency of the mode [Hz].
+    error : float
+        Estimated relative error of the speed.
+    confidence : float
+        Least confidence with which the mode was tracked from the first speed to here.
+    plane_share : tuple of float
+        Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
+    operating : bool
+        Whether the speed lies in the operating range; True where none was given.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> crossing = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(4,)).crossings[0]
+    >>> round(2 * np.pi * crossing.frequency / crossing.speed, 9)  # on the line: four a turn
+    4.0
+    """
+
+    label: str
+    line: Line
+    mode: int
+    name: str
+    speed: float
+    frequency: float
+    error: float
+    confidence: float
+    plane_share: tuple[float, float]
+    operating: bool
+
+    @property
+    def second_mode(self) -> None:
+        """There is none: a line meets one frequency."""
+        return None
+
+
+@dataclass(frozen=True)
+class _Root:
+    """Root of the distance of a line from the natural frequency of some place in ascending order."""
+
+    line: Line
+    place: int
+    speed: float
+    slope: float
+
+
+def find_crossings(
+    label: str,
+    names: Sequence[str],
+    locus: Locus,
+    lines: Sequence[Line],
+    operating: tuple[float, float] | None = None,
+) -> list[LineCrossing]:
+    """Find where lines meet the modes of a locus, by ascending speed.
+
+    The roots are those of the frequencies in ascending order, which are continuous where modes exchange
+    their places; each belongs to the tracked mode that is nearest there.
+
+    Parameters
+    ----------
+    label : str
+        Label of the scene.
+    names : sequence of str, length m
+        Names of the modes.
+    locus : Locus
+        The locus.
+    lines : sequence of Line
+        The lines.
+    operating : (float, float), optional
+        Operating range [rad/s].
+
+    Returns
+    -------
+    list of LineCrossing
+    """
+    roots = sorted(_find_roots(locus, lines), key=lambda root: root.speed)
+    if not roots:
+        return []
+    low, high = (-np.inf, np.inf) if operating is None else operating
+    speeds = np.array([root.speed for root in roots])
+    omega, shares = _solve(locus, speeds)
+    found = []
+    for root, frequencies, share in zip(roots, omega, shares, strict=True):
+        if (mode := _tracked_mode(locus, root, frequencies[root.place])) is None:
+            continue  # one of the further modes, which are only there for the tracking
+        node = _node(locus, root.speed)
+        error = float(locus.error[node : node + 2, mode].max() * frequencies[root.place])
+        along, across = share[root.place].tolist()
+        found.append(
+            LineCrossing(
+                label=label,
+                line=root.line,
+                mode=mode + 1,
+                name=names[mode],
+                speed=root.speed,
+                frequency=float(frequencies[root.place] / (2 * np.pi)),
+                error=error / abs(root.slope * root.speed) + float(ROUNDING),
+                confidence=float(locus.confidence[: node + 2, mode].min()),
+                plane_share=(along, across),
+                operating=bool(low <= root.speed <= high),
+            )
+        )
+    return found
+
+
+def coincident(locus: Locus, lines: Sequence[Line]) -> Iterator[tuple[Line, int]]:
+    """Yield each line that equals a mode's frequency at every speed, as of a hinged blade, and the mode."""
+    tracked = np.abs(np.imag(locus.eigenvalue))
+    for line in lines:
+        for mode, omega in enumerate(tracked.T):
+            if coincides(omega - line.multiple * locus.speeds, omega):
+                yield line, mode
+
+
+def _find_roots(locus: Locus, lines: Sequence[Line]) -> Iterator[_Root]:
+    omega, solved = np.abs(np.imag(locus.ascending)), {}
+
+    def frequencies(speed: float) -> np.ndarray:
+        if speed not in solved:
+            solved[speed] = _frequencies(locus, np.array([speed]))[0]
+        return solved[speed]
+
+    for line in lines:
+        for place, values in enumerate(omega.T):
+            distance = values - line.multiple * locus.speeds
+            if coincides(distance, values):
+                continue
+
+            def detuning(speed: float, place: int = place, multiple: float = line.multiple) -> float:
+                return float(frequencies(speed)[place] - multiple * speed)
+
+            for speed, slope in find_roots(detuning, locus.speeds, distance):
+                yield _Root(line, place, speed, slope)
+
+
+def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
+    """Angular frequencies [rad/s] in ascending order (S, k), by the model of the locus."""
+    count = locus.ascending.shape[1]
+    if locus.model.discretization.order is None:
+        return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
+    modes = locus.eigenvalue.shape[1]  # of finite elements: extrapolated, as those of the locus are
+    return np.abs(np.imag(solve_with_error(locus.model, speeds, modes, count - modes).eigen.eigenvalue))
+
+
+def _solve(locus: Locus, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angular frequencies (S, k) and shares of the planes (S, k, 2), in ascending order."""
+    eigen = locus.model.solver.solve(speeds, locus.ascending.shape[1])
+    extrapolated = locus.model.discretization.order is not None
+    omega = _frequencies(locus, speeds) if extrapolated else np.abs(np.imag(eigen.eigenvalue))
+    return omega, plane_share(locus.model.equations, eigen.vector)
+
+
+def _node(locus: Locus, speed: float) -> int:
+    """Index of the speed of the locus at or before a speed, not the last one."""
+    return int(np.clip(np.searchsorted(locus.speeds, speed) - 1, 0, len(locus.speeds) - 2))
+
+
+def _tracked_mode(locus: Locus, root: _Root, omega: float) -> int | None:
+    """Index of the tracked mode that has a place near a root; None if it is not followed."""
+    node = _node(locus, root.speed)
+    ends, tracked = locus.speeds[node : node + 2], np.abs(np.imag(locus.eigenvalue[node : node + 2]))
+    modes = np.flatnonzero((locus.place[node : node + 2] == root.place).any(axis=0))
+    if not modes.size:
+        return None
+    distances = [abs(np.interp(root.speed, ends, tracked[:, mode]) - omega) for mode in modes]
+    return int(modes[np.argmin(distances)])

@@ -1,0 +1,462 @@
+"""The Campbell diagram of one scene or several: natural frequencies, lines, crossings and margins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import after
+from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
+from beamdyn.modes.locus import Locus, frequency_locus
+from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.of_modes import nothing_known
+from beamdyn.scene.motion import Line
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
+from beamdyn.steady.left_out_of_resonances import left_out_of_crossings
+from beamdyn.studies.campbell.crossings import LineCrossing, coincident, find_crossings
+from beamdyn.studies.campbell.margins import Margin, margins_at_rated, margins_in_range
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from beamdyn.common.plots.campbell import Curves
+
+UNITS = ("rad/s", "rpm")
+_MOST_ORDERS = 100
+_SAME = 1e-9  # relative distance of an operating speed from another speed, below which they are one
+
+Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
+
+
+@dataclass(frozen=True)
+class Campbell(StatesModelError):
+    """Natural frequencies over speed, lines that may excite them, their crossings and their margins.
+
+    `left_out`, `model_error` and `left_out_effects`, computed when asked for, are what the physics left out
+    would change in the speeds of the crossings (k,).
+
+    Parameters
+    ----------
+    labels : tuple of str
+        One a scene.
+    names : tuple of tuple of str
+        Names of the modes of each scene: "flap 1", "edge 1" by the direction in which they mostly bend at the
+        first speed; "mode 1" of a beam that does not point outward where it has one plane, or its bending
+        angle is no whole number of quarter turns.
+    loci : tuple of Locus
+        Natural frequencies of each scene, tracked, with errors and confidence.
+    lines : tuple of Line
+        The per-rev lines, then the motions' other lines.
+    crossings : tuple of LineCrossing
+        Where lines meet natural frequencies, scene by scene, by ascending speed.
+    margins : tuple of Margin
+        Distances of each mode from the nearest line at the rated speed and over the operating range.
+    bounds : tuple of FrequencyBounds
+        Guaranteed bounds at the rated speed, or else the top speed, of the scenes that have them; empty if
+        they were not asked for.
+    rated : float or None
+        Rated speed [rad/s].
+    operating : tuple of float or None
+        Operating range [rad/s].
+    unit : {"rad/s", "rpm"}
+        Unit of speeds in the picture and the tables.
+    warnings : tuple of str
+        What limits the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> diagram = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(3, 4), rated=130.0)
+    >>> [(m.line.name, round(m.margin, 3)) for m in diagram.margins]
+    [('4P', -0.026)]
+    """
+
+    labels: tuple[str, ...]
+    names: tuple[tuple[str, ...], ...]
+    loci: tuple[Locus, ...]
+    lines: tuple[Line, ...]
+    crossings: tuple[LineCrossing, ...]
+    margins: tuple[Margin, ...]
+    bounds: tuple[tuple[str, FrequencyBounds], ...]
+    rated: float | None
+    operating: tuple[float, float] | None
+    unit: str
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)  # the first one
+
+    def headline(self) -> Iterator[str]:
+        """What it says in one line; see `Result.headline`."""
+        found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
+        yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
+        yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
+        yield error_at_most([c.error for c in self.crossings]) if self.crossings else ""
+        yield warned(self.warnings)
+
+    @property
+    def plot_label(self) -> str:
+        """Nothing: the labels of the scenes stand in the picture."""
+        return ""
+
+    @property
+    def display_units(self) -> DisplayUnits:
+        """Units of its tables, columns and pictures: of speeds the one that was asked for."""
+        return vars(self).get("_display_units") or super().display_units.with_others({"speed": self.unit})
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """What the effects left out would change in the speed of each crossing (k,)."""
+        effects, sizes = [], []
+        for label, locus in zip(self.labels, self.loci, strict=True):
+            own = [c for c in self.crossings if c.label == label]
+            modes = locus.frequency.shape[1]
+            effects.append(
+                left_out_of_crossings(locus.model, own, modes) if own else nothing_known(locus.scene)
+            )
+            sizes.append(len(own))
+        return _join(effects, sizes)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # without their model error
+        return super().to_dict() | {"loci": loci}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the diagram; flap solid and edge dashed where two planes are modelled."""
+        from beamdyn.common.plots.campbell import plot_campbell
+
+        return plot_campbell(
+            [self._curves(i) for i in range(len(self.loci))],
+            {line.name: line.multiple for line in self.lines},
+            self._marked(),
+            ax,
+            unit=self.display_units.speed_unit().name,
+            rated=self.rated,
+            operating=self.operating,
+        )
+
+    def _curves(self, i: int) -> Curves:
+        from beamdyn.common.plots.campbell import Curves
+
+        locus, label, names = self.loci[i], self.labels[i], self.names[i]
+        if locus.scene.physics.planes == 1:
+            return Curves(locus.speeds, locus.frequency, names, label)
+        drawn, words = first_drawn(locus.scene), name_directions(locus.scene)
+        solid = locus.plane_share[:, :, drawn] >= 0.5
+        directions = words[drawn][1], words[1 - drawn][1]
+        return Curves(locus.speeds, locus.frequency, names, label, solid, directions)
+
+    def _marked(self) -> dict[str, list[tuple[float, float]]]:
+        """Points of the crossings by what they are called in the legend."""
+        if self.operating is None:
+            return {"crossing": [(c.speed, c.frequency) for c in self.crossings]}
+        inside = "crossing in the operating range", "crossing outside it"
+        points: dict[str, list[tuple[float, float]]] = {name: [] for name in inside}
+        for c in self.crossings:
+            points[inside[0] if c.operating else inside[1]].append((c.speed, c.frequency))
+        return points
+
+
+def campbell(
+    scenes: Scenes,
+    speeds: np.ndarray | Sequence[float],
+    modes: int = 4,
+    per_rev: Iterable[int] = range(1, 7),
+    rated: float | None = None,
+    operating: tuple[float, float] | None = None,
+    unit: str | None = None,
+    bounds: bool = False,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> Campbell:
+    """Compute a Campbell diagram: natural frequencies over speed, and the lines that may excite them.
+
+    Every line is held against every mode: whether it excites it is another question, which
+    `resonance_speeds` answers for a scene's motion.
+
+    Parameters
+    ----------
+    scenes : Scene, sequence of Scene or mapping of str to Scene
+        One scene or several, which are drawn over one another; a mapping names them.
+    speeds : sequence of float
+        Speeds [rad/s], ascending, from 0 or above.  The operating speeds are added to them.
+    modes : int
+        Number of modes to follow.
+    per_rev : iterable of int
+        Orders of the per-rev lines: n stands for the frequency n speed / (2 pi).
+    rated : float, optional
+        Rated speed [rad/s], at which margins are stated.
+    operating : (float, float), optional
+        Lowest and highest operating speed [rad/s]: margins are stated over the range, and the crossings in it
+        are marked.
+    unit : {"rad/s", "rpm"}, optional
+        Unit of speeds in the picture and the tables, by default that of the first scene; the numbers of the
+        result are in rad/s.
+    bounds : bool
+        Whether guaranteed bounds of the frequencies are computed at the rated speed, or else the top speed.
+    discretization, tolerance
+        As for `natural_modes`.
+
+    Returns
+    -------
+    Campbell
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+
+    References
+    ----------
+    Campbell (1924), The protection of steam-turbine disk wheels from axial vibration, Transactions of the
+    ASME 46.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215, setting_angle=np.pi))
+    >>> diagram = bd.campbell(scene, np.linspace(0, 200, 21), modes=1, per_rev=(2, 3, 4))
+    >>> [(c.line.name, round(c.speed, 2)) for c in diagram.crossings]  # rad/s
+    [('4P', 136.01)]
+    """
+    start = perf_counter()
+    by_label, orders, bounds = _check_scenes(scenes), _check_orders(per_rev), flag("bounds", bounds)
+    unit = _check_unit(unit, next(iter(by_label.values())))
+    speeds = _check_speeds(speeds)
+    rated, operating = _check_operation(speeds, rated, operating)
+    speeds = _with_operation(speeds, rated, operating)
+    loci = [frequency_locus(s, speeds, modes, discretization, tolerance) for s in by_label.values()]
+    names = [_name_modes(locus) for locus in loci]
+    lines, unknown = _all_lines(orders, loci, [*by_label])
+    named = [*zip(by_label, names, loci, strict=True)]
+    crossings, margins = [], []
+    for one in named:
+        found = find_crossings(*one, lines, operating)
+        crossings += found
+        margins += [] if rated is None else margins_at_rated(*one, lines, rated)
+        margins += [] if operating is None else margins_in_range(*one, lines, operating, found)
+    bounded, refused = _bound(named, speeds[-1] if rated is None else rated) if bounds else ([], [])
+    methods = (", ".join(dict.fromkeys(getattr(c.provenance, n) for c in loci)) for n in _METHODS)
+    return Campbell(
+        labels=tuple(by_label),
+        names=tuple(names),
+        loci=tuple(loci),
+        lines=tuple(lines),
+        crossings=tuple(crossings),
+        margins=tuple(margins),
+        bounds=tuple(bounded),
+        rated=rated,
+        operating=operating,
+        unit=unit,
+        warnings=(*_warnings(named, lines), *unknown, *refused),
+        provenance=Provenance(__version__, *methods, wall_time=perf_counter() - start),
+        scene=loci[0].scene,
+    )
+
+
+_METHODS = "method", "compared_with"
+
+
+# What is given ------------------------------------------------------------------------------------
+
+
+def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
+    """The scenes by their labels."""
+    if isinstance(scenes, Scene):
+        return {"": scenes}
+    by_label: dict[str, Any]
+    if isinstance(scenes, Mapping):
+        by_label = {**scenes}
+        for label in by_label:
+            kind("scenes", label, str, "labels are text")
+    else:
+        by_label = _with_labels(scenes)
+    if not by_label:
+        raise InvalidValue("scenes", scenes, "it is empty; give at least one scene")
+    for label, scene in by_label.items():
+        kind(f"scenes[{label!r}]" if label else "scenes", scene, Scene, "give a beamdyn.Scene, or several")
+    return by_label
+
+
+def _with_labels(scenes: Any) -> dict[str, Any]:
+    """One scene or several by their labels; by numbers if several have none, or the same."""
+    try:
+        each = [*scenes]
+    except TypeError:
+        return {_label_of(scenes): scenes}
+    numbered = {f"scene {i}": scene for i, scene in enumerate(each, 1)}
+    named = {_label_of(scene) or number: scene for number, scene in numbered.items()}
+    return named if len(named) == len(each) else numbered
+
+
+def _label_of(scene: object) -> str:
+    return scene.label if isinstance(scene, Scene) else ""
+
+
+def _check_unit(unit: str | None, scene: Scene) -> str:
+    """The unit that is given, or that of the scene."""
+    if unit is not None:
+        one_of("unit", unit, UNITS)
+        return unit
+    return scene.units.speed if scene.units.speed in UNITS else UNITS[0]
+
+
+def _check_orders(per_rev: Iterable[int]) -> list[int]:
+    """Orders of the lines, ascending."""
+    try:
+        given = () if isinstance(per_rev, str | bytes | set | dict) else tuple(per_rev)
+    except TypeError:
+        raise InvalidValue("per_rev", per_rev, "give whole numbers, such as range(1, 7)") from None
+    orders = [count("per_rev", n, most=_MOST_ORDERS) for n in given]
+    if not orders:
+        raise InvalidValue("per_rev", per_rev, "there is no order in it; give some, such as range(1, 7)")
+    return sorted(set(orders))
+
+
+def _check_speeds(speeds: np.ndarray | Sequence[float]) -> np.ndarray:
+    given = ascending("speeds", speeds)
+    if given[0] < 0:
+        raise InvalidValue("speeds", float(given[0]), "a diagram begins at 0 or above", "", "rad/s")
+    if len(given) < 2:
+        remedy = "give a range, such as numpy.linspace(0, top, 301)"
+        raise InvalidValue("speeds", float(given[0]), "a diagram needs two speeds at least", remedy, "rad/s")
+    return given
+
+
+def _check_operation(
+    speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
+) -> tuple[float | None, tuple[float, float] | None]:
+    """The rated speed and the operating range, within the speeds of the diagram."""
+    if rated is not None:
+        rated = _within_speeds("rated", positive("rated", rated, "rad/s"), speeds)
+    if operating is None:
+        return rated, None
+    try:
+        low, high = operating
+    except (TypeError, ValueError):
+        raise InvalidValue("operating", operating, "give the lowest and the highest speed") from None
+    low, high = real("operating[0]", low, "rad/s"), real("operating[1]", high, "rad/s")
+    if not low < high:
+        bound = "it must be below the highest operating speed, {limit}"
+        raise InvalidValue("operating[0]", low, bound, "", "rad/s", high)
+    if rated is not None and not low <= rated <= high:
+        bound = f"it must lie in the operating range, {low:.6g} to {high:.6g} {{unit}}"
+        raise InvalidValue("rated", rated, bound, "", "rad/s")
+    return rated, (_within_speeds("operating[0]", low, speeds), _within_speeds("operating[1]", high, speeds))
+
+
+def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
+    first, top = speeds[[0, -1]].tolist()
+    if value > top * (1 + _SAME):
+        bound = "it is above the top speed of the diagram, {limit}"
+        raise InvalidValue(name, value, bound, "give a higher top speed", "rad/s", top)
+    if value < first:
+        bound = "it is below the first speed of the diagram, {limit}"
+        raise InvalidValue(name, value, bound, "begin at a lower speed", "rad/s", first)
+    return min(value, top)
+
+
+def _with_operation(
+    speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
+) -> np.ndarray:
+    """Put the operating speeds among the others, in place of those that they repeat but for rounding."""
+    added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
+    if not added.size:
+        return speeds
+    far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
+    return np.union1d(speeds[far], added)
+
+
+# Names, lines, warnings ---------------------------------------------------------------------------
+
+
+def _name_modes(locus: Locus) -> tuple[str, ...]:
+    """Names of the modes by the direction in which each mostly bends at the first speed."""
+    words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
+    is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0  # it points outward
+    if "flap" not in words or not is_blade:
+        return tuple(f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1))
+    chosen = [words[0 if locus.scene.physics.planes == 1 else k] for k in locus.plane_share[0].argmax(axis=1)]
+    return tuple(f"{word} {chosen[: i + 1].count(word)}" for i, word in enumerate(chosen))
+
+
+def _all_lines(
+    orders: Sequence[int], loci: Sequence[Locus], labels: Sequence[str]
+) -> tuple[list[Line], list[str]]:
+    """Per-rev lines and the other lines of the motions; warnings where those are not known."""
+    per_rev, others, unknown = [Line(f"{n}P", float(n)) for n in orders], [], []
+    for label, locus in zip(labels, loci, strict=True):
+        try:
+            others += _lines_of_motion(locus)
+        except ValueError as error:
+            unknown.append(f"{_prefix(label)}no excitation lines: {error}")
+    distinct = distinct_lines([*per_rev, *others])  # of two at one frequency the first
+    return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
+
+
+def _lines_of_motion(locus: Locus) -> list[Line]:
+    """Lines that force the beam, by the scene's motion and gravity."""
+    motion = locus.scene.motion
+    system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
+    return excitation_lines(system, motion, 1)[0]
+
+
+def _bound(
+    named: Sequence[tuple[str, Sequence[str], Locus]], speed: float
+) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
+    """Guaranteed bounds of each scene at a speed; what limits them, and why others have none."""
+    bounded, refused = [], []
+    for label, names, locus in named:
+        try:
+            found = frequency_bounds(locus.scene, float(speed), len(names))
+            bounded.append((label, found))
+            refused += [after(_prefix(label), warning) for warning in found.warnings]
+        except ValueError as error:
+            refused.append(f"{_prefix(label)}no guaranteed bounds: {error}")
+    return bounded, refused
+
+
+def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence[Line]) -> Iterator[str]:
+    for label, names, locus in named:
+        yield from (after(_prefix(label), warning) for warning in locus.warnings)
+        for line, mode in coincident(locus, lines):
+            both = f"{names[mode]} and {line.name}"
+            yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"
+
+
+def _prefix(label: str) -> str:
+    return label and f"{label}: "
+
+
+def _join(effects: Sequence[LeftOutEffects], sizes: Sequence[int]) -> LeftOutEffects:
+    """The effects left out of several models, each for some values: what a model includes changes nothing."""
+    if not sum(sizes):
+        return effects[0]
+    changes = {
+        name: np.concatenate(
+            [e.changes.get(name, np.zeros(n)) for e, n in zip(effects, sizes, strict=True) if n]
+        )
+        for name in dict.fromkeys(name for e in effects for name in e.changes)
+    }
+    words = {part: {k: v for e in effects for k, v in getattr(e, part).items()} for part in _IN_WORDS}
+    not_modelled = tuple(dict.fromkeys(name for e in effects for name in e.not_modelled))
+    return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
+
+
+_IN_WORDS = "not_known", "assumed", "reasons"
