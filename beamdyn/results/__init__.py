@@ -1,1 +1,1 @@
-"""How results of rotating beams are shown: tables, files, pictures, and what must stand beside the numbers."""
+"""How results of rotating beams are shown: tables, files, pictures, and cautions beside the numbers."""
