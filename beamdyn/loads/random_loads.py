@@ -254,7 +254,7 @@ class RandomLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
         """Draw the largest magnitude expected of a quantity along the span."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"

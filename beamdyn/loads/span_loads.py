@@ -211,7 +211,7 @@ class SpanLoads(Result):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw a quantity along the span: of few cases, else the range in which it lies."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         values, labels = self.values(quantity), self.components(quantity)

@@ -88,7 +88,7 @@ class SteadyLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw the largest magnitude of a quantity over all speeds along the span."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         largest = np.nanmax(self.values(quantity), axis=0, keepdims=True)

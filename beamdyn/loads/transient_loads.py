@@ -132,7 +132,7 @@ class TransientLoads(SpanLoads):
         end: float | None = None,
     ) -> Axes:
         """Draw the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         first, last = window_in(self.run, start, end)
@@ -142,7 +142,7 @@ class TransientLoads(SpanLoads):
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
-        from beamdyn.common.plots.plots_along_span import plot_load_over_time
+        from beamdyn.common.plots.curves import plot_load_over_time
 
         values, labels = self.values(quantity)[:, station], self.components(quantity)
         label = f"{quantity} at {self.x[station]:.6g} m [{UNITS[quantity] or '-'}]"
