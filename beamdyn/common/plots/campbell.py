@@ -149,7 +149,7 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
 ) -> tuple[list[_CurveName], int]:
-    """Draw the lines, and name those that leave through the top there: labels of the others, rows of names."""
+    """Draw the lines, and name there those that leave through the top: labels of the others, rows of names."""
     at_right, above = [], []
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
@@ -172,7 +172,7 @@ def _draw_lines(
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
-    """Draw the modes, and yield their labels; one that does not reach the right end is named where it begins."""
+    """Draw the modes, and yield their labels; one that does not reach the right end is named at its start."""
     for k, curves in enumerate(scenes):
         solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
         x = factor * curves.speeds
