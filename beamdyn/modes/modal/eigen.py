@@ -15,8 +15,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.triangular import solve_lower, solve_lower_transposed
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
 from beamdyn.modes.modal.massless import condense, has_massless
 from beamdyn.modes.modal.one_speed import (

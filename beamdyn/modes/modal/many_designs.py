@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.rounding import BACKWARD
+from beamdyn.equations.equations_of_motion import BACKWARD
 from beamdyn.modes.modal.eigen import (
     LEAST_STIFFNESS,
     explained,

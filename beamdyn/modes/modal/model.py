@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.equations_of_motion import Equations, assemble_equations
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.eigensolver import Eigensolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.uncoupled import solver_of, solver_over

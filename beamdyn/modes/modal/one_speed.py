@@ -10,8 +10,7 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
 
 from beamdyn.common.triangular import solve_lower, solve_lower_transposed
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
 

@@ -10,8 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits

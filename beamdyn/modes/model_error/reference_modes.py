@@ -18,8 +18,9 @@ import scipy.linalg
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from beamdyn.common.assignment import assign
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
-from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modes.modal.eigen import Eigen
 from beamdyn.modes.modal.eigensolver import Eigensolver
 from beamdyn.modes.modal.model import Model
