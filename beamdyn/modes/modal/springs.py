@@ -110,12 +110,6 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
     return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
 
 
-def leave_out_slowest(inverse: np.ndarray, y: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Leave out a number of the smallest eigenvalues of 1/s (m,) and vectors (n, m)."""
-    kept = np.sort(np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - number])
-    return inverse[kept], y[:, kept]
-
-
 def insert_free_turns(
     turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -231,17 +225,3 @@ def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
     except np.linalg.LinAlgError:
         return np.full(len(K), np.nan if speed else 0.0)
     return scipy.linalg.cho_solve(factor, speed**2 * pencil.f2)
-
-
-def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
-
-    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
-    """
-    n, zero = len(M), np.zeros_like(M)
-    A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
-    s, y = scipy.linalg.eig(A, B)
-    finite = np.isfinite(s)
-    s, y = s[finite], y[:, finite]
-    least = _EPS * np.abs(s).max()
-    return 1 / np.where(np.abs(s) < least, 1j * least, s), y
