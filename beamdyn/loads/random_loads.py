@@ -26,15 +26,17 @@ from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.linear.choice import check_linear, model_of_few_modes, with_forces
-from beamdyn.linear.convergence import Refined, evaluate_accurately
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.mean_square import partial_fractions
+from beamdyn.linear.convergence import (
+    Refined,
+    check_linear,
+    evaluate_accurately,
+    model_of_few_modes,
+    with_forces,
+)
+from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
+from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import DeflectionAt
-from beamdyn.linear.parametric import ParametricTerm, parametric_term
-from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
-from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, highest_frequency, random_input, warn_of_band
 from beamdyn.linear.transfer import check_stable
 from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
@@ -42,7 +44,7 @@ from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
 from beamdyn.modes.modal.choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
-from beamdyn.scene.direction import ACROSS
+from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_elastic_limit, warn_of_left_out
 
