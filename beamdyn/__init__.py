@@ -26,7 +26,7 @@ _NAMES = {
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
-    "equations.left_out": ("OmittedEffect",),
+    "equations.effects": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
     "scene.beam": ("Beam",),
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
@@ -124,8 +124,8 @@ if TYPE_CHECKING:
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
     from beamdyn.equations.discretization import Discretization
+    from beamdyn.equations.effects import OmittedEffect
     from beamdyn.equations.fem import Fem
-    from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, PropertyStep, ShapeCheck

@@ -21,7 +21,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoin
 from beamdyn.common.edge.tables import table
 from beamdyn.common.plots.notes import note_below
 from beamdyn.common.screens.screens import Drag
-from beamdyn.modes.model_error.choice import plain_physics
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import notes_of, warnings_of

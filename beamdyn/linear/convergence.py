@@ -14,9 +14,14 @@ from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.statements import Speeds, Words
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.modes.modal.choice import DiscretizationChoice, check_discretization, choose_model, most_modes
+from beamdyn.modes.modal.discretization_choice import (
+    DiscretizationChoice,
+    check_discretization,
+    choose_model,
+    most_modes,
+)
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.choice import choose_physics
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 

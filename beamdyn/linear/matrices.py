@@ -29,7 +29,7 @@ from beamdyn.linear.inputs_outputs import (
     as_observation,
 )
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed, pole_errors
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene

@@ -12,7 +12,7 @@ from beamdyn.common.results.statements import GROWING, NO_ANSWER, OUTSIDE, TOLER
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.mass import moments_about_root
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.modal.choice import (
+from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
     DiscretizationChoice,
     list_models,

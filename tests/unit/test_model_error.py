@@ -19,7 +19,7 @@ from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
-from beamdyn.modes.model_error.pencils import shift_eigenvalues
+from beamdyn.modes.model_error.reference_modes import shift_eigenvalues
 from beamdyn.results.tables.results import locus_table, modes_table
 from beamdyn.results.tables.rows import locus_csv
 

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
 from beamdyn.results.tables.results import crossings_table, steady_table, sweep_table
 from beamdyn.results.tables.rows import crossings_csv, steady_csv, sweep_csv, transient_csv
