@@ -119,7 +119,7 @@ VIEWS = {
         _late("common.edge.spread_tables.spread_table"),
         _late("common.edge.spread_tables.spread_csv"),
         0,
-        _late("common.spreading.pictures.spread_figure"),
+        _late("common.spreading.result.spread_figure"),
     ),
     "StaticLoads": View(
         _late("results.tables.loads.static_loads_table"), _late("results.tables.loads.loads_csv"), 3
