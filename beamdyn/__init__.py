@@ -9,6 +9,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from beamdyn._version import __version__ as __version__
+from beamdyn.common.results.shown_by import MEDIA, SHOWN_BY
+
+MEDIA.append("beamdyn.common.edge.views")
+SHOWN_BY.update(
+    (f"beamdyn.{room}", f"beamdyn.{module}")
+    for module, rooms in {
+        "common.edge.spread_tables": ("common",),
+        "files.decks.deck_tables": ("files",),
+        "results.of_linear_models": ("linear",),
+        "results.of_loads": ("loads",),
+        "results.of_modes": ("equations", "modes", "scene"),
+        "results.of_motion": ("steady", "transient"),
+        "results.of_studies": ("studies",),
+    }.items()
+    for room in rooms
+)
 
 # The public names by their module.
 _NAMES = {
