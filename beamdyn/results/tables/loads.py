@@ -14,18 +14,18 @@ from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.loads.span_loads import REMEDIES, UNITS
+from beamdyn.loads.span_loads import REMEDIES
+from beamdyn.loads.stations import UNITS
 
 if TYPE_CHECKING:
     from beamdyn.common.results.display_units import ShownUnit
     from beamdyn.common.results.result import Result
     from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.equivalent_ranges import EquivalentRange
     from beamdyn.loads.random_loads import RandomLoads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads
     from beamdyn.loads.steady_loads import SteadyLoads
-    from beamdyn.loads.transient_loads import TransientLoads
+    from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
 _DIGITS_EXPECTED = 3  # of the largest that are expected: statistics have no more
@@ -130,7 +130,7 @@ def _say_what_strains_need(known: Sequence[str]) -> list[Text]:
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
     scale, unit = _SCALES[found.quantity]
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    name, unit_of_case = result.case
+    name, unit_of_case, _ = result.case
     case = f"{found.case:.6g} {unit_of_case}"
     if name == "speed":
         case = result.display_units.speed_unit().say(found.case)

@@ -11,7 +11,7 @@ from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported
-from beamdyn.loads.span_loads import UNITS
+from beamdyn.loads.stations import UNITS
 
 if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
