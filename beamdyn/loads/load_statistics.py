@@ -27,7 +27,7 @@ from beamdyn.linear.spectra import PowerSpectrum
 from beamdyn.linear.transfer import check_stable
 from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
 from beamdyn.loads.stations import SpanStations, StationOutputs
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
 _FIRST_MODES = 4  # of a model that tells the sizes of the outputs
