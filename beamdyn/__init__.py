@@ -48,7 +48,8 @@ _NAMES = {
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
     "scene.damping": ("Damping",),
     "loads.cycles": ("LoadCycles", "count_cycles"),
-    "loads.random_loads": ("RandomLoads", "RandomStatistics", "random_loads"),
+    "loads.load_statistics": ("RandomStatistics",),
+    "loads.random_loads": ("RandomLoads", "random_loads"),
     "loads.span_loads": ("LargestLoad", "SpanLoads"),
     "loads.static_loads": ("StaticLoads", "static_loads"),
     "loads.steady_loads": ("SteadyLoads", "steady_loads"),
@@ -162,7 +163,8 @@ if TYPE_CHECKING:
     from beamdyn.linear.random_response import RandomResponse, random_response
     from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.loads.cycles import LoadCycles, count_cycles
-    from beamdyn.loads.random_loads import RandomLoads, RandomStatistics, random_loads
+    from beamdyn.loads.load_statistics import RandomStatistics
+    from beamdyn.loads.random_loads import RandomLoads, random_loads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
