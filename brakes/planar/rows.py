@@ -191,7 +191,7 @@ class Line(_AtPoint):
 
     def unit_force(self, place: Place) -> complex:
         """The normal."""
-        return complex(*self.normal) * np.exp(1j * place.angle(self.frame))
+        return complex(complex(*self.normal) * np.exp(1j * place.angle(self.frame)))
 
 
 @dataclass(frozen=True)

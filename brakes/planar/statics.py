@@ -245,7 +245,7 @@ def collect_result(
         f"reactions hang on the last digits of the drawing (smallest singular value {forces.kept.min():.1g}"
         "): the position is close to a toggle position or to indeterminacy"
     )
-    arrays: dict[str, np.ndarray] = {
+    arrays: dict[str, Any] = {
         "mobility": system.size - constraints.rank,
         "indeterminacy": forces.vt.shape[-1] - forces.rank,
         "uncontrolled": system.size - forces.rank,
