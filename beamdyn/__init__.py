@@ -9,6 +9,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from beamdyn._version import __version__ as __version__
+from beamdyn.common.results.shown_by import MEDIA, SHOWN_BY
+
+MEDIA.append("beamdyn.common.edge.views")
+SHOWN_BY.update(
+    (f"beamdyn.{room}", f"beamdyn.{module}")
+    for module, rooms in {
+        "common.edge.spread_tables": ("common",),
+        "files.decks.deck_tables": ("files",),
+        "results.of_linear_models": ("linear",),
+        "results.of_loads": ("loads",),
+        "results.of_modes": ("equations", "modes", "scene"),
+        "results.of_motion": ("steady", "transient"),
+        "results.of_studies": ("studies",),
+    }.items()
+    for room in rooms
+)
 
 # The public names by their module.
 _NAMES = {
@@ -28,13 +44,14 @@ _NAMES = {
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
-    "equations.left_out": ("OmittedEffect",),
+    "equations.effects": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
     "scene.beam": ("Beam",),
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
     "scene.damping": ("Damping",),
     "loads.cycles": ("LoadCycles", "count_cycles"),
-    "loads.random_loads": ("RandomLoads", "RandomStatistics", "random_loads"),
+    "loads.load_statistics": ("RandomStatistics",),
+    "loads.random_loads": ("RandomLoads", "random_loads"),
     "loads.span_loads": ("LargestLoad", "SpanLoads"),
     "loads.static_loads": ("StaticLoads", "static_loads"),
     "loads.steady_loads": ("SteadyLoads", "steady_loads"),
@@ -123,8 +140,8 @@ if TYPE_CHECKING:
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
     from beamdyn.equations.discretization import Discretization
+    from beamdyn.equations.effects import OmittedEffect
     from beamdyn.equations.fem import Fem
-    from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.files.decks.audit import DeckAudit, PropertyStep, ShapeCheck
@@ -141,7 +158,8 @@ if TYPE_CHECKING:
     from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.linear.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
-    from beamdyn.loads.random_loads import RandomLoads, RandomStatistics, random_loads
+    from beamdyn.loads.load_statistics import RandomStatistics
+    from beamdyn.loads.random_loads import RandomLoads, random_loads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
