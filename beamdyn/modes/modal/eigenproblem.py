@@ -9,7 +9,7 @@ eigenproblem of their own, which at one speed would be most of the work (`diagon
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
 
 from beamdyn.common.triangular import solve_lower, solve_lower_transposed
-from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, Equations, SteadyPencil
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,
     above_rounding,
@@ -47,7 +47,6 @@ from beamdyn.modes.modal.springs import (
     solve_definite,
 )
 
-LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 _EPS = np.finfo(float).eps
 
 
@@ -138,30 +137,6 @@ class Eigensolver(ABC):
         ndarray, shape (S, d)
             nan from the critical speed on.
         """
-
-
-def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Eigensolver:
-    """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart.
-
-    Where some coordinates, ascending, are given, the others are 0.
-    """
-    pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
-    if coordinates is not None:
-        place = np.full(equations.size, -1)
-        place[coordinates] = np.arange(len(coordinates))
-        parts = [places[places >= 0] for places in (place[part] for part in parts)]
-        pencil = pencil.part(coordinates)
-    return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
-
-
-def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
-    if len(pencil.M) <= LARGE:
-        return Solver(pencil)
-    from beamdyn.modes.modal.large import (
-        LargeSolver,  # here, for the time that sparse algebra takes to import
-    )
-
-    return LargeSolver(pencil)
 
 
 class Solver(Eigensolver):
@@ -334,73 +309,6 @@ class Solver(Eigensolver):
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         return s, basis @ (z / norm), rounding
-
-
-class UncoupledSolver(Eigensolver):
-    """Eigensolver that solves parts of a pencil apart, such as two planes of a straight beam.
-
-    Parameters
-    ----------
-    pencil : SteadyPencil
-        Equations at steady speed.
-    parts : sequence of ndarray of int
-        Coordinates of each part.
-    """
-
-    def __init__(self, pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> None:
-        super().__init__(pencil)
-        self.parts, self.solvers = tuple(parts), tuple(_solver_of_part(pencil.part(part)) for part in parts)
-
-    @cached_property
-    def lowest_at_rest(self) -> float:
-        """The lowest of all parts."""
-        return min(solver.lowest_at_rest for solver in self.solvers)
-
-    @property
-    def softening(self) -> float:
-        """The largest of all parts."""
-        return max(solver.softening for solver in self.solvers)
-
-    @property
-    def critical_rounding(self) -> float:
-        """Rounding error of the softest part."""
-        return max(self.solvers, key=lambda solver: solver.softening).critical_rounding
-
-    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """The lowest of the modes of all parts."""
-        found = [solver.solve(speeds, min(count, solver.size)) for solver in self.solvers]
-        vectors = []
-        for part, eigen in zip(self.parts, found, strict=True):
-            embedded = np.zeros((len(speeds), self.size, eigen.vector.shape[2]), dtype=eigen.vector.dtype)
-            embedded[:, part] = eigen.vector
-            vectors.append(embedded)
-        eigenvalue, rounding, vector = (
-            np.concatenate(values, axis=-1)
-            for values in ([e.eigenvalue for e in found], [e.rounding for e in found], vectors)
-        )
-        order = _order(eigenvalue)[:, :count]
-        return Eigen(
-            np.take_along_axis(eigenvalue, order, axis=1),
-            np.take_along_axis(vector, order[:, None, :], axis=2),
-            np.take_along_axis(rounding, order, axis=1),
-        )
-
-    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """The lowest of those of all parts."""
-        each = [solver.eigenvalues(speeds, min(count, solver.size)) for solver in self.solvers]
-        together = np.concatenate(each, axis=1)
-        return np.take_along_axis(together, _order(together)[:, :count], axis=1)
-
-    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """The sums of what the parts contribute."""
-        each = zip(self.parts, self.solvers, strict=True)
-        return np.sum([solver.solve_static(speeds, outputs[:, part]) for part, solver in each], axis=0)
-
-
-def _order(eigenvalue: np.ndarray) -> np.ndarray:
-    """Order (S, k) of eigenvalues by squared frequency, that of a growing mode being negative."""
-    sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
-    return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")
 
 
 @contextmanager

@@ -12,8 +12,9 @@ from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.eigenproblem import Eigensolver, solver_of
+from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
+from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:

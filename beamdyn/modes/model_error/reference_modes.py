@@ -21,8 +21,9 @@ from beamdyn.common.assignment import assign
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, solver_of
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 _MOST = 160  # coordinates of a model: an estimate of a change needs no more
