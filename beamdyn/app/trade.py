@@ -27,9 +27,8 @@ from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import notes_of, warnings_of
 from beamdyn.results.of_studies import diagram_csv, diagram_table
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
-from beamdyn.studies.tradeoffs.physics import physics_diagram
 
 _BUDGET = 2.0  # for all measurements of a diagram [s]
 _RUNS = 5  # of the chosen model, the shortest of which counts

@@ -23,14 +23,13 @@ from beamdyn.modes.modal.continuation import (
     follow,
     start_curve,
 )
-from beamdyn.modes.modal.deflected import DeflectedSolver
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
     choose_model,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -168,11 +167,11 @@ def equilibrium(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
-    solver, coarse = _solver(solution.model), _solver(solution.coarse)
+    solver, coarse = _solver(solution.model), _solver(solution.model.coarser)
     q = solver.equilibria(speeds)[0]
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
-    names = str(solution.model.discretization), str(solution.coarse.discretization)
+    names = str(solution.model.discretization), str(solution.model.coarser.discretization)
     return Equilibrium(
         speed=float(speeds[0]),
         branch=scene.physics.branch,

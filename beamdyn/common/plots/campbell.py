@@ -149,7 +149,7 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
 ) -> tuple[list[_CurveName], int]:
-    """Draw the lines, and name there those that leave through the top: labels of the others, rows of names."""
+    """Draw the lines, and name those that leave at the top there: labels of the others, rows of names."""
     at_right, above = [], []
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
