@@ -174,12 +174,6 @@ class RandomLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
         """Draw the largest magnitude expected of a quantity along the span."""
-<<<<<<< HEAD
-        from beamdyn.common.plots.curves import plot_along_span
-
-        self.check_known(quantity)
-=======
->>>>>>> main
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"
         return self.draw(ax, quantity, self.values, label)
 

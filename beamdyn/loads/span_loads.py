@@ -235,15 +235,11 @@ class SpanLoads(Result):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw a quantity along the span: of few cases, else the range in which it lies."""
-<<<<<<< HEAD
-        from beamdyn.common.plots.curves import plot_along_span
-=======
         return self.draw(ax, quantity, self.values, with_unit(quantity))
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
         """Draw values (C, S, k) of a quantity along the span, if the result has it."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
->>>>>>> main
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         named = self.components(quantity)

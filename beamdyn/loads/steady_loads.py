@@ -94,10 +94,6 @@ class SteadyLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw the largest magnitude of a quantity over all speeds along the span."""
-<<<<<<< HEAD
-        from beamdyn.common.plots.curves import plot_along_span
-=======
->>>>>>> main
 
         def largest(name: str) -> np.ndarray:
             return np.nanmax(self.values(name), axis=0, keepdims=True)

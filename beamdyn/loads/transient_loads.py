@@ -156,10 +156,6 @@ class TransientLoads(SpanLoads):
         end: float | None = None,
     ) -> Axes:
         """Draw the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
-<<<<<<< HEAD
-        from beamdyn.common.plots.curves import plot_along_span
-=======
->>>>>>> main
 
         def within(name: str) -> np.ndarray:
             first, last = window_in(self.run, start, end)
