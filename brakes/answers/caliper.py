@@ -200,7 +200,8 @@ class CaliperAnswer(PlanarAnswer):
             named = f", {join_names(own)} with their own" if own else ""
             shown.append(
                 f"Pivots with friction {f.coefficient:g}{named}: {100 * f.squeeze:.2f} % of the force "
-                f"arrives when squeezed; when let go the cable still has {100 * f.release:.2f} % of its tension."
+                "arrives when squeezed; when let go the cable still has "
+                f"{100 * f.release:.2f} % of its tension."
             )
             shown.append(f"For the same forces of the pads: {self._tensions(f)}.")
         if (w := self.wear) is not None:

@@ -303,7 +303,6 @@ def _mean(
         ways = dict.fromkeys(pads, _PAD) | one_way_parts(mechanism.joints)
         pressed = dict(zip(pads, forces.T, strict=True))
         status, message = combine([*find_wrong_way(ways, sizes | pressed, least).values()])
-    errors = ("virtual_work", "residual", "error")
     return {
         "status": status,
         "message": message,
