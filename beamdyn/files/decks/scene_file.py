@@ -113,20 +113,16 @@ def _commented(sentences: Iterable[str]) -> Iterator[str]:
 def _assignment(key: str, value: Any) -> Iterator[str]:
     if isinstance(value, list):
         yield f"{key} = ["
-        yield from _table(value)
+        # The rows in columns that are aligned.
+        heads, *numbers = value
+        cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        for row in cells:
+            padded = (f"{cell},".ljust(width + 1) for cell, width in zip(row, widths, strict=True))
+            yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
         yield "]"
     else:
         yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value}"
-
-
-def _table(rows: list[list[Any]]) -> Iterator[str]:
-    """The rows in columns that are aligned."""
-    heads, *numbers = rows
-    cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    for row in cells:
-        padded = (f"{cell},".ljust(width + 1) for cell, width in zip(row, widths, strict=True))
-        yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
 
 
 def _cell(value: float) -> str:
