@@ -25,7 +25,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.effects import Addition, list_effects
+from beamdyn.modes.model_error.additions import Addition, list_effects
 from benchmarks.cases.random_physics import (
     random_mount,
     random_physics_beam,
@@ -183,7 +183,7 @@ class _OverBeam(Model):
     @property
     def equations(self) -> Any:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Equations of motion."""
-        from beamdyn.equations.equations_of_motion import assemble_over
+        from beamdyn.equations.assembly import assemble_over
 
         return assemble_over(self.scene, self.discretization.spaces(self.beam))
 

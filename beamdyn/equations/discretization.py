@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
-from beamdyn.equations.arc_quadrature import Cells
+from beamdyn.equations.quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -30,15 +30,6 @@ class RootConditions(NamedTuple):
     derivatives: int
     stiffness: str = ""
     direction: int = 0
-
-    def against(self, stiffness: str, direction: int = 0) -> RootConditions:
-        """The same conditions, of a displacement that a stiffness resists."""
-        return RootConditions(self.held, self.derivatives, stiffness, direction)
-
-    @property
-    def at_root(self) -> RootConditions:
-        """The same without a stiffness: all that functions which are the same in all beams depend on."""
-        return RootConditions(self.held, self.derivatives)
 
 
 CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root
@@ -119,7 +110,7 @@ class Discretization(Protocol):
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
        `converges_regularly` says whether the estimate needs no further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
-       in `beamdyn.modes.modal.choice`.
+       in `beamdyn.modes.modal.discretization_choice`.
 
     Examples
     --------

@@ -12,8 +12,8 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import HINGED, RootConditions
+from beamdyn.equations.quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
@@ -166,7 +166,7 @@ class FemSpaces(FieldsOnly):
 
     def functions(self, conditions: RootConditions) -> FemSpace:
         """Trial functions that satisfy conditions at the root."""
-        return FemSpace(self, conditions.at_root)
+        return FemSpace(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)

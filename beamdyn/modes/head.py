@@ -17,10 +17,10 @@ from numpy.polynomial import legendre
 from scipy.linalg import qr, solve_triangular
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
-from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import CLAMPED
+from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.moment_functions import NODES
+from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
@@ -30,7 +30,7 @@ _SAMPLES = 32  # of the stiffness on a segment, which decide about the basis onl
 _STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
 
-_CONDITIONS = CLAMPED.against("bending_stiffness")
+_CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
 
 def most_functions(beam: Beam) -> int:

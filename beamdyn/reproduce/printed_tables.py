@@ -15,8 +15,8 @@ from rich.console import Group
 import beamdyn as bd
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results.published import values_alone
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import FIXED, Discretization
-from beamdyn.equations.equations_of_motion import assemble_over
 from beamdyn.published import load
 from beamdyn.reproduce.blades import entries_of_blades, stations
 from beamdyn.reproduce.entries import PrintedValue, Summary, compare_modes, summarize_entries
@@ -144,7 +144,7 @@ def tip_stretch(beam: bd.Beam, speed: float, discretization: Discretization) -> 
     equations = assemble_over(scene, spaces)
     pencil = equations.steady().part(equations.places(["stretch"]))
     q = np.linalg.solve(pencil.K0 + speed**2 * pencil.K2, speed**2 * pencil.f2)
-    return float(spaces.functions(FIXED.against("axial_stiffness")).end(0) @ q)
+    return float(spaces.functions(FIXED._replace(stiffness="axial_stiffness")).end(0) @ q)
 
 
 # Tables of rotating and of twisted beams -----------------------------------------------------------------

@@ -1,0 +1,103 @@
+"""Bending, with its sections normal to the axis, and shear (Timoshenko), each in two directions.
+
+The deflection is u = u_b + u_s, with the sections' rotation u_b'.  Shear is thus a field that vanishes at
+the root like the stretch; there is no locking, and the slender beam is the exact limit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+
+from beamdyn.equations import explanations as why
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
+from beamdyn.equations.explanations import Explanation
+from beamdyn.equations.fields.field import Term
+from beamdyn.equations.fields.transverse import Pair, TransverseField
+from beamdyn.scene.beam import PointSpring, TipMass
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import section_tensor
+
+
+class Bending(TransverseField):
+    """Bending in the direction of the bending angle, which every scene has."""
+
+    name = "bending"
+    direction = 0
+    rotates = True
+    partners = ()
+    explanations: ClassVar[Mapping[str, Explanation]] = {
+        **TransverseField.explanations,
+        "bending stiffness": Explanation("KB q2", "always"),
+        "root spring": Explanation("k D0 D0ᵀ q2", "the root turns against a spring", (why.ON_SPRINGS,)),
+    }
+
+    def complete(self, scene: Scene) -> Scene:
+        """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
+        body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
+        mount = Mount(1.0, math.pi, 1.0, root_stiffness=1.0, second_root_stiffness=1.0, precone=0.5)
+        springs = (PointSpring(scene.beam.length, scene.beam.bending_stiffness(np.zeros(1))[0]),)
+        beam = replace(scene.beam, tip=body, point_springs=springs)
+        return replace(scene.undamped, beam=beam, mount=mount, damping_ratio=0.5)
+
+    def conditions(self, mount: Mount) -> RootConditions:
+        """Clamped, or hinged where a spring holds the root."""
+        at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
+        return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
+
+    def own_stiffness(self, pair: Pair) -> Iterator[Term]:
+        """Yield bending stiffness and root spring."""
+        stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
+        if stiffness is not None:
+            yield pair.term("bending stiffness", pair.integrate(stiffness, 2))
+        spring = pair.rows.scene.mount.root_stiffnesses[self.direction]
+        if pair.rows is pair.columns and math.isfinite(spring):
+            slope = pair.rows.space.evaluate(np.zeros(1), 1)[:, 0] / pair.rows.beam.length
+            yield pair.term("root spring", spring * np.outer(slope, slope))
+
+
+class SecondBending(Bending):
+    """Bending in the direction across, where both planes are modelled."""
+
+    name = "second bending"
+    direction = 1
+    requires: ClassVar[Mapping[str, object]] = {"planes": 2}
+    partners = (*Bending.partners, Bending())
+
+
+class Shear(TransverseField):
+    """Shear deflection in the direction of the bending angle."""
+
+    name = "shear"
+    direction = 0
+    rotates = False
+    requires: ClassVar[Mapping[str, object]] = {"shear": True}
+    partners = (*SecondBending.partners, SecondBending())
+    explanations: ClassVar[Mapping[str, Explanation]] = {
+        **TransverseField.explanations,
+        "shear stiffness": Explanation("KQ q2", "shear is modelled"),
+    }
+
+    def conditions(self, mount: Mount) -> RootConditions:
+        """No deflection at the root."""
+        return FIXED._replace(stiffness="shear_stiffness", direction=self.direction)
+
+    def own_stiffness(self, pair: Pair) -> Iterator[Term]:
+        """Yield the shear stiffness of shear with shear."""
+        stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
+        if stiffness is not None and not pair.rows.field.rotates:
+            yield pair.term("shear stiffness", pair.integrate(stiffness, 1))
+
+
+class SecondShear(Shear):
+    """Shear deflection in the direction across, where shear and both planes are modelled."""
+
+    name = "second shear"
+    direction = 1
+    requires: ClassVar[Mapping[str, object]] = {"shear": True, "planes": 2}
+    partners = (*Shear.partners, Shear())
