@@ -14,11 +14,9 @@ from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.linear.choice import check_linear, with_forces
-from beamdyn.linear.convergence import Refined, evaluate_accurately
-from beamdyn.linear.excitations import Excitation, as_excitation
+from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, with_forces
+from beamdyn.linear.inputs_outputs import Excitation, Observation, as_excitation, as_observation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import Observation, as_observation
 from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -116,17 +114,12 @@ class FrequencyResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
-        labels = [_label(h) for h in self.harmonics.tolist()]
+        labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]
         return plot_frequency_response(curves, value, labels, ax)
-
-
-def _label(harmonic: int) -> str:
-    """What a harmonic of the rotation is, in the legend of a picture; empty if there is one only."""
-    return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
 
 
 @announced_of_plain_beam

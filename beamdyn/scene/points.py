@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, get_args
+from typing import Annotated, Final, Literal, get_args
 
 from beamdyn.common.inputs.checks import amount, one_of, positive, real, refuse, set_fields
 from beamdyn.common.inputs.described import Described
-from beamdyn.scene.direction import ALONG_BENDING, Direction
+
+Direction = Literal["bending", "across"]
+ALONG_BENDING: Final = "bending"
+ACROSS: Final = "across"
+
+
+def direction_of(direction: str) -> int:
+    """0 for the direction of the bending angle, 1 for that across."""
+    return 1 if direction == ACROSS else 0
+
+
+# What stands on the beam or holds it at a point ---------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -67,10 +78,7 @@ class TipMass:
         given = () if self.transverse_inertia is None else ("transverse_inertia",)
         for name in (*required, *given):
             set_fields(self, **{name: amount(f"tip.{name}", getattr(self, name), "kg m2")})
-        self._check_inertias()
-
-    def _check_inertias(self) -> None:
-        """Refuse a moment of inertia beyond the sum of the other two, which no rigid body has."""
+        # Refuse a moment of inertia beyond the sum of the other two, which no rigid body has.
         moments = {
             "inertia": self.inertia,
             "transverse_inertia": self.inertia_about_bending_direction,

@@ -24,9 +24,16 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
-from beamdyn.files.decks import mode_shapes
-from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
-from beamdyn.files.decks.stations import Column, Stations, read_stations
+from beamdyn.files.decks.audit import SHAPE_NAMES
+from beamdyn.files.decks.blade import (
+    Blade,
+    Column,
+    IgnoredProperty,
+    Stations,
+    ignore,
+    ignore_columns,
+    read_stations,
+)
 
 COLUMNS = (
     Column("BlFract", "-", required=True),
@@ -63,7 +70,7 @@ _REASONS = {
 _FACTORS = {"AdjBlMs": "BMassDen", "AdjFlSt": "FlpStff", "AdjEdSt": "EdgStff"}
 _DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
 _TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
-_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in mode_shapes.NAMES.items()}
+_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in SHAPE_NAMES.items()}
 _BLADE_NAMES = {
     plain_name(name): name
     for name in (
@@ -169,9 +176,11 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
         return np.array([named_number(text, found[plain_name(name)]) for name in names])
 
     damping = numbers(*_DAMPING) / 100
+    # What the file says it is of: its second line, or that below two lines of dashes in FAST 7.
+    plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
     return Blade(
         kind="ElastoDyn blade file",
-        title=_title(text),
+        title=next(plain, ""),
         sources=(text.path,),
         length=length,
         hub_radius=hub_radius,
@@ -197,12 +206,6 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
             f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
         )
         yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
-
-
-def _title(text: DataText) -> str:
-    """What the file says it is of: its second line, or that below two lines of dashes in FAST 7."""
-    plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
-    return next(plain, "")
 
 
 def _factors(text: DataText, found: Mapping[str, NamedValue]) -> dict[str, float]:
