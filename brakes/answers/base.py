@@ -359,9 +359,7 @@ class BrakeType(ABC, Generic[FileModel]):
         asked = SweepRequest(design, tables, axes, combine, run)
         made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
         given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
-        given |= {
-            key: given[key][:-1] for key in ("results", "result_units", "found")
-        }  # the last is the error
+        given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}  # without the error
         more = {"design": plain(design.model_dump()), "provenance": self._provenance(start)}
         return BrakeSweep(**given, **more, error=made.found[-1]), warnings
 

@@ -176,15 +176,10 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            title = (
-                "Events (rank and smallest singular value: of the mechanism's constraints, least on the way)"
-            )
+            least = "rank and smallest singular value: of the mechanism's constraints, least on the way"
+            heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
-            tables.append(
-                table(
-                    f"Events ({least})", ("stage", "event", "rank", "smallest singular value"), rows, (0, 1)
-                )
-            )
+            tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
         if (f := self.forces) is not None:
             rows = [*list_outputs(_FORCES, [f]), [], *list_outputs(_ARMS, [f.levers])]
             title = f"Forces in one brake; the torque is from {self.torque_from}"
