@@ -40,11 +40,38 @@ with S_1 = int rho A x + m (L + eps).  If F(x) < 0, the beam is unstable at ever
 
 **Rotary inertia** of sections that tilt out of the plane of rotation, and a tip body with a product of
 inertia between both planes, may lower F without limit in a bend of no length.  Where F without them is
-positive, `beamdyn.modes.toppling` says below which speed they buckle nothing, usually one at which the
-axial strain of the beam has passed 1 %, where linear theory ends.
+positive, the last section says below which speed they buckle nothing, usually one at which the axial strain
+of the beam has passed 1 %, where linear theory ends.
 
 **String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
 decides; it converges fast, as without bending stiffness there are no thin layers.
+
+**Toppling.**  Let F0 be the form of above for a slender beam, and E twice the energy of bending and of
+the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
+it), the tensor I of their rotary inertia and that of the tip body, B, rotation adds to F0
+
+    -int (I33 theta3^2 + I23 theta2 theta3) + B23 theta2 theta3 at the tip
+    + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
+
+in which B33 theta3^2 at the tip counts to F0.  With the compliance C(x), the integral of the sections' from
+the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what rotation adds is at least -r E per
+squared speed, with
+
+    r = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
+
+with the smaller EI at x.  **If F0 >= 0, no speed below r^(-1/2) is critical.**  For a uniform beam that is
+2^(1/2) times the speed of sound in its material, over the length.
+
+At a hinge C is infinite.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
+mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If S = int N - 2 int I33 > 0,
+
+    r = 2 e int I33 + A^2 / (4 S) + A e^(1/2) + G,    G = (int g^2 C22 / EI)^(1/2),
+    A = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
+
+With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
+
+Precone eta multiplies all but B23 by cos^2 eta <= 1, and adds sin^2 eta I to the form, which is not negative;
+B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a short bend are not used then.
 """
 
 from __future__ import annotations
@@ -52,6 +79,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import eigh
@@ -60,14 +89,8 @@ from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.mass import axial_tension, gram_by_mass, moments_about_root
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.toppling import (
-    least_toppling_speed,
-    strain_limit_comes_first,
-    topples_in_slender_limit,
-)
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
-from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
@@ -75,6 +98,10 @@ _ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
 _SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
 _RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
+_CELLS = 2000  # of the midpoint rule on all segments together
+_MARGIN = 1.01  # for its error
+_LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
+_ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 
 
 @dataclass(frozen=True)
@@ -106,38 +133,37 @@ def decide_buckling(scene: Scene) -> Buckling:
     if (turning := _least_turning(scene)) < 0:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
     by_plane = [_decide_in_plane(form) for form in _SpinForm.of_planes(scene)]
-    found = next((b for b in by_plane if b.exists), None) or next(
-        (b for b in by_plane if b.exists is None), None
-    )
-    if found is not None:
-        return found
-    if math.isfinite(toppling := least_toppling_speed(scene)):
-        return _decide_toppling(scene, toppling)
+    for exists in (True, None):
+        if found := [each for each in by_plane if each.exists is exists]:
+            return found[0]
+    inertia = _Inertia(scene)
+    if inertia.topples:  # the rotation stiffens the beam, but for the inertia of what tilts
+        why = "only the rotary inertia of what tilts out of the plane can buckle it"
+        slowest = float((_MARGIN * min(inertia.softening, inertia.softening_at_hinge)) ** -0.5)
+        strained = slowest >= _LARGE_STRAIN**0.5 * inertia.sound_speed
+        exists = True if inertia.topples_in_slender_limit else None
+        speed = math.inf if strained else None
+        return Buckling(exists, f"the rotation stiffens the beam; {why}", speed, slowest)
     if turning == 0:
-        return Buckling(
-            False, "the rotation stiffens the beam against every deflection but a turn about its hinge"
-        )
+        why = "the rotation stiffens the beam against every deflection but a turn about its hinge"
+        return Buckling(False, why)
     return by_plane[0]
 
 
-def _decide_toppling(scene: Scene, none_below: float) -> Buckling:
-    """Decide where the rotation stiffens the beam, but for the inertia of what tilts."""
-    why = (
-        "the rotation stiffens the beam; only the rotary inertia of what tilts out of the plane can buckle it"
-    )
-    exists = True if topples_in_slender_limit(scene) else None
-    return Buckling(exists, why, math.inf if strain_limit_comes_first(scene) else None, none_below)
-
-
 def _decide_in_plane(form: _SpinForm) -> Buckling:
-    """Decide for a slender beam in one plane."""
+    """Decide for a slender beam in one plane, at last by the string: if its lowest eigenvalue > 1, F >= 0."""
     if form.tension_at_root < 0 or form.tension_at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
     if form.toppling < 0 or (form.toppling == 0 and form.coupling):
         return Buckling(True, "the rotation topples the tip body, however stiff the beam")
     if form.stiffens:
         return Buckling(False, "the rotation stiffens the beam against every deflection")
-    return _decide_by_string(form)
+    coarse, fine = (_lowest_of_string(form, size) for size in _STRING_SIZES)
+    if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
+        return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
+    if fine - 1 > _RESOLVED * (coarse - fine) + _ROUNDING * _STRING_SIZES[-1]:
+        return Buckling(False, "the tension by rotation stiffens the beam more than rotation softens it")
+    return Buckling(None, "tension stiffens the beam by as much as rotation softens it, within the error")
 
 
 @dataclass(frozen=True)
@@ -252,47 +278,21 @@ def _least_turning(scene: Scene) -> float:
     hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
         return math.inf
-    tip = scene.beam.tip or TipMass(0.0)
+    beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
     _, first, second = moments_about_root(scene.beam)
-    reach = scene.beam.length + tip.offset
-    d, n = plane_components(scene)
-    cosine, sine = exact_cos_sin(scene.mount.precone)
+    reach = beam.length + tip.offset
+    (d, n), (cosine, sine) = map(np.array, plane_components(scene)), exact_cos_sin(scene.mount.precone)
+    B = centrifugal_inertia(tip, beam.tip_twist)
+    for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
+        B[i, j] -= beam.length * float(inertia.outboard_integral()(np.zeros(1))[0])
+    turned = np.outer(n, n @ B)
+    of_bodies = cosine**2 * (turned + turned.T) / 2 - sine**2 * B
     by_turn = (cosine**2 - sine**2) * np.outer(n, n) - sine**2 * np.outer(d, d)
-    tilting = _tilting_resistance(scene) + by_turn * (second + tip.mass * reach**2)
+    tilting = of_bodies + by_turn * (second + tip.mass * reach**2)
     form = tilting - cosine * _inward(scene) * (first + tip.mass * reach) * np.eye(2)
     least = float(np.linalg.eigvalsh(form[np.ix_(hinges, hinges)])[0])
     size = float(np.abs(tilting).max() + abs(_inward(scene)) * (first + tip.mass * reach))
     return least if abs(least) > _ROUNDING * size else 0.0
-
-
-def _tilting_resistance(scene: Scene) -> np.ndarray:
-    """Form (2, 2) of the spin of tip body and sections in a rigid turn [kg m2]."""
-    beam = scene.modelled_beam
-    B = centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist)
-    for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
-        B[i, j] -= beam.length * _integral(inertia)
-    n = np.array(plane_components(scene)[1])
-    turned = np.outer(n, n @ B)
-    cosine, sine = exact_cos_sin(scene.mount.precone)
-    return cosine**2 * (turned + turned.T) / 2 - sine**2 * B
-
-
-def _integral(profile: Profile) -> float:
-    """Integral over x/L."""
-    return float(profile.outboard_integral()(np.zeros(1))[0])
-
-
-# The string ---------------------------------------------------------------------------------------
-
-
-def _decide_by_string(form: _SpinForm) -> Buckling:
-    """Compare the lowest eigenvalue of the string with 1, above which F >= 0."""
-    coarse, fine = (_lowest_of_string(form, size) for size in _STRING_SIZES)
-    if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
-        return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
-    if fine - 1 > _RESOLVED * (coarse - fine) + _ROUNDING * _STRING_SIZES[-1]:
-        return Buckling(False, "the tension by rotation stiffens the beam more than rotation softens it")
-    return Buckling(None, "tension stiffens the beam by as much as rotation softens it, within the error")
 
 
 def _lowest_of_string(form: _SpinForm, size: int) -> float:
@@ -305,3 +305,162 @@ def _lowest_of_string(form: _SpinForm, size: int) -> float:
     spin = form.cos_squared * length * gram_by_mass(beam, space)
     spin += form.end_mass * length * np.outer(end, end)
     return float(1 / eigh(spin, tension, eigvals_only=True)[-1])
+
+
+# The inertia of what tilts --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Inertia:
+    """Inertia and compliance of a scene at the midpoints of n cells along its beam.
+
+    Tensors have the directions in the plane of rotation and out of it.
+    """
+
+    scene: Scene
+
+    @cached_property
+    def beam(self) -> Beam:
+        return self.scene.modelled_beam
+
+    @cached_property
+    def cells(self) -> tuple[np.ndarray, np.ndarray]:
+        """Midpoints x/L (n,) and widths [m] (n,)."""
+        ends = np.array(self.beam.breakpoints)
+        per_segment = max(20, _CELLS // (len(ends) - 1))
+        edges = np.unique(np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in pairwise(ends)]))
+        return (edges[1:] + edges[:-1]) / 2, np.diff(edges) * self.beam.length
+
+    @cached_property
+    def components(self) -> np.ndarray:
+        """Rows: the plane of rotation and out of it, in the directions of bending; shape (2, planes)."""
+        return np.array(plane_components(self.scene))[:, : self.scene.physics.planes]
+
+    def _tensor(self, name: str) -> np.ndarray:
+        """A property of the sections in the directions of bending: shape (n, planes, planes)."""
+        values = np.zeros((len(self.cells[0]), self.scene.physics.planes, self.scene.physics.planes))
+        for (i, j), profile in section_tensor(self.beam, name).items():
+            values[:, i, j] = profile(self.cells[0])
+        return values
+
+    def _turned(self, tensor: np.ndarray) -> np.ndarray:
+        return self.components @ tensor @ self.components.T
+
+    @cached_property
+    def tensors(self) -> np.ndarray:
+        """Rotary inertia of the sections (n, 2, 2) [kg m]."""
+        return self._turned(self._tensor("rotary_inertia"))
+
+    @cached_property
+    def body(self) -> float:
+        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or in one plane.
+
+        With precone, it is at least as large as the factor of its work.
+        """
+        if self.scene.physics.planes == 1:
+            return 0.0
+        B = self._turned(centrifugal_inertia(self.beam.tip or TipMass(0.0), self.beam.tip_twist))
+        cosine, sine = exact_cos_sin(self.scene.mount.precone)
+        product = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
+        return product * max(1.0, abs(cosine**2 - 2 * sine**2))
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """Rotary inertia (n,) that multiplies theta3^2 [kg m]: I33, or all of it in one plane."""
+        if self.scene.physics.planes == 2:
+            return self.tensors[:, 1, 1]
+        return self._tensor("rotary_inertia")[:, 0, 0] * bool(self.components[1, 0])
+
+    @cached_property
+    def products(self) -> np.ndarray:
+        """Products of inertia I23 of the sections (n,) [kg m]; 0 within rounding, or in one plane."""
+        I23 = self.tensors[:, 0, 1] if self.scene.physics.planes == 2 else np.zeros(len(self.tensors))
+        return np.where(np.abs(I23) > _ALIGNED * np.abs(self.tensors).max(), I23, 0.0)
+
+    @property
+    def oblique(self) -> bool:
+        """Whether any product of inertia is not 0."""
+        return bool(self.body or self.products.any())
+
+    @property
+    def topples(self) -> bool:
+        """Whether any inertia but B33 works against the tilt."""
+        return self.oblique or bool(self.moments.any())
+
+    @cached_property
+    def flexibility(self) -> np.ndarray:
+        """Inverse of the smaller bending stiffness (n,) [1/(N m2)]."""
+        return 1 / np.linalg.eigvalsh(self._tensor("bending_stiffness"))[:, 0]
+
+    @cached_property
+    def compliance(self) -> np.ndarray:
+        """Compliance C at the cells (n, 2, 2) [1/(N m)]."""
+        springs = self.scene.mount.root_stiffnesses[: self.scene.physics.planes]
+        root = np.diag(
+            [1 / k if k else 0.0 for k in springs]
+        )  # of hinges that matter there is no bound, see `softening`
+        by_bending = np.linalg.inv(self._tensor("bending_stiffness")) * self.cells[1][:, None, None]
+        return self._turned(root + np.cumsum(by_bending, axis=0))
+
+    @property
+    def sound_speed(self) -> float:
+        """Speed of sound in the material over the length [rad/s]; 0 for sections without rotary inertia."""
+        inertia = float(self.cells[1] @ self._tensor("rotary_inertia")[:, 0, 0])
+        compliance = float(self.cells[1] @ (1 / self._tensor("bending_stiffness")[:, 0, 0]))
+        return (inertia * compliance) ** -0.5 if inertia else 0.0
+
+    @property
+    def softening(self) -> float:
+        """The number r of the docstring of this module [s2], of a root without hinges; inf at a hinge."""
+        springs = self.scene.mount.root_stiffnesses[: self.scene.physics.planes]
+        tilting = zip(springs, self.components[1], strict=True)
+        if any(k == 0 and (n or self.oblique) for k, n in tilting):  # without bending
+            return np.inf
+        width, C, product = self.cells[1], self.compliance, self.products
+        both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
+        ratio = width @ (self.moments * C[:, 1, 1] + np.abs(product) * both)
+        twisting = np.sqrt(width @ (self.torque**2 * np.trace(C, axis1=1, axis2=2) * self.flexibility))
+        return float(ratio + abs(self.body) * both[-1] + twisting)
+
+    @property
+    def softening_at_hinge(self) -> float:
+        """The number r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
+        if self.scene.mount.precone:
+            return np.inf
+        width, shear, springs = self.cells[1], self.scene.physics.shear, self.scene.mount.root_stiffnesses
+        in_plane, tilting = self.components[0], float(width @ self.moments)
+        if self.scene.physics.planes == 2:  # a hinge that matters
+            in_plane = in_plane[np.array(springs) == 0] * self.oblique
+        spare = float(width @ self.tension) / (2 if shear else 1) - 2 * tilting
+        if spare <= 0 or (self.tension < 0).any() or in_plane.any():
+            return np.inf
+        bending, A, G = float(width @ self.flexibility), 0.0, 0.0
+        if self.oblique:
+            slope, g2 = np.sqrt(self.compliance[:, 0, 0]), self.torque**2 * self.flexibility * width
+            direct = width @ (np.abs(self.products) * slope) + abs(self.body) * slope[-1]
+            A, G = float(direct + np.sqrt(g2.sum())), float(np.sqrt(g2 @ slope**2))
+        ratio = 2 * tilting * bending + A**2 / (4 * spare) + A * bending**0.5 + G
+        if not shear:
+            return ratio
+        smaller = np.linalg.eigvalsh(self._tensor("shear_stiffness"))[:, 0]
+        return max(ratio, float((self.tension / smaller).max()))
+
+    @property
+    def topples_in_slender_limit(self) -> bool:
+        """Whether sections or a tip body surely topple whatever the stiffness, in a bend of no length."""
+        if self.scene.mount.precone:
+            return False  # it is not known
+        free_end = self.tension[-1] < self.moments[-1] * (self.components[1] ** 2).sum()
+        return bool(self.scene.physics.shear or self.oblique or free_end)
+
+    @cached_property
+    def torque(self) -> np.ndarray:
+        """Torque g per squared speed (n,) [kg m2]."""
+        return np.cumsum((self.cells[1] * self.products)[::-1])[::-1] - self.body
+
+    @cached_property
+    def tension(self) -> np.ndarray:
+        """Tension N per squared speed (n,) [kg m], with that at the tip in the last cell."""
+        (n_a, n_b), xi = axial_tension(self.beam), self.cells[0].copy()
+        xi[-1] = 1.0
+        return n_b(xi) - _inward(self.scene) * n_a(xi)
