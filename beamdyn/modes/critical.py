@@ -42,8 +42,8 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends, static_load
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by
+from beamdyn.modes.model_error.left_out_changes import left_out_of_critical_speed, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import left_out_of_critical_speed, nothing_known
 from beamdyn.modes.planes import separate_planes
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
