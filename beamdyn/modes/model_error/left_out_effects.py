@@ -116,11 +116,9 @@ class LeftOutEffects:
                 first = int(np.nanargmax(np.abs(change)))
                 if what and change.ndim and change.shape[-1] > 1:
                     notes.append(f"{what} {first % change.shape[-1] + 1}")
-                place = (
-                    ""
-                    if speeds is None
-                    else Words("at ", Speeds(speeds[first // (change.size // len(change))]))
-                )
+                place = ""
+                if speeds is not None:
+                    place = Words("at ", Speeds(speeds[first // (change.size // len(change))]))
                 notes.append(place if place != where else "")
             note = joined(", ", filter(None, [*notes, self.assumed.get(name, "")]))
             said = f"{name} {say_change(_largest(change))}"
