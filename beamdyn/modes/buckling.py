@@ -77,9 +77,7 @@ B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -132,33 +130,57 @@ def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module."""
     if (turning := _least_turning(scene)) < 0:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
-    by_plane = [_decide_in_plane(form) for form in _SpinForm.of_planes(scene)]
+    beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # 0 without precone
+    if scene.physics.planes == 1:
+        cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
+        tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
+        by_plane = [_decide_in_plane(beam, a, cos2 + slope2, sin2 - slope2, tilt)]
+    else:
+        (d, n), B = map(np.array, plane_components(scene)), centrifugal_inertia(tip, beam.tip_twist)
+        tilts = -slope2 * float(d @ B @ d), (1.0 - slope2) * float(n @ B @ n)
+        by_plane = [
+            _decide_in_plane(beam, a, 1.0 + slope2, -slope2, tilts[0]),
+            _decide_in_plane(beam, a, slope2, 1.0 - slope2, tilts[1]),
+        ]
     for exists in (True, None):
         if found := [each for each in by_plane if each.exists is exists]:
             return found[0]
-    inertia = _Inertia(scene)
-    if inertia.topples:  # the rotation stiffens the beam, but for the inertia of what tilts
-        why = "only the rotary inertia of what tilts out of the plane can buckle it"
-        slowest = float((_MARGIN * min(inertia.softening, inertia.softening_at_hinge)) ** -0.5)
-        strained = slowest >= _LARGE_STRAIN**0.5 * inertia.sound_speed
-        exists = True if inertia.topples_in_slender_limit else None
-        speed = math.inf if strained else None
-        return Buckling(exists, f"the rotation stiffens the beam; {why}", speed, slowest)
+    if (toppling := _decide_toppling(scene)) is not None:
+        return toppling
     if turning == 0:
         why = "the rotation stiffens the beam against every deflection but a turn about its hinge"
         return Buckling(False, why)
     return by_plane[0]
 
 
-def _decide_in_plane(form: _SpinForm) -> Buckling:
-    """Decide for a slender beam in one plane, at last by the string: if its lowest eigenvalue > 1, F >= 0."""
-    if form.tension_at_root < 0 or form.tension_at_tip < 0:
+def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
+    """Decide for a slender beam in one plane, at last by the string: if its lowest eigenvalue > 1, F >= 0.
+
+    The numbers are the distance a of the root from the axis, against the direction of the beam [m], c^2 and
+    s^2, and what is said of J_e - J_1 [kg m2].
+    """
+    L, tip = beam.length, beam.tip or TipMass(0.0)
+    m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
+    n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
+    lump = float(lumped[xi > 1 - _SHORTEST].sum())
+    at_root, at_tip = _sum(n_b, -a * n_a), _sum((m + lump) * L, m * eps, -(m + lump) * a)
+    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)  # T_22
+    coupling = cos2 * m * eps  # -T_12
+    if at_root < 0 or at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
-    if form.toppling < 0 or (form.toppling == 0 and form.coupling):
+    if toppling < 0 or (toppling == 0 and coupling):
         return Buckling(True, "the rotation topples the tip body, however stiff the beam")
-    if form.stiffens:
+    determinant = _sum(  # of T, times L / m
+        *(tilt * v for v in (sin2 * L, eps, -a)), *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a))
+    )
+    # With T_22 = 0, T_12 is 0, too, and T_11 has the sign of the tension at the tip.
+    pulled = a <= min(0.0, (1 - cos2) * L) and (toppling == 0 or determinant >= 0)
+    if cos2 == 0 or pulled:
         return Buckling(False, "the rotation stiffens the beam against every deflection")
-    coarse, fine = (_lowest_of_string(form, size) for size in _STRING_SIZES)
+    end_mass = cos2 * m + (coupling**2 / toppling if coupling else 0.0)  # c^2 m (1 + c^2 m eps^2 / T_22)
+    coarse, fine = (_lowest_of_string(beam, a, cos2, end_mass, size) for size in _STRING_SIZES)
     if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
         return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
     if fine - 1 > _RESOLVED * (coarse - fine) + _ROUNDING * _STRING_SIZES[-1]:
@@ -166,95 +188,15 @@ def _decide_in_plane(form: _SpinForm) -> Buckling:
     return Buckling(None, "tension stiffens the beam by as much as rotation softens it, within the error")
 
 
-@dataclass(frozen=True)
-class _SpinForm:
-    """The form F of a scene.
-
-    Parameters
-    ----------
-    beam : Beam
-        The beam.
-    inward : float
-        a [m].
-    cos_squared : float
-        c^2, above 1 in the plane of rotation with precone.
-    tip_mass : float
-        m [kg].
-    tension_at_root, tension_at_tip : float
-        N(0) and N(L) [kg m].
-    toppling : float
-        T_22 [kg m2].
-    coupling : float
-        -T_12 [kg m].
-    tip_determinant : float
-        Determinant of T, times L / m [kg m3].
-    """
-
-    beam: Beam
-    inward: float
-    cos_squared: float
-    tip_mass: float
-    tension_at_root: float
-    tension_at_tip: float
-    toppling: float
-    coupling: float
-    tip_determinant: float
-
-    @classmethod
-    def of_planes(cls, scene: Scene) -> Iterator[_SpinForm]:
-        """Yield the form of a beam in one plane, or those in the plane of rotation and out of it."""
-        beam, tip, a = scene.modelled_beam, scene.beam.tip or TipMass(0.0), _inward(scene)
-        cosine, sine = exact_cos_sin(scene.mount.precone)
-        slope2 = (sine / cosine) ** 2  # 0 without precone
-        B = centrifugal_inertia(tip, beam.tip_twist)
-        if scene.physics.planes == 1:
-            cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
-            tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
-            yield cls.of(beam, a / cosine, cos2 + slope2, sin2 - slope2, tilt)
-            return
-        d, n = map(np.array, plane_components(scene))
-        yield cls.of(beam, a / cosine, 1.0 + slope2, -slope2, -slope2 * float(d @ B @ d))
-        yield cls.of(beam, a / cosine, slope2, 1.0 - slope2, (1.0 - slope2) * float(n @ B @ n))
-
-    @classmethod
-    def of(cls, beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> _SpinForm:
-        """Compute the numbers of a beam that bends in one plane; `tilt` is what is said of J_e - J_1."""
-        L, tip = beam.length, beam.tip or TipMass(0.0)
-        m, eps, reach = tip.mass, tip.offset, L + tip.offset - a
-        n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
-        xi, lumped = beam.lumps
-        lump = float(lumped[xi > 1 - _SHORTEST].sum())
-        return cls(
-            beam=beam,
-            inward=a,
-            cos_squared=cos2,
-            tip_mass=m,
-            tension_at_root=_sum(n_b, -a * n_a),
-            tension_at_tip=_sum((m + lump) * L, m * eps, -(m + lump) * a),
-            toppling=_sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps),
-            coupling=cos2 * m * eps,
-            tip_determinant=_sum(
-                *(tilt * v for v in (sin2 * L, eps, -a)),
-                *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a)),
-            ),
-        )
-
-    @property
-    def stiffens(self) -> bool:
-        """Whether F >= 0 is known without the string."""
-        if min(self.tension_at_root, self.tension_at_tip, self.toppling) < 0:
-            return False
-        flat = self.toppling == 0  # then T_12 is 0, too, and T_11 has the sign of the tension at the tip
-        if self.cos_squared == 0:
-            return True
-        pulled = self.inward <= min(0.0, (1 - self.cos_squared) * self.beam.length)
-        return pulled and (flat or self.tip_determinant >= 0)
-
-    @property
-    def end_mass(self) -> float:
-        """Mass c^2 m (1 + c^2 m eps^2 / T_22) at the end of the string [kg]."""
-        swing = self.coupling**2 / self.toppling if self.coupling else 0.0
-        return self.cos_squared * self.tip_mass + swing
+def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: int) -> float:
+    """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
+    space = Ritz(max(2, size // (len(beam.breakpoints) - 1))).spaces(beam).functions(FIXED)
+    n_a, n_b = axial_tension(beam)
+    tension = space.gram(n_b, 1) - a * space.gram(n_a, 1)
+    end, length = space.end(0), beam.length
+    spin = cos2 * length * gram_by_mass(beam, space)
+    spin += end_mass * length * np.outer(end, end)
+    return float(1 / eigh(spin, tension, eigvals_only=True)[-1])
 
 
 def _sum(*terms: float) -> float:
@@ -295,172 +237,87 @@ def _least_turning(scene: Scene) -> float:
     return least if abs(least) > _ROUNDING * size else 0.0
 
 
-def _lowest_of_string(form: _SpinForm, size: int) -> float:
-    """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
-    beam, segments = form.beam, len(form.beam.breakpoints) - 1
-    space = Ritz(max(2, size // segments)).spaces(beam).functions(FIXED)
-    n_a, n_b = axial_tension(beam)
-    tension = space.gram(n_b, 1) - form.inward * space.gram(n_a, 1)
-    end, length = space.end(0), beam.length
-    spin = form.cos_squared * length * gram_by_mass(beam, space)
-    spin += form.end_mass * length * np.outer(end, end)
-    return float(1 / eigh(spin, tension, eigvals_only=True)[-1])
-
-
 # The inertia of what tilts --------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Inertia:
-    """Inertia and compliance of a scene at the midpoints of n cells along its beam.
+def _decide_toppling(scene: Scene) -> Buckling | None:
+    """Decide where the rotation stiffens the beam, but for the inertia of what tilts; None without any.
 
-    Tensors have the directions in the plane of rotation and out of it.
+    Integrals are sums over n cells; tensors (n, 2, 2) have the directions in the plane of rotation and out of
+    it.
     """
-
-    scene: Scene
-
-    @cached_property
-    def beam(self) -> Beam:
-        return self.scene.modelled_beam
-
-    @cached_property
-    def cells(self) -> tuple[np.ndarray, np.ndarray]:
-        """Midpoints x/L (n,) and widths [m] (n,)."""
-        ends = np.array(self.beam.breakpoints)
-        per_segment = max(20, _CELLS // (len(ends) - 1))
-        edges = np.unique(np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in pairwise(ends)]))
-        return (edges[1:] + edges[:-1]) / 2, np.diff(edges) * self.beam.length
-
-    @cached_property
-    def components(self) -> np.ndarray:
-        """Rows: the plane of rotation and out of it, in the directions of bending; shape (2, planes)."""
-        return np.array(plane_components(self.scene))[:, : self.scene.physics.planes]
-
-    def _tensor(self, name: str) -> np.ndarray:
-        """A property of the sections in the directions of bending: shape (n, planes, planes)."""
-        values = np.zeros((len(self.cells[0]), self.scene.physics.planes, self.scene.physics.planes))
-        for (i, j), profile in section_tensor(self.beam, name).items():
-            values[:, i, j] = profile(self.cells[0])
-        return values
-
-    def _turned(self, tensor: np.ndarray) -> np.ndarray:
-        return self.components @ tensor @ self.components.T
-
-    @cached_property
-    def tensors(self) -> np.ndarray:
-        """Rotary inertia of the sections (n, 2, 2) [kg m]."""
-        return self._turned(self._tensor("rotary_inertia"))
-
-    @cached_property
-    def body(self) -> float:
-        """Product of inertia B23 of the tip body [kg m2]; 0 within rounding, or in one plane.
-
-        With precone, it is at least as large as the factor of its work.
-        """
-        if self.scene.physics.planes == 1:
-            return 0.0
-        B = self._turned(centrifugal_inertia(self.beam.tip or TipMass(0.0), self.beam.tip_twist))
-        cosine, sine = exact_cos_sin(self.scene.mount.precone)
-        product = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
-        return product * max(1.0, abs(cosine**2 - 2 * sine**2))
-
-    @cached_property
-    def moments(self) -> np.ndarray:
-        """Rotary inertia (n,) that multiplies theta3^2 [kg m]: I33, or all of it in one plane."""
-        if self.scene.physics.planes == 2:
-            return self.tensors[:, 1, 1]
-        return self._tensor("rotary_inertia")[:, 0, 0] * bool(self.components[1, 0])
-
-    @cached_property
-    def products(self) -> np.ndarray:
-        """Products of inertia I23 of the sections (n,) [kg m]; 0 within rounding, or in one plane."""
-        I23 = self.tensors[:, 0, 1] if self.scene.physics.planes == 2 else np.zeros(len(self.tensors))
-        return np.where(np.abs(I23) > _ALIGNED * np.abs(self.tensors).max(), I23, 0.0)
-
-    @property
-    def oblique(self) -> bool:
-        """Whether any product of inertia is not 0."""
-        return bool(self.body or self.products.any())
-
-    @property
-    def topples(self) -> bool:
-        """Whether any inertia but B33 works against the tilt."""
-        return self.oblique or bool(self.moments.any())
-
-    @cached_property
-    def flexibility(self) -> np.ndarray:
-        """Inverse of the smaller bending stiffness (n,) [1/(N m2)]."""
-        return 1 / np.linalg.eigvalsh(self._tensor("bending_stiffness"))[:, 0]
-
-    @cached_property
-    def compliance(self) -> np.ndarray:
-        """Compliance C at the cells (n, 2, 2) [1/(N m)]."""
-        springs = self.scene.mount.root_stiffnesses[: self.scene.physics.planes]
-        root = np.diag(
-            [1 / k if k else 0.0 for k in springs]
-        )  # of hinges that matter there is no bound, see `softening`
-        by_bending = np.linalg.inv(self._tensor("bending_stiffness")) * self.cells[1][:, None, None]
-        return self._turned(root + np.cumsum(by_bending, axis=0))
-
-    @property
-    def sound_speed(self) -> float:
-        """Speed of sound in the material over the length [rad/s]; 0 for sections without rotary inertia."""
-        inertia = float(self.cells[1] @ self._tensor("rotary_inertia")[:, 0, 0])
-        compliance = float(self.cells[1] @ (1 / self._tensor("bending_stiffness")[:, 0, 0]))
-        return (inertia * compliance) ** -0.5 if inertia else 0.0
-
-    @property
-    def softening(self) -> float:
-        """The number r of the docstring of this module [s2], of a root without hinges; inf at a hinge."""
-        springs = self.scene.mount.root_stiffnesses[: self.scene.physics.planes]
-        tilting = zip(springs, self.components[1], strict=True)
-        if any(k == 0 and (n or self.oblique) for k, n in tilting):  # without bending
-            return np.inf
-        width, C, product = self.cells[1], self.compliance, self.products
+    beam, planes, mount, shear = scene.modelled_beam, scene.physics.planes, scene.mount, scene.physics.shear
+    ends = np.array(beam.breakpoints)
+    per_segment = max(20, _CELLS // (len(ends) - 1))
+    edges = np.unique(np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in pairwise(ends)]))
+    xi, width = (edges[1:] + edges[:-1]) / 2, np.diff(edges) * beam.length
+    components = np.array(plane_components(scene))[:, :planes]
+    rotary = _tensor(beam, "rotary_inertia", xi, planes)
+    moments, products, body = _tilting_inertia(scene, components, rotary)
+    oblique = bool(body or products.any())
+    if not (oblique or moments.any()):
+        return None
+    bending, springs = (
+        _tensor(beam, "bending_stiffness", xi, planes),
+        np.array(mount.root_stiffnesses)[:planes],
+    )
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # by the smaller stiffness
+    root = np.diag([1 / k if k else 0.0 for k in springs])  # of hinges that matter there is no bound
+    by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
+    C = components @ (root + by_bending) @ components.T
+    torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
+    n_a, n_b = axial_tension(beam)
+    at = np.append(xi[:-1], 1.0)  # with that at the tip in the last cell
+    tension = n_b(at) - _inward(scene) * n_a(at)
+    ratios = [np.inf]  # r by the two arguments
+    if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
         both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
-        ratio = width @ (self.moments * C[:, 1, 1] + np.abs(product) * both)
-        twisting = np.sqrt(width @ (self.torque**2 * np.trace(C, axis1=1, axis2=2) * self.flexibility))
-        return float(ratio + abs(self.body) * both[-1] + twisting)
+        ratio = width @ (moments * C[:, 1, 1] + np.abs(products) * both)
+        twisting = np.sqrt(width @ (torque**2 * np.trace(C, axis1=1, axis2=2) * flexibility))
+        ratios.append(float(ratio + abs(body) * both[-1] + twisting))
+    in_plane = components[0][springs == 0] * oblique if planes == 2 else components[0]
+    spare = float(width @ tension) / (2 if shear else 1) - 2 * float(width @ moments)
+    if not mount.precone and spare > 0 and (tension >= 0).all() and not in_plane.any():
+        g2 = torque**2 * flexibility * width
+        A = float(width @ (np.abs(products) * slope) + abs(body) * slope[-1] + np.sqrt(g2.sum()))
+        e, G = float(width @ flexibility), float(np.sqrt(g2 @ slope**2))
+        ratio = 2 * float(width @ moments) * e + A**2 / (4 * spare) + A * e**0.5 + G
+        if shear:
+            smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
+            ratio = max(ratio, float((tension / smaller).max()))
+        ratios.append(ratio)
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # and speed of sound over the length
+    if inertia := float(width @ rotary[:, 0, 0]):
+        sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
+    speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
+    # In a bend of no length, sections or a tip body may surely topple whatever the stiffness.
+    free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
+    surely = not mount.precone and bool(shear or oblique or free_end)
+    why = "only the rotary inertia of what tilts out of the plane can buckle it"
+    return Buckling(surely or None, f"the rotation stiffens the beam; {why}", speed, slowest)
 
-    @property
-    def softening_at_hinge(self) -> float:
-        """The number r by the argument for a hinge, which soft springs do not harm [s2]; inf if it fails."""
-        if self.scene.mount.precone:
-            return np.inf
-        width, shear, springs = self.cells[1], self.scene.physics.shear, self.scene.mount.root_stiffnesses
-        in_plane, tilting = self.components[0], float(width @ self.moments)
-        if self.scene.physics.planes == 2:  # a hinge that matters
-            in_plane = in_plane[np.array(springs) == 0] * self.oblique
-        spare = float(width @ self.tension) / (2 if shear else 1) - 2 * tilting
-        if spare <= 0 or (self.tension < 0).any() or in_plane.any():
-            return np.inf
-        bending, A, G = float(width @ self.flexibility), 0.0, 0.0
-        if self.oblique:
-            slope, g2 = np.sqrt(self.compliance[:, 0, 0]), self.torque**2 * self.flexibility * width
-            direct = width @ (np.abs(self.products) * slope) + abs(self.body) * slope[-1]
-            A, G = float(direct + np.sqrt(g2.sum())), float(np.sqrt(g2 @ slope**2))
-        ratio = 2 * tilting * bending + A**2 / (4 * spare) + A * bending**0.5 + G
-        if not shear:
-            return ratio
-        smaller = np.linalg.eigvalsh(self._tensor("shear_stiffness"))[:, 0]
-        return max(ratio, float((self.tension / smaller).max()))
 
-    @property
-    def topples_in_slender_limit(self) -> bool:
-        """Whether sections or a tip body surely topple whatever the stiffness, in a bend of no length."""
-        if self.scene.mount.precone:
-            return False  # it is not known
-        free_end = self.tension[-1] < self.moments[-1] * (self.components[1] ** 2).sum()
-        return bool(self.scene.physics.shear or self.oblique or free_end)
+def _tilting_inertia(
+    scene: Scene, components: np.ndarray, rotary: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """I33, or all of it in one plane, and I23 of the sections (n,) [kg m], and B23 of the tip body [kg m2].
 
-    @cached_property
-    def torque(self) -> np.ndarray:
-        """Torque g per squared speed (n,) [kg m2]."""
-        return np.cumsum((self.cells[1] * self.products)[::-1])[::-1] - self.body
+    Products are 0 within rounding; B23 is at least as large as the factor of its work where there is precone.
+    """
+    if scene.physics.planes == 1:
+        return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0
+    beam, turned = scene.modelled_beam, components @ rotary @ components.T
+    B = components @ centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist) @ components.T
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    body = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
+    oblique = np.abs(turned[:, 0, 1]) > _ALIGNED * np.abs(turned).max()
+    products = np.where(oblique, turned[:, 0, 1], 0.0)
+    return turned[:, 1, 1], products, body * max(1.0, abs(cosine**2 - 2 * sine**2))
 
-    @cached_property
-    def tension(self) -> np.ndarray:
-        """Tension N per squared speed (n,) [kg m], with that at the tip in the last cell."""
-        (n_a, n_b), xi = axial_tension(self.beam), self.cells[0].copy()
-        xi[-1] = 1.0
-        return n_b(xi) - _inward(self.scene) * n_a(xi)
+
+def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
+    """A property of the sections in the directions of bending: shape (n, planes, planes)."""
+    values = np.zeros((len(xi), planes, planes))
+    for (i, j), profile in section_tensor(beam, name).items():
+        values[:, i, j] = profile(xi)
+    return values
