@@ -109,7 +109,7 @@ class Equilibrium(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam."""
-        from beamdyn.common.plots.plots_of_equilibria import plot_bent_beam
+        from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 
         across = _direction(self.scene)
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
@@ -302,7 +302,7 @@ class EquilibriumBranches(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        from beamdyn.common.plots.plots_of_equilibria import plot_branches
+        from beamdyn.common.plots.plots import plot_branches
 
         across, length = _direction(self.scene), self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]

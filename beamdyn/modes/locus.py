@@ -147,8 +147,7 @@ class Locus(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
-        from beamdyn.common.plots.plots import plot_locus
-        from beamdyn.common.plots.plots_by_plane import plot_locus_by_plane
+        from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 
         units = self.display_units
         if self.scene.physics.planes == 2:

@@ -138,8 +138,7 @@ class Modes(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
-        from beamdyn.common.plots.plots import plot_shapes
-        from beamdyn.common.plots.plots_by_plane import plot_shapes_by_plane
+        from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane
 
         x = np.linspace(0, self.scene.beam.length, 201)
         if self.scene.physics.planes == 2:
