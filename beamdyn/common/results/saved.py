@@ -42,7 +42,16 @@ class Saved:
         Numbers that are not finite are null, but `load` gets them back.
         """
         values, result = nullified(self.to_dict()), self.loadable()
-        record = {} if result is None else {"record": _record_of(result)}
+        record: dict[str, Any] = {}
+        if result is not None:  # also what it has computed and kept, such as a truncation error
+            names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
+            computed = {key: value for key, value in vars(result).items() if key not in names}
+            kept = {
+                key: encode(value)
+                for key, value in computed.items()
+                if isinstance(value, bool | int | float | np.generic | np.ndarray) or key in result.kept
+            }
+            record = {"record": {"result": encode(result), "computed": kept}}
         return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | Path, force: bool = False) -> None:
@@ -104,46 +113,24 @@ def load(path: str | Path) -> Any:
     True
     """
     file = as_path("path", path)
-    try:
-        content = unseal(_read(file))
-        if "record" in content:
-            return _result_from(content["record"])
-        reason = "it has numbers only"
-    except ValueError as error:
-        reason = str(error)
     remedy = "compute the result again; any JSON reader gets its numbers"
-    raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
-
-
-def _read(file: Path) -> bytes:
     try:
-        return file.read_bytes()
+        text = file.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
         remedy = "give one that save or --json has written"
         raise type(error)(f"{file}: no result can be loaded: {reason}; {remedy}") from None
-
-
-def _record_of(result: Saved) -> dict[str, Any]:
-    """The fields, and the computed values that the result has kept, such as a modal truncation error."""
-    names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
-    kept = {
-        key: encode(value)
-        for key, value in vars(result).items()
-        if key not in names and (_is_number(value) or key in result.kept)
-    }
-    return {"result": encode(result), "computed": kept}
-
-
-def _result_from(record: Any) -> Saved:
-    result = decode(record["result"])
-    if not isinstance(result, Saved):
-        raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
-    for key, value in record["computed"].items():
-        object.__setattr__(result, key, decode(value))
+    try:
+        content = unseal(text)
+        if "record" not in content:
+            raise ValueError("it has numbers only")
+        result = decode(content["record"]["result"])
+        if not isinstance(result, Saved):
+            raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
+        computed = {key: decode(value) for key, value in content["record"]["computed"].items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: no result can be loaded: {error}; {remedy}") from None
+    for key, value in computed.items():
+        object.__setattr__(result, key, value)
     make_read_only(result)
     return result
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, bool | int | float | np.generic | np.ndarray)
