@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, is_dataclass, replace
+from enum import Enum, auto
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
@@ -30,8 +31,16 @@ Physics = Annotated[
         help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene."
     ),
 ]
-WRITTEN = "written"  # marks an option that names a file to write
-DRAWN = "drawn"  # marks an option that chooses what a picture shows
+
+
+class Mark(Enum):
+    """What an option is for: it names a file to write, or chooses what a picture shows."""
+
+    WRITTEN = auto()
+    DRAWN = auto()
+
+
+WRITTEN, DRAWN = Mark
 
 
 def _option(name: str) -> str:
