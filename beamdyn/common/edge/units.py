@@ -134,7 +134,7 @@ def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], flo
 
 
 def last_quantity(text: str) -> str:
-    """The last of several quantities in a text, such as "100:5 rpm" or "+-2 g/cm3"; its unit is that of all."""
+    """The last of several quantities in a text, such as "100:5 rpm" or "+-2 g/cm3", with the unit of all."""
     return _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
 
 

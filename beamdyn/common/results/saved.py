@@ -1,9 +1,11 @@
-"""Results in files: JSON, with all that makes the result again."""
+"""Results in files: JSON that shows damage, with all that makes the result again."""
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,8 +14,72 @@ import numpy as np
 from beamdyn.common.results.files import as_path, check_writable, write_text
 from beamdyn.common.results.plain import nullified, plain
 from beamdyn.common.results.read_only import make_read_only
-from beamdyn.common.results.records import seal, unseal
 from beamdyn.common.results.snapshots import decode, encode
+
+# Records with a schema version and a checksum --------------------------------------------------------
+
+
+SCHEMA = 1  # raised when older records can no longer be read
+
+
+class DamagedRecord(ValueError):
+    """A record that is damaged, was changed, or is of another schema; the message says which."""
+
+
+def seal(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Add the schema version and a checksum.
+
+    Parameters
+    ----------
+    content : mapping
+        Values of JSON's types, without the keys "schema" and "checksum".
+
+    Returns
+    -------
+    dict
+        To be written as JSON, in any layout.
+    """
+    versioned = {**content, "schema": SCHEMA}
+    return {**versioned, "checksum": _checksum(versioned)}
+
+
+def unseal(text: str | bytes) -> dict[str, Any]:
+    """Read a record.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The JSON text of what `seal` made.
+
+    Returns
+    -------
+    dict
+        The content, as it was given to `seal`.
+
+    Raises
+    ------
+    DamagedRecord
+        If it is not that, to the last digit.
+    """
+    try:
+        record = json.loads(text)
+    except (ValueError, RecursionError):
+        raise DamagedRecord("it is not valid JSON: damaged, or not whole") from None
+    if not isinstance(record, dict) or "checksum" not in record:
+        raise DamagedRecord("it has no checksum: an earlier version wrote it, or another program")
+    if record.pop("checksum") != _checksum(record):
+        raise DamagedRecord("its content does not match its checksum: it was changed after it was written")
+    if (schema := record.pop("schema", None)) != SCHEMA:
+        raise DamagedRecord(f"it has schema {schema}, and this version reads schema {SCHEMA}")
+    return record
+
+
+def _checksum(content: Mapping[str, Any]) -> str:
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+# Results ---------------------------------------------------------------------------------------------
 
 
 class Saved:
