@@ -49,9 +49,8 @@ TESTS = {"startswith", "endswith", "find", "count", "index"}
 PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
 # Modules whose patterns read what a person or another program wrote: options, entries of forms, files.
 READERS = {
-    "beamdyn/analyses/cycles.py",
-    "beamdyn/analyses/excitations.py",
-    "beamdyn/analyses/linear_models.py",
+    "beamdyn/analyses/about_loads.py",
+    "beamdyn/analyses/about_linear_models.py",
     "beamdyn/analyses/values.py",
     "beamdyn/app/inputs.py",
     "beamdyn/cli/campbell_diagram.py",

@@ -1,14 +1,28 @@
 """The analyses of a scene, each described once: its command, help and report follow, and its screen."""
 
-from beamdyn.analyses import (  # noqa: F401  (they enter themselves)
-    equilibria,
-    frequencies,
-    linear_models,
-    loads,
-    scenes,
-    sensitivities,
-    steady_state,
-    studies,
-    transients,
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from beamdyn.analyses.analysis import Analysis
+
+# Modules with the commands that they describe, in the order of the manual: a command imports its own alone.
+_COMMANDS = (
+    ("about_modes", "equilibrium branches modes locus critical limits"),
+    ("about_linear_models", "matrices response random"),
+    ("about_loads", "loads random-loads"),
+    ("about_scene", "draw terms tradeoff"),
+    ("about_designs", "sensitivities"),
+    ("about_motion", "resonances steady"),
+    ("about_designs", "study"),
+    ("about_motion", "simulate sweep"),
 )
-from beamdyn.analyses.analysis import ANALYSES as ANALYSES
+COMMANDS = {name: module for module, names in _COMMANDS for name in names.split()}
+
+
+def analyses(names: tuple[str, ...] = tuple(COMMANDS)) -> dict[str, Analysis]:
+    """Analyses by the names of their commands; all of them if no names are given."""
+    each = {name: import_module(f"beamdyn.analyses.{COMMANDS[name]}") for name in names}
+    return {name: vars(module)[name.replace("-", "_")] for name, module in each.items()}

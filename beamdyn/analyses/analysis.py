@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, is_dataclass, replace
+from enum import Enum, auto
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
@@ -30,9 +31,16 @@ Physics = Annotated[
         help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene."
     ),
 ]
-ANALYSES: dict[str, Analysis] = {}  # by the name of the command, in the order of the manual
-WRITTEN = "written"  # marks an option that names a file to write
-DRAWN = "drawn"  # marks an option that chooses what a picture shows
+
+
+class Mark(Enum):
+    """What an option is for: it names a file to write, or chooses what a picture shows."""
+
+    WRITTEN = auto()
+    DRAWN = auto()
+
+
+WRITTEN, DRAWN = Mark
 
 
 def _option(name: str) -> str:
@@ -194,13 +202,22 @@ class Analysis:
     def run(self, file: Path, options: Mapping[str, Any]) -> None:
         """Answer a file, write the files that are asked for and print the answer."""
         from beamdyn.common.edge.html_report import Question
+        from beamdyn.files.scenes import load_scene
 
         given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
         written, read, asked = self._sort(given)
         outputs.check(file, *read, **written)
-        self._check_drawn(given, outputs)
-        scene = self._load(file, given)
+        for name, each in self.options.items():
+            if DRAWN in _notes(each.annotation) and given[name] is not None and not outputs.draws:
+                remedy = "give --plot or --report, or leave it out"
+                raise ValueError(f"{_option(name)} = {given[name]}: it is what a picture shows; {remedy}")
+        scene = load_scene(file)
+        if self.moving(given):
+            check_moves(scene, file)
+        scene = in_unit_of(scene, *(given[name] for name in self.texts))  # to be shown in that unit
+        if given.get("physics") is not None:
+            scene = replace(scene, physics=given["physics"])
         question = Question.on_file(f"beamdyn {self.name}", file, **asked)
         deliver(self.answer(scene, given, outputs), outputs, question)
 
@@ -237,54 +254,23 @@ class Analysis:
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
         """Files to write, files and folders to read, and options that the head of a report repeats."""
-        written: dict[str, Path] = {}
-        read: list[Path] = []
-        asked: dict[str, object] = {}
-        for name, value, annotation in self._each(given):
-            if WRITTEN in _notes(annotation):
-                written[_option(name)[2:]] = value
-                continue
-            read += [value] if isinstance(value, Path) else []
-            asked[name] = value
-        return written, read, asked
-
-    def _each(self, given: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
-        """Yield name, value and annotation of each option, those of a group one by one."""
+        options: dict[str, tuple[Any, Any]] = {}  # values and annotations, those of a group one by one
         for name, value in given.items():
             if is_dataclass(value):
                 hints = get_type_hints(type(value), include_extras=True)
                 of_group: Mapping[str, Any] = getattr(value, "options", vars(value))
-                yield from ((each, of_group[each], hints[each]) for each in of_group)
+                options |= {each: (of_group[each], hints[each]) for each in of_group}
             else:
-                yield name, value, self.options[name].annotation
-
-    def _check_drawn(self, given: Mapping[str, Any], outputs: Files) -> None:
-        """Refuse what a picture shows if there is none."""
-        for name, each in self.options.items():
-            if DRAWN in _notes(each.annotation) and given[name] is not None and not outputs.draws:
-                remedy = "give --plot or --report, or leave it out"
-                raise ValueError(f"{_option(name)} = {given[name]}: it is what a picture shows; {remedy}")
-
-    def _load(self, file: Path, given: Mapping[str, Any]) -> Scene:
-        """The scene with the physics of the option, to be shown in the unit of the speeds that are given."""
-        from beamdyn.files.scenes import load_scene
-
-        scene = load_scene(file)
-        if self.moving(given):
-            check_moves(scene, file)
-        scene = in_unit_of(scene, *(given[name] for name in self.texts))
-        return scene if given.get("physics") is None else replace(scene, physics=given["physics"])
+                options[name] = value, self.options[name].annotation
+        written = {name for name, (_, annotation) in options.items() if WRITTEN in _notes(annotation)}
+        asked: dict[str, object] = {name: each for name, (each, _) in options.items() if name not in written}
+        read = [value for value in asked.values() if isinstance(value, Path)]
+        return {_option(name)[2:]: options[name][0] for name in written}, read, asked
 
 
 def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
-    """Make an `Analysis` of the function that follows, with these attributes, and enter it in `ANALYSES`."""
-
-    def enter(function: Callable[..., Any]) -> Analysis:
-        made = Analysis(function, examples, **about)
-        ANALYSES[made.name] = made
-        return made
-
-    return enter
+    """Make an `Analysis` of the function that follows, with these attributes."""
+    return lambda function: Analysis(function, examples, **about)
 
 
 def deliver(answer: Answer, outputs: Files, question: Question) -> None:

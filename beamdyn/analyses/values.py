@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
 
 
-def _whole(kind: object, tokens: Sequence[Token]) -> int | str:
-    """A whole number, or "auto" where that is allowed; cyclopts alone would cut 2.5 down to 2."""
-    text, auto = tokens[0].value.strip(), kind is not int
-    if auto and text == "auto":
-        return text
-    if not _WHOLE.fullmatch(text):
-        raise ValueError(f'"{text}" is not a whole number{" or auto" if auto else ""}.')
-    return int(text)
-
-
 _MOST_SPEEDS = 10_000
 _WHOLE = re.compile(r"[-+]?\d{1,18}", re.ASCII)
 _UNIT = re.compile(r"[A-Za-zµ°%]+(\s*/\s*[A-Za-z]+)?$")
@@ -38,11 +28,20 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 def at_most(most: int) -> Parameter:
     """An option that is a whole number up to a limit, beyond which a command takes hours or fills memory."""
 
+    def whole(kind: object, tokens: Sequence[Token]) -> int | str:
+        """A whole number, or "auto" where that is allowed; cyclopts alone would cut 2.5 down to 2."""
+        text, auto = tokens[0].value.strip(), kind is not int
+        if auto and text == "auto":
+            return text
+        if not _WHOLE.fullmatch(text):
+            raise ValueError(f'"{text}" is not a whole number{" or auto" if auto else ""}.')
+        return int(text)
+
     def check(_: object, value: object) -> None:
         if isinstance(value, int) and value > most:
             raise ValueError(f"Give at most {most}.")
 
-    return Parameter(converter=_whole, validator=check)
+    return Parameter(converter=whole, validator=check)
 
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
@@ -125,58 +124,40 @@ def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
     ValueError
         If there are none, they do not ascend, or lack a unit of angular speed.
     """
+    import numpy as np
+
+    def refusal(said: str) -> ValueError:
+        return ValueError(f'--speeds = "{text}": {said}')
+
+    def member(number: str) -> float:
+        if not _NUMBER.fullmatch(number):
+            example = 'give numbers and one unit at their end, e.g. "0, 50, 100 rad/s"'
+            raise refusal(f"'{number}' is not a number; {example}")
+        return parse_speed("--speeds", f"{number} {unit}", scene)
+
     if not text.strip(" ,:"):
-        raise ValueError(
-            f'--speeds = "{text}": it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"'
-        )
+        raise refusal('it is empty; give e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s"')
     match = _UNIT.search(text.strip())
     if match is None:
-        raise ValueError(f'--speeds = "{text}": give a unit at its end, e.g. "{text.strip()} rad/s"')
+        raise refusal(f'give a unit at its end, e.g. "{text.strip()} rad/s"')
     unit, numbers = match.group(), text.strip()[: match.start()]
-    return (_range if ":" in numbers else _list)(text, numbers, unit, scene)
-
-
-def _range(text: str, numbers: str, unit: str, scene: Scene | None) -> np.ndarray:
-    import numpy as np
-
+    if ":" not in numbers:
+        parts = [part.strip() for part in numbers.split(",")]
+        values = [member(part) for part in parts]
+        if any(high <= low for low, high in pairwise(values)):
+            written = {float(part): part for part in parts}
+            ordered = ", ".join(written[number] for number in sorted(written))
+            raise refusal(f'the speeds must ascend without repeats; give "{ordered} {unit}"')
+        return np.array(values)
     parts = [part.strip() for part in numbers.split(":")]
     if len(parts) != 3:
-        raise ValueError(f'--speeds = "{text}": give start:stop:count, e.g. "0:150:301 rad/s"')
-    start, stop = (_member(text, part, unit, scene) for part in parts[:2])
+        raise refusal('give start:stop:count, e.g. "0:150:301 rad/s"')
+    start, stop = map(member, parts[:2])
     if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= _MOST_SPEEDS:
-        raise ValueError(
-            f'--speeds = "{text}": the count {parts[2]!r} must be a whole number from 1 to {_MOST_SPEEDS}'
-        )
+        raise refusal(f"the count {parts[2]!r} must be a whole number from 1 to {_MOST_SPEEDS}")
     if start > stop or (start == stop) != (int(parts[2]) == 1):
-        raise ValueError(f'--speeds = "{text}": start must be below stop (with a count of 1: equal to it)')
+        raise refusal("start must be below stop (with a count of 1: equal to it)")
     return np.linspace(start, stop, int(parts[2]))
-
-
-def _list(text: str, numbers: str, unit: str, scene: Scene | None) -> np.ndarray:
-    import numpy as np
-
-    values = [_member(text, part.strip(), unit, scene) for part in numbers.split(",")]
-    for low, high in pairwise(values):
-        if high <= low:
-            raise ValueError(_not_ascending(text, numbers, unit))
-    return np.array(values)
-
-
-def _not_ascending(text: str, numbers: str, unit: str) -> str:
-    """What to give in place of speeds that do not ascend, each as it was written."""
-    parts = {float(part): part.strip() for part in numbers.split(",")}
-    ordered = ", ".join(parts[number] for number in sorted(parts))
-    return f'--speeds = "{text}": the speeds must ascend without repeats; give "{ordered} {unit}"'
-
-
-def _member(text: str, number: str, unit: str, scene: Scene | None) -> float:
-    """One of several speeds [rad/s]."""
-    if not _NUMBER.fullmatch(number):
-        raise ValueError(
-            f"--speeds = \"{text}\": '{number}' is not a number; give numbers and one unit at their end, "
-            'e.g. "0, 50, 100 rad/s"'
-        )
-    return parse_speed("--speeds", f"{number} {unit}", scene)
 
 
 def parse_positions(option: str, text: str) -> list[float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-from beamdyn.analyses import ANALYSES
+from beamdyn.analyses import analyses
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.app.inputs import inputs_of
@@ -17,7 +17,7 @@ from beamdyn.common.screens.screens import Document, Program
 from beamdyn.files.scene_inputs import with_physics_as_table
 from beamdyn.files.scenes import parse_scene
 
-SHOWN = [analysis for analysis in ANALYSES.values() if analysis.screen]
+SHOWN = [analysis for analysis in analyses().values() if analysis.screen]
 SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE, *map(analysis_screen, SHOWN))
 SCENE = Document(
     "scene",

@@ -1,10 +1,7 @@
-"""The command ``beamdyn``.  What is heavy is imported by the commands that need it."""
+"""The command ``beamdyn``."""
 
 from beamdyn.analyses.values import parse_speeds
-from beamdyn.cli import campbell_diagram, decks, interactive, published  # noqa: F401  (they add their commands)
-from beamdyn.cli.program import app, main
-from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER, add_completion
+from beamdyn.cli.program import command_line, main
+from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
-__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "app", "main", "parse_speeds"]
-
-add_completion(app)
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "command_line", "main", "parse_speeds"]

@@ -8,13 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
 from beamdyn.analyses.values import naming_option, parse_positive, parse_speed
-from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.program import examples
 
@@ -32,11 +31,6 @@ OfAll = Annotated[
 _SPEEDS = 301
 
 
-@app.command(
-    help_epilogue=examples(
-        'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2',
-    )
-)
 def campbell(
     scenes: SceneFiles,
     /,
@@ -172,38 +166,27 @@ def _parse_operation(
     rated: str | None, operating: str | None, top_text: str, top: float, scene: Scene | None
 ) -> tuple[float | None, tuple[float, float] | None]:
     """The rated speed, and the lowest and highest operating speed [rad/s]."""
-    at = _parse_rated(rated, top_text, top, scene)
-    range_ = None if operating is None else _parse_range(operating, top_text, top, scene)
+
+    def up_to_top(speed: float, words: str) -> float:
+        if speed > top * (1 + 1e-12):
+            raise ValueError(f'{words}: it is above --top-speed = "{top_text}"; give a higher top speed')
+        return min(speed, top)
+
+    at, range_ = None, None
+    if rated is not None:
+        at = up_to_top(parse_positive("--rated", rated, "rad/s", scene), f'--rated = "{rated}"')
+    if operating is not None:
+        numbers, _, unit = operating.strip().rpartition(" ")
+        ends, words = [part.strip() for part in numbers.split(":")], f'--operating = "{operating}"'
+        if len(ends) != 2:
+            raise ValueError(f'{words}: give lowest:highest and a unit, e.g. "6.9:12.1 rpm"')
+        low, high = (parse_speed("--operating", f"{end} {unit}", scene) for end in ends)
+        if not 0 <= low < high:
+            raise ValueError(f"{words}: it must begin at 0 or above and end above its beginning")
+        range_ = low, up_to_top(high, f"--operating = {ends[1]} {unit}")
     if at is not None and range_ is not None and not range_[0] <= at <= range_[1]:
         raise ValueError(f'--rated = "{rated}": it lies outside --operating = "{operating}"; widen the range')
     return at, range_
-
-
-def _parse_rated(text: str | None, top_text: str, top: float, scene: Scene | None) -> float | None:
-    if text is None:
-        return None
-    return _up_to(
-        top, parse_positive("--rated", text, "rad/s", scene), f'--rated = "{text}": it is', top_text
-    )
-
-
-def _up_to(top: float, speed: float, words: str, top_text: str) -> float:
-    """A speed [rad/s] that the diagram has; `words` are the beginning of the refusal."""
-    if speed > top * (1 + 1e-12):
-        raise ValueError(f'{words} above --top-speed = "{top_text}"; give a higher top speed')
-    return min(speed, top)
-
-
-def _parse_range(text: str, top_text: str, top: float, scene: Scene | None) -> tuple[float, float]:
-    """Lowest and highest operating speed [rad/s]."""
-    numbers, _, unit = text.strip().rpartition(" ")
-    ends = numbers.split(":")
-    if len(ends) != 2:
-        raise ValueError(f'--operating = "{text}": give lowest:highest and a unit, e.g. "6.9:12.1 rpm"')
-    low, high = (parse_speed("--operating", f"{part.strip()} {unit}", scene) for part in ends)
-    if not 0 <= low < high:
-        raise ValueError(f'--operating = "{text}": it must begin at 0 or above and end above its beginning')
-    return low, _up_to(top, high, f"--operating = {ends[1].strip()} {unit}: it is", top_text)
 
 
 def _parse_orders(text: str) -> Sequence[int]:
@@ -233,3 +216,9 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
     scenes = (given.scene for given in inputs)
     chosen = (scene if physics is None else replace(scene, physics=physics) for scene in scenes)
     return dict(zip(names, chosen, strict=True))
+
+
+def add(app: App) -> None:
+    """Give a program's command line the command `campbell`."""
+    example = 'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2'
+    app.command(campbell, help_epilogue=examples(example))

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import naming_option, parse_quantity, parse_speed
-from beamdyn.cli.program import app
 from beamdyn.common.edge.outputs import Flag, Outputs
 from beamdyn.common.edge.program import examples, warn
 
@@ -21,12 +20,6 @@ Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
 PolynomialFile = Annotated[Path | None, Parameter(name="--polynomials")]
 
 
-@app.command(
-    name="import",
-    help_epilogue=examples(
-        'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"',
-    ),
-)
 def import_deck(
     file: DeckFile,
     /,
@@ -103,3 +96,9 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
         naming_option("hub_radius", "--hub-radius", hub_radius or ""),
     ):
         return read_deck(file, **given)
+
+
+def add(app: App) -> None:
+    """Give a program's command line the command `import`."""
+    example = 'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"'
+    app.command(import_deck, name="import", help_epilogue=examples(example))

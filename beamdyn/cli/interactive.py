@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from beamdyn.cli.program import app
+from cyclopts import App
+
 from beamdyn.common.screens.server import add_command
 
 if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program
+
+_ABOUT = "The interactive program in the browser: frequencies, rotor, mode shapes, responses of a beam."
 
 
 def make_program() -> Program:
@@ -18,9 +21,6 @@ def make_program() -> Program:
     return BEAMDYN
 
 
-add_command(
-    app,
-    make_program,
-    port=8080,
-    about="The interactive program in the browser: frequencies, rotor, mode shapes, responses of a beam.",
-)
+def add(app: App) -> None:
+    """Give a program's command line the command `app`."""
+    add_command(app, make_program, port=8080, about=_ABOUT)

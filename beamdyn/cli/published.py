@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from beamdyn.cli.program import app
+from cyclopts import App
+
 from beamdyn.common.edge.outputs import Flag, check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.varying import SomeFolder
 
 
-@app.command(help_epilogue=examples("beamdyn reproduce --output pictures"))
 def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
     """Published numbers beside ours, with deviations and verdicts; draws the paper's figures.
 
@@ -36,3 +36,8 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
     )
     if not tables:
         screen.print("beamdyn reproduce --tables compares with the tables of other sources, too.")
+
+
+def add(app: App) -> None:
+    """Give a program's command line the command `reproduce`."""
+    app.command(reproduce, help_epilogue=examples("beamdyn reproduce --output pictures"))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import is_dataclass
 from inspect import Parameter
 
-from beamdyn.analyses import ANALYSES
+from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 
 MARK = "<!-- analyses -->"
@@ -14,7 +14,7 @@ MARK = "<!-- analyses -->"
 
 def page() -> str:
     """A section for each analysis, in Markdown."""
-    return "\n\n".join("\n".join(_section(analysis)) for analysis in ANALYSES.values())
+    return "\n\n".join("\n".join(_section(analysis)) for analysis in analyses().values())
 
 
 def _section(analysis: Analysis) -> Iterator[str]:

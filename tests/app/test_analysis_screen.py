@@ -8,7 +8,7 @@ import pytest
 from cyclopts import App
 
 import beamdyn as bd
-from beamdyn.analyses import ANALYSES
+from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
@@ -92,7 +92,7 @@ def test_the_manual_tells_every_option_of_every_analysis():
     sys.path.insert(0, str(ROOT / "docs" / "_ext"))
     page = import_module("analyses_page").page()
     sys.path.pop(0)
-    for analysis in ANALYSES.values():
+    for analysis in analyses().values():
         assert f"`beamdyn {analysis.name}`" in page
         assert all(analysis.meaning(name) for name in analysis.texts)
     assert "| `--top-speed` | Largest speed to search" in page

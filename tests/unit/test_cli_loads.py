@@ -71,7 +71,7 @@ def test_transient_within_a_window_with_cycles(run):
 
 
 def test_cycles_without_the_package_that_counts_are_refused_at_once(run, monkeypatch):
-    monkeypatch.setattr("beamdyn.analyses.loads.find_spec", lambda name: None)
+    monkeypatch.setattr("beamdyn.analyses.about_loads.find_spec", lambda name: None)
     code, _, err = run(ROLLING, "--t-end", "1e9 s", "--cycles", "strain")
     assert code == BAD_INPUT
     assert "beamdyn[fatigue]" in err

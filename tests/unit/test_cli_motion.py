@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from beamdyn import load_scene
-from beamdyn.analyses.transients import _how_to_resume
+from beamdyn.analyses.about_motion import _how_to_resume
 from beamdyn.analyses.values import parse_window
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 from beamdyn.results.of_motion import peaks
@@ -72,7 +72,7 @@ def test_digits_that_the_modes_left_out_spoil_are_not_printed(run):
 
 
 def test_simulate_writes_files(run, tmp_path, monkeypatch):
-    monkeypatch.setattr("beamdyn.analyses.transients._FRAMES", 7)
+    monkeypatch.setattr("beamdyn.analyses.about_motion._FRAMES", 7)
     names = ("j.json", "c.csv", "p.png", "s.xdmf", "a.gif")
     j, c, p, s, a = (tmp_path / name for name in names)
     files = ("--json", j, "--csv", c, "--plot", p, "--series", s, "--animation", a)

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.analyses.excitations import read_spectrum
-from beamdyn.analyses.linear_models import parse_frequencies
+from beamdyn.analyses.about_linear_models import parse_frequencies, read_spectrum
 from beamdyn.cli import BAD_INPUT, main
 from beamdyn.common.edge.config import ConfigError
 from brakes.cli import main as brakes

@@ -43,7 +43,7 @@ def full_disk():
 
 @pytest.fixture(autouse=True)
 def few_frames(monkeypatch):
-    monkeypatch.setattr("beamdyn.analyses.transients._FRAMES", 3)
+    monkeypatch.setattr("beamdyn.analyses.about_motion._FRAMES", 3)
 
 
 @pytest.fixture

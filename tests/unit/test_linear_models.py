@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.analyses.excitations import parse_input, parse_output
-from beamdyn.analyses.linear_models import parse_frequencies
+from beamdyn.analyses.about_linear_models import parse_frequencies, parse_input, parse_output
 from beamdyn.cli import BAD_INPUT, DONE, main
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.model import Model

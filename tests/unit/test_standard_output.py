@@ -132,7 +132,7 @@ SUFFIXES = {"animation": ".gif", "free bodies": ".png"}
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
 @pytest.mark.parametrize("command", WRITING)
 def test_the_files_are_written_though_the_tables_cannot_be_printed(run_into, tmp_path, command, monkeypatch):
-    monkeypatch.setattr("beamdyn.analyses.transients._FRAMES", 7)
+    monkeypatch.setattr("beamdyn.analyses.about_motion._FRAMES", 7)
     path = tmp_path / f"result{SUFFIXES.get(command, '.txt')}"
     with suppress(OSError), open("/dev/full", "w") as full:
         code, err = run_into(full, *WRITING[command], str(path))

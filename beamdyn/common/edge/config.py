@@ -115,13 +115,13 @@ def parse(text: str, source: str) -> dict[str, Any]:
         raise ConfigError(
             source, ["its lists or tables are nested too deeply; give a file of tables"]
         ) from None
-    except ValueError as error:
-        if "set_int_max_str_digits" in f"{error}":  # of Python, to its programmers
-            raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
+    except tomllib.TOMLDecodeError as error:
         remedy = 'a quantity stands in quotes: length = "50 mm"'
         if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):
             remedy = "give each key and each [table] once"
         raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
+    except ValueError:
+        raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
 
 
 def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:

@@ -82,7 +82,14 @@ class Quantity(Described):
             return float(given)
         if self.infinite and given in ("inf", math.inf):
             return math.inf
-        return quantity(given, self.unit) if self.unit else _plain(given)
+        if self.unit:
+            return quantity(given, self.unit)
+        try:
+            if isinstance(given, int | float):
+                return real("", given)
+        except (ValueError, OverflowError):
+            pass
+        raise InvalidInput("", given, "give a finite number, without a unit or quotes")
 
     def in_unit(self, value: float, unit: str) -> float:
         """A value in SI as a number of another unit; raises `InvalidInput` for one of another kind."""
@@ -201,7 +208,7 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     list of Input
     """
     chosen = choose is not _each and _has_alternatives(model)
-    return list(_describe_all(model, prefix, choose) if chosen else _described(model, prefix))
+    return _describe_all(model, prefix, choose) if chosen else [*_described(model, prefix)]
 
 
 @lru_cache(maxsize=256)  # forms ask for them at each change of a field
@@ -222,21 +229,22 @@ def _models_of(field: FieldInfo) -> list[type[BaseModel]]:
     return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
 
 
-def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> Iterator[Input]:
+def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> list[Input]:
+    """Inputs of a model, those of the tables within it in their places."""
+    found: list[Input] = []
     for name, field in model.model_fields.items():
-        yield from _describe(model, prefix + name, field, choose)
-
-
-def _describe(section: type[BaseModel], path: str, field: FieldInfo, choose: Choice) -> list[Input]:
-    if models := _models_of(field):
-        chosen = choose(path, models) if len(models) > 1 else models
-        return [entry for model in chosen for entry in describe(model, path + ".", choose)]
-    parts = [*parts_of(field.annotation), *field.metadata]
-    described = next((p for p in parts if isinstance(p, Quantity)), Quantity(meaning=field.description or ""))
-    choices = next((get_args(p) for p in parts if get_origin(p) is Literal), ())
-    required = field.is_required()
-    default = None if required else field.get_default(call_default_factory=True)
-    return [Input(path, section, field.annotation, described, choices, required, default)]
+        path = prefix + name
+        if models := _models_of(field):
+            chosen = choose(path, models) if len(models) > 1 else models
+            found += [entry for each in chosen for entry in describe(each, path + ".", choose)]
+            continue
+        parts, required = [*parts_of(field.annotation), *field.metadata], field.is_required()
+        words = Quantity(meaning=field.description or "")
+        described = next((part for part in parts if isinstance(part, Quantity)), words)
+        choices = next((get_args(part) for part in parts if get_origin(part) is Literal), ())
+        default = None if required else field.get_default(call_default_factory=True)
+        found.append(Input(path, model, field.annotation, described, choices, required, default))
+    return found
 
 
 def parts_of(annotation: Any) -> Iterator[Any]:
@@ -244,13 +252,3 @@ def parts_of(annotation: Any) -> Iterator[Any]:
     yield annotation
     for part in get_args(annotation):
         yield from parts_of(part)
-
-
-def _plain(given: object) -> float:
-    """A bare number."""
-    try:
-        if isinstance(given, int | float):
-            return real("", given)
-    except (ValueError, OverflowError):
-        pass
-    raise InvalidInput("", given, "give a finite number, without a unit or quotes")

@@ -84,6 +84,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     int
         Exit code: 0 done, 1 the model has no answer, 2 bad input, 130 interrupted.
     """
+    from beamdyn.common.edge.tables import Terminal, spell_output
+
     name = app.name[0]
     given = sys.argv[1:] if arguments is None else list(arguments)
     TYPED.set((app, given))
@@ -91,31 +93,34 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         return _complain(name, "the standard output is closed; direct it to a file or a device", BAD_INPUT)
     try:
         with _terminated_as_interrupted(), _as_sentences(name), at_work(" ".join([name, *given[:1]])):
-            _call(app, given)
+            check_names(given)
+            if isinstance(sys.stdout, TextIOWrapper):
+                spell_output(sys.stdout)
+            how: dict[str, Any] = {"exit_on_error": False, "print_error": False}
+            app(given, console=Terminal(), result_action="return_value", **how)
     except (NoAnswer, ArithmeticError) as error:
-        return _no_answer(name, error)
+        from beamdyn.common.inputs.checks import reason_of
+
+        return _complain(name, f"no answer: {as_typed(reason_of(error))}", NO_ANSWER)
     except MemoryError as error:
         return _complain(
             name, f"not enough memory: {error}; ask for a shorter run or for fewer modes", BAD_INPUT
         )
-    except Interrupted as error:
-        return _complain(name, f"interrupted: {error}", INTERRUPTED)
-    except KeyboardInterrupt as error:
+    except (Interrupted, KeyboardInterrupt) as error:
         return _complain(name, f"interrupted: {error}".removesuffix(": "), INTERRUPTED)
     except CycloptsError as error:
         return _complain(name, say_mistake(app, error, given), BAD_INPUT)
-    except (ValueError, OSError) as error:
-        return _refused(name, error)
+    except (ValueError, OSError) as error:  # bad input, or no answer, as where a linear system is singular
+        from numpy.linalg import LinAlgError  # here, with numpy, which help does without
+
+        from beamdyn.common.inputs.checks import NoModelAnswer
+
+        if isinstance(error, NoModelAnswer):
+            return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)
+        if isinstance(error, LinAlgError):
+            return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
+        return _complain(name, as_typed(as_given(error)), BAD_INPUT)
     return DONE
-
-
-def _call(app: App, arguments: Sequence[str]) -> None:
-    from beamdyn.common.edge.tables import Terminal, spell_output
-
-    check_names(arguments)
-    if isinstance(sys.stdout, TextIOWrapper):
-        spell_output(sys.stdout)
-    app(arguments, console=Terminal(), exit_on_error=False, print_error=False, result_action="return_value")
 
 
 @contextmanager
@@ -153,38 +158,15 @@ def _as_sentences(name: str) -> Iterator[None]:
         yield
 
 
-def _no_answer(name: str, error: Exception) -> int:
-    from beamdyn.common.inputs.checks import reason_of
-
-    return _complain(name, f"no answer: {as_typed(reason_of(error))}", NO_ANSWER)
-
-
-def _refused(name: str, error: Exception) -> int:
-    """Exit code of a ValueError: bad input, or no answer, as where a linear system is singular."""
-    from numpy.linalg import LinAlgError
-
-    from beamdyn.common.inputs.checks import NoModelAnswer
-
-    if isinstance(error, NoModelAnswer):
-        return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)
-    if isinstance(error, LinAlgError):
-        return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
-    return _complain(name, as_typed(as_given(error)), BAD_INPUT)
-
-
 def _complain(name: str, sentence: str, code: int) -> int:
-    _say(f"{name}: {sentence}")
+    """Print a sentence on standard error, if it can be written, and return the exit code."""
+    if sys.stderr is not None:
+        with suppress(OSError), quiet():
+            print(f"{name}: {sentence}", file=sys.stderr, flush=True)
     return code
 
 
 def warn(name: str, sentences: Iterable[str]) -> None:
     """Print a program's warnings on standard error."""
     for warning in sentences:
-        _say(f"{name}: warning: {as_typed(warning)}")
-
-
-def _say(sentence: str) -> None:
-    """Print on standard error, if it can be written."""
-    if sys.stderr is not None:
-        with suppress(OSError), quiet():
-            print(sentence, file=sys.stderr, flush=True)
+        _complain(name, f"warning: {as_typed(warning)}", DONE)

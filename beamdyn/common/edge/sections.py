@@ -29,7 +29,9 @@ class MadeSection(CoreSection):
         """The arguments of the core class."""
         given: dict[str, Any] = {}
         for name, key in self.key_of.items():
-            value, (argument, pair, _) = _core_of(getattr(self, key)), name.partition("[")
+            value, (argument, pair, _) = getattr(self, key), name.partition("[")
+            value = value.core if isinstance(value, CoreSection) else value
+            value = tuple(value) if isinstance(value, list) else value
             given[argument] = (*given.get(argument, ()), value) if pair else value
         return given
 
@@ -114,13 +116,6 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
     return Annotated[
         reduce(operator.or_, tagged), Discriminator(tag, "kind", f"give {', '.join(others)} or {last}")
     ]
-
-
-def _core_of(value: Any) -> Any:
-    """What the core takes for a value of a table."""
-    if isinstance(value, CoreSection):
-        return value.core
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _arguments(made: Callable[..., Any]) -> dict[str, Any]:

@@ -32,6 +32,7 @@ _PLAIN = str.maketrans(
     | dict.fromkeys(_SPACES, " ")
     | {0xFF10 + digit: str(digit) for digit in range(10)}  # of full width
 )
+_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
 _KNOWN_SIGNS = "°µμΩ"  # of units
 
 _KINDS = {
@@ -130,6 +131,11 @@ def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], flo
     if not written or kind is None or wanted is None or _root(kind) != _root(wanted):
         return unit, float
     return written, lambda number: _convert(repr(float(number)), wanted, kind)
+
+
+def last_quantity(text: str) -> str:
+    """The last of several quantities in a text, such as "100:5 rpm" or "+-2 g/cm3", with the unit of all."""
+    return _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
 
 
 def show(value: object, depth: int = 2) -> str:

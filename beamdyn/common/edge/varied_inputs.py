@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import get_args, get_origin
 
@@ -66,18 +66,19 @@ class Coordinate(Input):
 
 def numbers(inputs: Sequence[Input]) -> list[Input]:
     """The inputs that can be varied: numbers, and the coordinates of points."""
-    return [number for entry in inputs for number in _numbers(entry)]
-
-
-def _numbers(entry: Input) -> Iterator[Input]:
-    parts = [*parts_of(entry.kind)]
-    if get_origin(entry.kind) is tuple:
-        for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
-            words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
-            path = f"{entry.path}.{axis}"
-            yield Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
-    elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
-        yield entry
+    found: list[Input] = []
+    for entry in inputs:
+        parts = [*parts_of(entry.kind)]
+        if get_origin(entry.kind) is tuple:
+            for place, (axis, _) in enumerate(zip("xy", get_args(entry.kind), strict=True)):
+                words = replace(entry.quantity, meaning=f"{axis} of the {entry.quantity.meaning}")
+                path = f"{entry.path}.{axis}"
+                found.append(
+                    Coordinate(path, entry.section, float, words, (), entry.required, None, entry, place)
+                )
+        elif float in parts and not any(get_origin(part) in (list, tuple, dict) for part in parts):
+            found.append(entry)
+    return found
 
 
 def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most: int = MOST_AT_ONCE) -> Axis:
@@ -105,13 +106,21 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
         If there is no such input, or the values do not fit it.
     """
     key, _, given = text.partition("=")
-    rest = in_plain_characters(given)
-    words = f'{option} = "{text}"'
+    rest, words = in_plain_characters(given), f'{option} = "{text}"'
     entry = find_input(inputs, key.strip(), words)
     if match := _RANGE.fullmatch(rest):
-        return _range(entry, match, words, most)
+        start, stop, count, unit = float(match[1]), float(match[2]), int(match[3]), match[5]
+        if not 2 <= count <= most or start == stop:
+            raise ValueError(f"{words}: give two different ends, and a count from 2 to {most}")
+        if match[4] and not start * stop > 0:
+            raise ValueError(f"{words}: equal ratios need two ends of one sign, neither of them 0")
+        low, high = (_in_si(entry, number, unit, words) for number in match.group(1, 2))
+        spaced = np.geomspace if match[4] else np.linspace
+        return Axis(entry, unit, spaced(start, stop, count), spaced(low, high, count))
     if match := _LIST.fullmatch(rest):
-        return _list(entry, match[1].split(","), match[2], words)
+        parts = [part.strip() for part in match[1].split(",")]
+        values = [_in_si(entry, part, match[2], words) for part in parts]
+        return Axis(entry, match[2], np.array([*map(float, parts)]), np.array(values))
     if odd := _NO_NUMBER.search(rest):
         raise ValueError(f"{words}: {odd[0]} is not a finite number; give numbers")
     if odd := odd_character(rest):
@@ -119,23 +128,6 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     unit = f" {entry.quantity.unit}".rstrip()
     form = f'"{entry.path}=1:2:11{unit}", at equal ratios "1:2:11:log{unit}", or a list, "1,1.5,2{unit}"'
     raise ValueError(f"{words}: give KEY=start:stop:count unit, e.g. {form}")
-
-
-def _range(entry: Input, match: re.Match[str], words: str, most: int) -> Axis:
-    """Values at equal steps, or at equal ratios."""
-    start, stop, count, unit = float(match[1]), float(match[2]), int(match[3]), match[5]
-    if not 2 <= count <= most or start == stop:
-        raise ValueError(f"{words}: give two different ends, and a count from 2 to {most}")
-    if match[4] and not start * stop > 0:
-        raise ValueError(f"{words}: equal ratios need two ends of one sign, neither of them 0")
-    low, high = (_in_si(entry, number, unit, words) for number in match.group(1, 2))
-    spaced = np.geomspace if match[4] else np.linspace
-    return Axis(entry, unit, spaced(start, stop, count), spaced(low, high, count))
-
-
-def _list(entry: Input, numbers: Sequence[str], unit: str, words: str) -> Axis:
-    values = [_in_si(entry, number.strip(), unit, words) for number in numbers]
-    return Axis(entry, unit, np.array([*map(float, numbers)]), np.array(values))
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:

@@ -12,14 +12,13 @@ import numpy as np
 from pydantic import BaseModel
 
 from beamdyn.common.edge.inputs import describe
-from beamdyn.common.edge.units import unit_as_written
+from beamdyn.common.edge.units import last_quantity, unit_as_written
 from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
     rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
 )
-_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
@@ -108,8 +107,7 @@ def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
     """The same in the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
     if not isinstance(error.value, float):
         return error
-    last = _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
-    written, convert = unit_as_written(last, error.unit)
+    written, convert = unit_as_written(last_quantity(text), error.unit)
     limit = None if error.limit is None else convert(error.limit)
     return replace(error, value=convert(error.value), limit=limit, unit=written, cases=None)
 

@@ -160,23 +160,10 @@ def refuse(
     if not bad.any():
         return
     more = f" (and {int(bad.sum()) - 1} more of {bad.size} cases)" if bad.sum() > 1 else ""
-    past = None if limit is None else _first(limit, bad)
-    raise InvalidValue(
-        name, _first(value, bad), bound, remedy, unit, past, other, more, _cases(bad, value, limit)
-    )
-
-
-def _cases(bad: np.ndarray, value: Any, limit: Any) -> RefusedCases | None:
-    """The cases of an array; None of a single value."""
-    if bad.ndim != 1:
-        return None
-    value, limit = (x if x is None else np.broadcast_to(x, bad.shape) for x in (value, limit))
-    return RefusedCases(bad, value, limit)
-
-
-def _first(values: Any, bad: np.ndarray) -> float:
-    """The value of the first bad case."""
-    return float(np.broadcast_to(values, bad.shape)[bad][0])
+    values, limits = (x if x is None else np.broadcast_to(x, bad.shape) for x in (value, limit))
+    past = None if limits is None else float(limits[bad][0])
+    cases = RefusedCases(bad, values, limits) if bad.ndim == 1 else None
+    raise InvalidValue(name, float(values[bad][0]), bound, remedy, unit, past, other, more, cases)
 
 
 # Single values ------------------------------------------------------------------------------------
@@ -287,12 +274,9 @@ def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -
     """Refuse what is not of the wanted class, or of one of several."""
     if not isinstance(value, wanted):
         classes: tuple[Any, ...] = get_args(wanted) or (wanted,)
-        names = " or ".join(map(_name_of, classes))
+        known = {NoneType: "None", str: "text"}
+        names = " or ".join(known.get(each, f"a {each.__name__}") for each in classes)
         raise InvalidValue(name, value, f"give {names}", remedy)
-
-
-def _name_of(wanted: type) -> str:
-    return {NoneType: "None", str: "text"}.get(wanted, f"a {wanted.__name__}")
 
 
 def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any, ...]:

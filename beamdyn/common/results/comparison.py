@@ -79,21 +79,17 @@ class Comparison(Verdict):
 
     def cells(self) -> list[str]:
         """Its row of the table."""
+        ends = self.published if isinstance(self.published, tuple) else (self.published,)
+        deviation = supported(self.deviation, self.error, 2)
+        if len(ends) > 1 and self.deviation == 0:
+            deviation = "inside"
+        elif self.deviation > 0 and "±" not in deviation:
+            deviation = f"+{deviation}"
         return [
             self.what,
             self.source,
-            self._published(),
+            " to ".join(f"{end:.{self.decimals}f}" for end in ends),
             supported(self.ours, self.error, 12) if self.error else f"{self.ours:.{self.decimals}f}",
-            self._deviation(),
+            deviation,
             self.verdict,
         ]
-
-    def _published(self) -> str:
-        ends = self.published if isinstance(self.published, tuple) else (self.published,)
-        return " to ".join(f"{end:.{self.decimals}f}" for end in ends)
-
-    def _deviation(self) -> str:
-        if isinstance(self.published, tuple) and self.deviation == 0:
-            return "inside"
-        text = supported(self.deviation, self.error, 2)
-        return text if self.deviation <= 0 or "±" in text else f"+{text}"

@@ -71,32 +71,28 @@ def check_writable(
         If the path is a folder, or cannot be written for another reason.
     """
     path = as_path("path", path)
+    stream = _is_stream(path)
     if suffixes and path.suffix.lower() not in suffixes:
         known = ", ".join(filter(None, suffixes))
         raise ValueError(f"{path}: unknown suffix {path.suffix!r}; give one of {known}")
     if os.path.isdir(path):
         raise IsADirectoryError(f"{path}: it is a folder; give the name of a file")
-    if os.path.isfile(path) and not _is_stream(path) and not force:
+    if os.path.isfile(path) and not stream and not force:
         raise FileExistsError(f"{path}: the file exists; {remedy}")
     if os.path.exists(path) and not os.access(path, os.W_OK):
         raise PermissionError(f"{path}: it is protected against writing; give another file")
-    if not _is_stream(path):
-        _try_to_write(path)
-    return path
-
-
-def _try_to_write(path: Path) -> None:
-    """Write an empty file beside the file, and try its name."""
     target = Path(os.path.realpath(path))
-    if not target.parent.is_dir():
+    if not stream and not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {target.parent}; create it first")
-    try:
-        _empty_file(target.parent, path.suffix).unlink()
-        with suppress(FileNotFoundError):
-            target.stat()
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise OSError(f"{path}: it cannot be written ({reason}); give another file") from None
+    if not stream:
+        try:  # to write an empty file beside it, and its name
+            _empty_file(target.parent, path.suffix).unlink()
+            with suppress(FileNotFoundError):
+                target.stat()
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise OSError(f"{path}: it cannot be written ({reason}); give another file") from None
+    return path
 
 
 def _is_stream(path: Path) -> bool:
@@ -139,16 +135,24 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """
     path = Path(path)
     target, stream = Path(os.path.realpath(path)), _is_stream(path)
-    folder = Path(tempfile.gettempdir()) if stream else target.parent
+    kept = "; the file that was there is unchanged" if target.is_file() else ""
     aside = None
     try:
-        aside = _empty_file(folder, path.suffix)
+        aside = _empty_file(Path(tempfile.gettempdir()) if stream else target.parent, path.suffix)
         yield aside
-        _copy(aside, path) if stream else _move(aside, target)
+        if stream:
+            with aside.open("rb") as source, path.open("ab") as written:
+                shutil.copyfileobj(source, written)
+        else:
+            if target.exists():
+                shutil.copymode(target, aside)
+            with aside.open("rb+") as file:
+                os.fsync(file.fileno())  # it takes the place of the other not before it is on the disk
+            os.replace(aside, target)
     except OSError as error:
-        raise OSError(f"{path}: it could not be written ({error.strerror or error}){_kept(target)}") from None
+        raise OSError(f"{path}: it could not be written ({error.strerror or error}){kept}") from None
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"{path} is not written{_kept(target)}") from None
+        raise KeyboardInterrupt(f"{path} is not written{kept}") from None
     finally:
         if aside is not None:
             aside.unlink(missing_ok=True)
@@ -165,22 +169,3 @@ def _empty_file(folder: Path, suffix: str) -> Path:
     path = folder / f"{ASIDE}{os.urandom(6).hex()}{suffix}"
     os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return path
-
-
-def _move(aside: Path, target: Path) -> None:
-    """Put a file in the place of another, whose permissions it takes; not before it is on the disk."""
-    if target.exists():
-        shutil.copymode(target, aside)
-    with aside.open("rb+") as file:
-        os.fsync(file.fileno())
-    os.replace(aside, target)
-
-
-def _copy(aside: Path, stream: Path) -> None:
-    """Write the content of a file to a device, a pipe or an open file."""
-    with aside.open("rb") as source, stream.open("ab") as written:
-        shutil.copyfileobj(source, written)
-
-
-def _kept(target: Path) -> str:
-    return "; the file that was there is unchanged" if target.is_file() else ""

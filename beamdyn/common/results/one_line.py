@@ -30,21 +30,17 @@ class OneLine:
         return given_fields(self)
 
     def __repr__(self) -> str:
+        name = type(self).__name__
         try:
             parts = [" ".join(part.split()) for part in self.headline() if part]
         except Exception:  # of an object that is not complete, in a debugger or in the middle of an error
             parts = ["..."]
-        return _fitted(type(self).__name__, parts)
-
-
-def _fitted(name: str, parts: list[str]) -> str:
-    """As many parts as a line takes, the first one cut if it is longer."""
-    line = f"{name}({', '.join(parts)})"
-    for kept in range(len(parts) - 1, 0, -1):
-        if len(line) <= LONGEST:
-            return line
-        line = f"{name}({', '.join(parts[:kept])}, ...)"
-    return line if len(line) <= LONGEST else f"{name}({shortened(parts[0], LONGEST - len(name) - 2)})"
+        line = f"{name}({', '.join(parts)})"
+        for kept in range(len(parts) - 1, 0, -1):  # as many parts as a line takes
+            if len(line) <= LONGEST:
+                return line
+            line = f"{name}({', '.join(parts[:kept])}, ...)"
+        return line if len(line) <= LONGEST else f"{name}({shortened(parts[0], LONGEST - len(name) - 2)})"
 
 
 def shortened(text: str, most: int) -> str:
@@ -54,19 +50,14 @@ def shortened(text: str, most: int) -> str:
 
 def given_fields(thing: Any) -> Iterator[str]:
     """Name and value of each field of a dataclass that has not its default value, in few letters."""
-    if not dataclasses.is_dataclass(thing):
-        return
-    for each in dataclasses.fields(thing):
+    for each in dataclasses.fields(thing) if dataclasses.is_dataclass(thing) else ():
         value = getattr(thing, each.name)
-        if each.repr and not _is_default(each, value):
+        try:
+            usual = each.default is not dataclasses.MISSING and bool(value == each.default)
+        except ValueError:  # of arrays
+            usual = False
+        if each.repr and not usual:
             yield f"{each.name}={brief(value)}"
-
-
-def _is_default(each: dataclasses.Field[Any], value: object) -> bool:
-    try:
-        return each.default is not dataclasses.MISSING and bool(value == each.default)
-    except ValueError:  # of arrays
-        return False
 
 
 def brief(value: object) -> str:

@@ -1,9 +1,11 @@
-"""Results in files: JSON, with all that makes the result again."""
+"""Results in files: JSON that shows damage, with all that makes the result again."""
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,8 +14,72 @@ import numpy as np
 from beamdyn.common.results.files import as_path, check_writable, write_text
 from beamdyn.common.results.plain import nullified, plain
 from beamdyn.common.results.read_only import make_read_only
-from beamdyn.common.results.records import seal, unseal
 from beamdyn.common.results.snapshots import decode, encode
+
+# Records with a schema version and a checksum --------------------------------------------------------
+
+
+SCHEMA = 1  # raised when older records can no longer be read
+
+
+class DamagedRecord(ValueError):
+    """A record that is damaged, was changed, or is of another schema; the message says which."""
+
+
+def seal(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Add the schema version and a checksum.
+
+    Parameters
+    ----------
+    content : mapping
+        Values of JSON's types, without the keys "schema" and "checksum".
+
+    Returns
+    -------
+    dict
+        To be written as JSON, in any layout.
+    """
+    versioned = {**content, "schema": SCHEMA}
+    return {**versioned, "checksum": _checksum(versioned)}
+
+
+def unseal(text: str | bytes) -> dict[str, Any]:
+    """Read a record.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The JSON text of what `seal` made.
+
+    Returns
+    -------
+    dict
+        The content, as it was given to `seal`.
+
+    Raises
+    ------
+    DamagedRecord
+        If it is not that, to the last digit.
+    """
+    try:
+        record = json.loads(text)
+    except (ValueError, RecursionError):
+        raise DamagedRecord("it is not valid JSON: damaged, or not whole") from None
+    if not isinstance(record, dict) or "checksum" not in record:
+        raise DamagedRecord("it has no checksum: an earlier version wrote it, or another program")
+    if record.pop("checksum") != _checksum(record):
+        raise DamagedRecord("its content does not match its checksum: it was changed after it was written")
+    if (schema := record.pop("schema", None)) != SCHEMA:
+        raise DamagedRecord(f"it has schema {schema}, and this version reads schema {SCHEMA}")
+    return record
+
+
+def _checksum(content: Mapping[str, Any]) -> str:
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+# Results ---------------------------------------------------------------------------------------------
 
 
 class Saved:
@@ -42,7 +108,16 @@ class Saved:
         Numbers that are not finite are null, but `load` gets them back.
         """
         values, result = nullified(self.to_dict()), self.loadable()
-        record = {} if result is None else {"record": _record_of(result)}
+        record: dict[str, Any] = {}
+        if result is not None:  # also what it has computed and kept, such as a truncation error
+            names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
+            computed = {key: value for key, value in vars(result).items() if key not in names}
+            kept = {
+                key: encode(value)
+                for key, value in computed.items()
+                if isinstance(value, bool | int | float | np.generic | np.ndarray) or key in result.kept
+            }
+            record = {"record": {"result": encode(result), "computed": kept}}
         return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | Path, force: bool = False) -> None:
@@ -104,46 +179,24 @@ def load(path: str | Path) -> Any:
     True
     """
     file = as_path("path", path)
-    try:
-        content = unseal(_read(file))
-        if "record" in content:
-            return _result_from(content["record"])
-        reason = "it has numbers only"
-    except ValueError as error:
-        reason = str(error)
     remedy = "compute the result again; any JSON reader gets its numbers"
-    raise ValueError(f"{path}: no result can be loaded: {reason}; {remedy}")
-
-
-def _read(file: Path) -> bytes:
     try:
-        return file.read_bytes()
+        text = file.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
         remedy = "give one that save or --json has written"
         raise type(error)(f"{file}: no result can be loaded: {reason}; {remedy}") from None
-
-
-def _record_of(result: Saved) -> dict[str, Any]:
-    """The fields, and the computed values that the result has kept, such as a modal truncation error."""
-    names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
-    kept = {
-        key: encode(value)
-        for key, value in vars(result).items()
-        if key not in names and (_is_number(value) or key in result.kept)
-    }
-    return {"result": encode(result), "computed": kept}
-
-
-def _result_from(record: Any) -> Saved:
-    result = decode(record["result"])
-    if not isinstance(result, Saved):
-        raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
-    for key, value in record["computed"].items():
-        object.__setattr__(result, key, decode(value))
+    try:
+        content = unseal(text)
+        if "record" not in content:
+            raise ValueError("it has numbers only")
+        result = decode(content["record"]["result"])
+        if not isinstance(result, Saved):
+            raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
+        computed = {key: decode(value) for key, value in content["record"]["computed"].items()}
+    except ValueError as error:
+        raise ValueError(f"{path}: no result can be loaded: {error}; {remedy}") from None
+    for key, value in computed.items():
+        object.__setattr__(result, key, value)
     make_read_only(result)
     return result
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, bool | int | float | np.generic | np.ndarray)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -31,8 +31,17 @@ class Shown(OneLine, InDisplayUnits):
             cls.plot = labelled(vars(cls)["plot"])  # pyright: ignore[reportAttributeAccessIssue]
 
     def headline(self) -> Iterable[str]:
-        """What the result says in one line: its main numbers with units, their error, and what is amiss."""
-        return _first_fields(self)
+        """What the result says in one line: its main numbers with units, their error, and what is amiss.
+
+        Of a class that says nothing else, the first public fields, and how many warnings there are.
+        """
+        names = [f.name for f in dataclasses.fields(self) if f.repr]  # pyright: ignore[reportArgumentType]
+        names = [name for name in names if name not in ("provenance", "warnings", "message")]
+        for name in names[:_MOST_PARTS]:
+            value = getattr(self, name)
+            text = type(value).__name__ if dataclasses.is_dataclass(value) else brief(value)
+            yield f"{name}={shortened(text, 30)}"
+        yield warned(getattr(self, "warnings", ()))
 
     @property
     def plot_label(self) -> str:
@@ -82,14 +91,3 @@ def _views() -> Any:
 
 def _shown_in(result: Shown, units: Units) -> Shown:
     return result if units is None else result.in_units(**vars(DisplayUnits.of(units)))
-
-
-def _first_fields(result: Shown) -> Iterator[str]:
-    """The first public fields that say something, and how many warnings there are."""
-    names = [f.name for f in dataclasses.fields(result) if f.repr]  # pyright: ignore[reportArgumentType]
-    names = [name for name in names if name not in ("provenance", "warnings", "message")]
-    for name in names[:_MOST_PARTS]:
-        value = getattr(result, name)
-        text = type(value).__name__ if dataclasses.is_dataclass(value) else brief(value)
-        yield f"{name}={shortened(text, 30)}"
-    yield warned(getattr(result, "warnings", ()))

@@ -81,7 +81,8 @@ def encode(value: Any) -> Any:
         return {"list" if isinstance(value, list) else "tuple": [encode(item) for item in value]}
     if isinstance(value, dict) and all(isinstance(key, str) for key in value):
         return {"dict": {key: encode(item) for key, item in value.items()}}
-    return {"left out": _describe(value)}
+    name = getattr(value, "__qualname__", "") or type(value).__qualname__
+    return {"left out": f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"}
 
 
 _PARTS: dict[type, Any] = {
@@ -104,11 +105,6 @@ def decode(value: Any) -> Any:
     return _DECODERS[kind](content)
 
 
-def _decode_array(content: list[Any]) -> np.ndarray:
-    kind, shape, data = content
-    return np.frombuffer(base64.b64decode(data), dtype=kind).reshape(shape).copy()
-
-
 def _decode_object(content: list[Any]) -> Any:
     """An object with the fields as they were, without the checks and conversions of its construction."""
     name, values = content
@@ -124,21 +120,16 @@ def _decode_object(content: list[Any]) -> Any:
     return made
 
 
-def _decode_words(content: list[Any]) -> Words:
-    name, given, named = content
-    return _find_class(name)(*decode(given), **decode(named))
-
-
 _DECODERS: dict[str, Any] = {
     "float": float,
     "complex": lambda parts: complex(*map(decode, parts)),
     "slice": lambda parts: slice(*map(decode, parts)),
-    "array": _decode_array,
+    "array": lambda it: np.frombuffer(base64.b64decode(it[2]), dtype=it[0]).reshape(it[1]).copy(),
     "tuple": lambda items: tuple(map(decode, items)),
     "list": lambda items: [*map(decode, items)],
     "dict": lambda items: {key: decode(item) for key, item in items.items()},
     "object": _decode_object,
-    "words": _decode_words,
+    "words": lambda it: _find_class(it[0])(*decode(it[1]), **decode(it[2])),
     "left out": LeftOut,
 }
 
@@ -183,9 +174,3 @@ def _modules_that_define(kind: str, package: str) -> Iterator[str]:
     for file in sorted(folder.rglob("*.py")):
         if f"\nclass {kind}(" in (text := file.read_text(encoding="utf-8")) or f"\nclass {kind}:" in text:
             yield ".".join(file.relative_to(folder.parent).with_suffix("").parts)
-
-
-def _describe(value: object) -> str:
-    """What a part is that is left out."""
-    name = getattr(value, "__qualname__", "") or type(value).__qualname__
-    return f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"

@@ -1,16 +1,20 @@
-"""Loads along the span: in equilibrium, in a transient, in steady response, under a random input."""
+"""Loads along the span: in equilibrium, in a transient and its cycles, in steady response, by chance."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from cyclopts import Parameter
+
 import beamdyn as bd
-from beamdyn.analyses.analysis import DRAWN, Answer, AsText, analysis
-from beamdyn.analyses.cycles import NOT_COUNTED, CycleOptions
-from beamdyn.analyses.excitations import NO_RANDOM_INPUT, RandomInput
+from beamdyn.analyses.about_linear_models import NO_RANDOM_INPUT, RandomInput
+from beamdyn.analyses.analysis import DRAWN, WRITTEN, Answer, AsText, analysis
 from beamdyn.analyses.options import (
     CountOrAuto,
     Discretization,
@@ -24,16 +28,111 @@ from beamdyn.analyses.options import (
 )
 from beamdyn.analyses.values import (
     final_speed,
+    naming_option,
     parse_quantity,
     parse_speeds,
     parse_window,
 )
+from beamdyn.common.edge.outputs import write_table
+from beamdyn.common.results.files import write_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from beamdyn.loads.cycles import LoadCycles
     from beamdyn.loads.span_loads import SpanLoads
+    from beamdyn.loads.transient_loads import EquivalentRange
     from beamdyn.scene.scene import Scene
+
+
+# Cycles ----------------------------------------------------------------------------------------------
+
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class CycleOptions:
+    """Which cycles of a transient are counted, and what is made of them.
+
+    Parameters
+    ----------
+    cycles : str, optional
+        In a transient: also count the cycles of this quantity, where it is largest (rainflow counting, ASTM
+        E1049; needs the extra fatigue).
+    woehler : str, optional
+        Of these cycles: the range of equal cycles that do the same damage (Miner), for exponents m of the
+        Woehler (S-N) curve, e.g. "3, 5, 10".
+    equivalent_cycles : float, optional
+        Number of these equal cycles; default: 1.
+    cycles_file : Path, optional
+        Write range, mean and count of each cycle into this file: .csv, .tsv, .txt or .json.
+    """
+
+    cycles: LoadQuantity | None = None
+    woehler: Text | None = None
+    equivalent_cycles: float | None = None
+    cycles_file: Annotated[Path | None, WRITTEN] = None
+
+    def check(self, in_transient: bool) -> None:
+        """Refuse options that nothing would use."""
+        from beamdyn.common.inputs.checks import positive
+
+        if self.cycles is not None and not in_transient:
+            raise ValueError("--cycles belongs to a transient: give --t-end, too")
+        text = "" if self.woehler is None else f'"{self.woehler}"'
+        for name, value in (("woehler", text), ("cycles-file", self.cycles_file)):
+            if value and self.cycles is None:
+                raise ValueError(f"--{name} = {value}: it is of counted cycles; give --cycles, too")
+        if self.equivalent_cycles is not None and not text:
+            number = f"{self.equivalent_cycles:g}"
+            raise ValueError(f"--equivalent-cycles = {number}: give --woehler, too, or leave it out")
+        with naming_option("exponent", "--woehler", self.woehler or ""):
+            for exponent in self.exponents:
+                positive("exponent", exponent)
+        positive("equivalent_cycles", self.number)
+
+    @property
+    def exponents(self) -> list[float]:
+        """The exponents of the Woehler curve; none if they are not given."""
+        if self.woehler is None:
+            return []
+        parts = [part.strip() for part in self.woehler.split(",")]
+        if not all(map(_NUMBER.fullmatch, parts)):
+            words = f'--woehler = "{self.woehler}"'
+            raise ValueError(f'{words}: give numbers, such as "3, 5, 10"')
+        return [float(part) for part in parts]
+
+    @property
+    def number(self) -> float:
+        """Number of equal cycles that do the same damage."""
+        return 1.0 if self.equivalent_cycles is None else self.equivalent_cycles
+
+    def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
+        """Counted cycles, and the equal cycles that do the same damage."""
+        from beamdyn.results.of_loads import cycles_table, equivalents_table
+
+        made: list[RenderableType] = [cycles_table(cycles)]
+        return [*made, equivalents_table(equivalents)] if equivalents else made
+
+    def write(self, cycles: LoadCycles) -> None:
+        """Write the file that was asked for, if any."""
+        from beamdyn.results.of_loads import cycles_csv
+
+        if self.cycles_file is None:
+            return
+        if self.cycles_file.suffix.lower() == ".json":
+            write_text(self.cycles_file, cycles.to_json())
+        else:
+            write_table(self.cycles_file, cycles_csv(cycles))
+
+
+NOT_COUNTED = CycleOptions()
+
+
+# Analyses --------------------------------------------------------------------------------------------
+
 
 LoadSpeeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given)]
 End = Annotated[float | None, positive("s", absent=none_given, field="t_end")]
@@ -92,15 +191,17 @@ def loads(
     tolerance
         The same; default: 1e-5.
     """
+    import numpy as np
+
     kinds = {"--speed": speed, "--t-end": t_end, "--speeds": speeds}
     _check_together([name for name, given in kinds.items() if given is not None], angle, window)
     counting.check(in_transient=t_end is not None)
-    _check_moving(t_end is not None or speeds is not None, modes=modes, tolerance=tolerance)
+    chosen = {name: each for name, each in (("modes", modes), ("tolerance", tolerance)) if each is not None}
+    for name, value in chosen.items() if t_end is None and speeds is None else ():
+        remedy = "give --t-end or --speeds, too, or leave it out"
+        raise ValueError(f"--{name} = {value}: the equilibrium does not depend on it; {remedy}")
     where = {"at": at, "points": points}
-    basis: dict[str, Any] = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5}
-    basis |= {
-        name: value for name, value in (("modes", modes), ("tolerance", tolerance)) if value is not None
-    }
+    basis = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5} | chosen
     span = None if window is None else parse_window(window, t_end)
     tables = None
     if t_end is not None:
@@ -112,7 +213,9 @@ def loads(
         result = bd.static_loads(scene, at_speed, angle=angle or 0.0, discretization=discretization, **where)
     ends = {} if span is None else dict(zip(("start", "end"), span, strict=True))
     draw = partial(result.plot, quantity=quantity or "moment", **ends)
-    return Answer(result, _refusal(result), None, tables, draw)
+    known = np.isfinite(result.moment).any()
+    none = "" if known else f"at none of {len(result.cases)} speeds is there a steady response"
+    return Answer(result, none, None, tables, draw)
 
 
 @analysis(
@@ -158,14 +261,6 @@ def random_loads(
     return Answer(result, draw=partial(result.plot, quantity=quantity or "strain"))
 
 
-def _check_moving(moving: bool, **given: object) -> None:
-    """Refuse options of a transient and of steady response in equilibrium."""
-    for name, value in given.items():
-        if value is not None and not moving:
-            remedy = "give --t-end or --speeds, too, or leave it out"
-            raise ValueError(f"--{name} = {value}: the equilibrium does not depend on it; {remedy}")
-
-
 def _check_together(kinds: list[str], angle: float | None, window: str | None) -> None:
     """Refuse options that belong to different analyses; `kinds` are those given that choose one."""
     if len(kinds) > 1:
@@ -202,12 +297,3 @@ def _in_transient(
     equivalents = cycles.equivalents(counting.exponents, counting.number, place.error)
     result = replace(result, equivalent_ranges=equivalents)
     return result, tables + counting.tables(cycles, equivalents)
-
-
-def _refusal(result: SpanLoads) -> str:
-    """Why there are no loads at any speed; empty where there are."""
-    import numpy as np
-
-    if np.isfinite(result.moment).any():
-        return ""
-    return f"at none of {len(result.cases)} speeds is there a steady response"

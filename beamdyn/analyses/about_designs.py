@@ -1,4 +1,4 @@
-"""Studies: an answer over all combinations of inputs, or its ranges over tolerances of them."""
+"""Sensitivities, and studies: an answer over all combinations of inputs, or its ranges over tolerances."""
 
 from __future__ import annotations
 
@@ -6,15 +6,18 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
-from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Text
+from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
 from beamdyn.analyses.values import (
     final_speed,
     in_unit_of,
     naming_option,
+    parse_positive,
     parse_speed,
     parse_window,
 )
@@ -25,7 +28,81 @@ if TYPE_CHECKING:
     from beamdyn.common.edge.inputs import Input
     from beamdyn.common.edge.varied_inputs import Axis
     from beamdyn.scene.scene import Scene
-    from beamdyn.studies.result import Study
+
+
+# Sensitivities ---------------------------------------------------------------------------------------
+
+
+Derived = Literal["frequencies", "critical_speed", "crossings"]
+_OPTIONS = {  # on which each answer depends
+    "frequencies": ("speed", "modes", "tolerance"),
+    "critical_speed": ("tolerance",),
+    "crossings": ("speed", "modes", "order"),
+}
+
+
+@analysis(
+    "beamdyn sensitivities examples/tyre_harvester.toml --inputs beam.thickness",
+    "beamdyn sensitivities examples/tyre_harvester.toml --what critical_speed",
+    moving=lambda options: options["what"] == "crossings",
+)
+def sensitivities(
+    scene: Scene,
+    *,
+    what: Derived = "frequencies",
+    speed: Text | None = None,
+    modes: Count | None = None,
+    order: Order | None = None,
+    inputs: Annotated[tuple[str, ...], Parameter(negative="", show_default=False)] = (),
+    discretization: Discretization = "ritz",
+    tolerance: float | None = None,
+) -> Answer:
+    """Derivatives of frequencies, of the critical speed or of resonance speeds by the numbers of the scene.
+
+    Parameters
+    ----------
+    what
+        frequencies; critical_speed, at which the beam buckles; or crossings, the speeds at which
+        modes meet lines of the excitation.
+    speed
+        Speed of frequencies with its unit, top speed of crossings; default: the final speed of the
+        scene's motion, or 0 without one.
+    modes
+        Number of modes of frequencies and crossings, from the lowest; default: 3.
+    order
+        Of crossings, as of resonances: 1, the default: resonances with the load; more: also
+        combination resonances by the periodic coefficients.
+    inputs
+        Numbers by their names in the file, such as beam.thickness, or speed, the option once for
+        each; all if not given.
+    tolerance
+        Largest relative error of a frequency or critical speed: the cheapest discretization that
+        meets it is chosen; 1e-11 if not given.
+    """
+    import numpy as np
+
+    from beamdyn.common.edge.wording import of_file
+    from beamdyn.common.inputs.checks import check_used
+
+    check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
+    named, count = inputs or None, 3 if modes is None else modes
+    with of_file({}):
+        if what == "frequencies":
+            at = final_speed(scene) if speed is None else parse_speed("--speed", speed, scene)
+            result = bd.frequency_sensitivities(scene, at, count, named, discretization, tolerance)
+        elif what == "critical_speed":
+            result = bd.critical_speed_sensitivities(scene, named, discretization, tolerance)
+        else:
+            top = final_speed(scene)
+            top = top if speed is None else parse_positive("--speed", speed, "rad/s", scene)
+            result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
+    each = zip(result.answers, np.isfinite(result.value), strict=True)
+    lost = " and ".join(name for name, known in each if not known)
+    return Answer(result, lost and f"{lost}: no such frequency, and no derivative of it")
+
+
+# Studies ---------------------------------------------------------------------------------------------
+
 
 _FACTOR = "factor of a property along the beam"
 Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"]
@@ -72,7 +149,8 @@ def study(
     spreading.check(varying)
     if not varying.vary and not spreading.spread:
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
-    scene = in_unit_of(scene, speed, *_speeds_of(varying))
+    varied = (text.partition("=") for text in varying.vary)
+    scene = in_unit_of(scene, speed, *(values for key, _, values in varied if key.strip() == "speed"))
     known = _inputs(scene)
     axes = [parse_axis(known, text, OPTION, MOST_DESIGNS) for text in varying.vary]
     check_designs(designs_of(axes, varying.combine), option=OPTION)
@@ -94,17 +172,24 @@ def study(
 
 def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
     """Answer all designs."""
+    import numpy as np
+
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
     from beamdyn.results.cautions import warnings_of
     from beamdyn.results.of_studies import study_table
+    from beamdyn.studies.answers import NO_ANSWERS
 
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress, of_file({}):
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
     warnings = warnings_of(result, how["tolerance"], word=partial(_as_given, axes))
-    return Answer(result, _refusal(result), warnings, [study_table(result, units)])
+    none = ""
+    if not result.answered.any():
+        states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
+        none = f"at none of {result.designs.count} designs is there an answer: {states}"
+    return Answer(result, none, warnings, [study_table(result, units)])
 
 
 def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
@@ -142,14 +227,6 @@ def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) 
     return final_speed(scene) if needed else None
 
 
-def _speeds_of(varying: VaryOptions) -> Iterator[str]:
-    """Yield the speeds that are varied, of which the unit is that of the answer."""
-    for text in varying.vary:
-        key, _, values = text.partition("=")
-        if key.strip() == "speed":
-            yield values
-
-
 def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
     """An input of a design as it was given: rounded, it would not be found again; None of other parts."""
     for axis in axes:
@@ -176,18 +253,6 @@ def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[N
         unit, si = _unit_of(axis)
         limit = None if error.limit is None else error.limit / si
         raise replace(error, value=error.value / si, limit=limit, unit=unit, cases=None) from None
-
-
-def _refusal(result: Study) -> str:
-    """Why no design has an answer; empty if one has."""
-    import numpy as np
-
-    from beamdyn.studies.answers import NO_ANSWERS
-
-    if result.answered.any():
-        return ""
-    states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
-    return f"at none of {result.designs.count} designs is there an answer: {states}"
 
 
 def _inputs(scene: Scene) -> list[Input]:

@@ -1,4 +1,4 @@
-"""Natural frequencies at one speed and over speed, and where the beam buckles."""
+"""Equilibria, natural frequencies at one speed and over speed, and where the beam buckles."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from beamdyn.analyses.options import (
     ModeCount,
     PositiveSpeed,
     Speeds,
+    Text,
 )
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
 from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
@@ -25,9 +26,57 @@ from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from beamdyn.modes.equilibria import Equilibrium, EquilibriumBranches
     from beamdyn.modes.locus import Locus
     from beamdyn.modes.modes import Modes
     from beamdyn.scene.scene import Scene
+
+
+# Equilibria ------------------------------------------------------------------------------------------
+
+
+_BENT = "The scene; large deflection is modelled in any case."
+
+
+@analysis(
+    'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"',
+    about_scene=_BENT,
+    physics=None,
+)
+def equilibrium(
+    scene: Scene, *, speed: AtSpeed, branch: Text | None = None, discretization: Discretization = "ritz"
+) -> Equilibrium:
+    """Where the rotation bends the beam to, by any angle, and whether it stays there.
+
+    Parameters
+    ----------
+    branch
+        straight: the equilibrium that follows from rest as the speed rises; bent: the stable one
+        beside it, at high speed. Default: that of the scene's physics.
+    """
+    return bd.equilibrium(scene, speed, branch, discretization)
+
+
+@analysis(
+    'beamdyn branches examples/rolling_harvester.toml --top-speed "250 rad/s"',
+    about_scene=_BENT,
+    physics=None,
+)
+def branches(
+    scene: Scene, *, top_speed: PositiveSpeed, discretization: Discretization = "ritz"
+) -> EquilibriumBranches:
+    """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
+
+    Parameters
+    ----------
+    top_speed
+        Speed up to which the branches are followed, with its unit, e.g. "250 rad/s".
+    """
+    return bd.equilibrium_branches(scene, top_speed, discretization)
+
+
+# Frequencies -----------------------------------------------------------------------------------------
+
 
 _GROWING = "divergence", "flutter"  # states of modes
 _PLAIN = "auto: the plain beam; the limits belong to linear theory, and nothing is added."
@@ -77,10 +126,14 @@ def locus(
         Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50,
         100 rad/s".
     """
+    import numpy as np
+
     from beamdyn.results.cautions import warnings_of
 
     result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
-    return Answer(result, _never(result), warnings_of(result, tolerance), draw=partial(_draw_locus, result))
+    unstable = np.isin(result.status, _GROWING).any(axis=1)
+    never = f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
+    return Answer(result, never, warnings_of(result, tolerance), draw=partial(_draw_locus, result))
 
 
 @analysis("beamdyn critical examples/tyre_harvester.toml")
@@ -136,14 +189,6 @@ def _write_shapes(result: Modes, path: Path, force: bool) -> None:
 
     x = np.linspace(0, result.scene.beam.length, 101)
     write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)
-
-
-def _never(result: Locus) -> str:
-    """That the beam is stable at none of the speeds; empty if it is at one."""
-    import numpy as np
-
-    unstable = np.isin(result.status, _GROWING).any(axis=1)
-    return f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
 
 
 def _unstable(result: Modes) -> str:

@@ -1,4 +1,4 @@
-"""The motion in time: one transient, and a sweep of them over speed."""
+"""Steady state, and motion in time: one transient, and a sweep of them over speed."""
 
 from __future__ import annotations
 
@@ -10,18 +10,89 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import WRITTEN, Answer, AsText, analysis
-from beamdyn.analyses.options import Discretization, EndOfRun, SmallestBasis, Speeds, Text, TimeTolerance
-from beamdyn.analyses.values import at_most, parse_window
+from beamdyn.analyses.options import (
+    Discretization,
+    EndOfRun,
+    ModeCount,
+    Order,
+    SmallestBasis,
+    Speeds,
+    Text,
+    TimeTolerance,
+)
+from beamdyn.analyses.values import at_most, parse_positive, parse_window
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.program import Interrupted
 from beamdyn.common.edge.varying import Folder
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from beamdyn.scene.scene import Scene
+    from beamdyn.steady.crossings import Crossings
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
+
+
+# Steady state ----------------------------------------------------------------------------------------
+
+
+TopOfSearch = Annotated[
+    float,
+    AsText(
+        lambda option, text, scene: parse_positive(option, text, "rad/s", scene),
+    ),
+]
+
+
+@analysis(
+    'beamdyn resonances examples/rolling_harvester.toml --top-speed "150 rad/s"',
+    about_scene="The scene; its motion and gravity give the frequencies that are excited.",
+)
+def resonances(
+    scene: Scene,
+    *,
+    top_speed: TopOfSearch,
+    modes: ModeCount = 3,
+    order: Order = 1,
+    discretization: Discretization = "ritz",
+) -> Crossings:
+    """Speeds of resonance, at which a frequency that the scene excites meets a natural frequency.
+
+    Parameters
+    ----------
+    top_speed
+        Largest speed to search, with its unit, e.g. "150 rad/s".
+    order
+        1: resonances with the load; more: also combination resonances by the periodic coefficients.
+    """
+    return bd.resonance_speeds(scene, top_speed, modes, order, discretization)
+
+
+@analysis('beamdyn steady examples/rolling_harvester.toml --speeds "1:150:30 rad/s"')
+def steady(
+    scene: Scene,
+    *,
+    speeds: Speeds,
+    modes: SmallestBasis = "auto",
+    tolerance: float = 1e-5,
+    discretization: Discretization = "ritz",
+) -> Answer:
+    """Steady response over speed, after the transient of the start has decayed.
+
+    Parameters
+    ----------
+    speeds
+        Speeds with their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55
+        rad/s".
+    tolerance
+        Largest error by the harmonics left out, relative to the sum of all lines.
+    """
+    result = bd.steady_response(scene, speeds, modes, tolerance=tolerance, discretization=discretization)
+    none = f"at none of {len(speeds)} speeds is there a steady response: {result.status[0]}"
+    return Answer(result, "" if result.stable.any() else none)
+
+
+# Motion in time --------------------------------------------------------------------------------------
+
 
 _PERIODS, _FRAMES = 3, 60  # of a close-up
 Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
@@ -113,30 +184,25 @@ def sweep(
 def _write_close_up(
     run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
+    """Write the motion over a few periods around the largest deflection in a window."""
+    import numpy as np
+
     from beamdyn.common.plots.export import animate, write_series
     from beamdyn.results.cautions import notes_of
+    from beamdyn.results.of_motion import time_of_peak
 
     if series is None and animation is None:
         return
-    x, t, deflection = _close_up(run, window)
-    if series is not None:
-        write_series(series, x, t, deflection, force=force)
-    if animation is not None:
-        animate(x, t, deflection, animation, force=force, notes=notes_of(run))
-
-
-def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Positions, times and deflections: a few periods around the largest deflection in a window."""
-    import numpy as np
-
-    from beamdyn.results.of_motion import time_of_peak
-
     middle, _ = time_of_peak(run, *window)
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0
     half = _PERIODS / 2 / float(bd.natural_modes(run.scene, speed, 1).frequency[0])
     t = np.linspace(max(middle - half, 0.0), min(middle + half, run.path.end), _FRAMES)
     x = np.linspace(0, run.scene.beam.length, 41)
-    return x, t, run.shape(x, t)
+    deflection = run.shape(x, t)
+    if series is not None:
+        write_series(series, x, t, deflection, force=force)
+    if animation is not None:
+        animate(x, t, deflection, animation, force=force, notes=notes_of(run))
 
 
 # Sweeps -------------------------------------------------------------------------------------------
@@ -177,12 +243,8 @@ def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], N
         with at_work("sweep") as show:
             yield progress
     except KeyboardInterrupt:
-        raise Interrupted(_how_to_resume(finished, cases, store)) from None
+        how = f"stored in {store}; the same command goes on from there"
+        lost = f"{finished} of {cases} speeds were done and are lost; --store DIR keeps what is done"
+        raise Interrupted(lost if store is None else f"{finished} of {cases} speeds are {how}") from None
     except SweepInterrupted as error:
         raise Interrupted(str(error)) from None
-
-
-def _how_to_resume(done: int, cases: int, store: Path | None) -> str:
-    if store is None:
-        return f"{done} of {cases} speeds were done and are lost; --store DIR keeps what is done"
-    return f"{done} of {cases} speeds are stored in {store}; the same command goes on from there"
