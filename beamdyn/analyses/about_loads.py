@@ -26,13 +26,7 @@ from beamdyn.analyses.options import (
     none_given,
     positive,
 )
-from beamdyn.analyses.values import (
-    final_speed,
-    naming_option,
-    parse_quantity,
-    parse_speeds,
-    parse_window,
-)
+from beamdyn.analyses.values import final_speed, naming_option, parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.outputs import write_table
 from beamdyn.common.results.files import write_text
 

@@ -39,9 +39,7 @@ _BENT = "The scene; large deflection is modelled in any case."
 
 
 @analysis(
-    'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"',
-    about_scene=_BENT,
-    physics=None,
+    'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"', about_scene=_BENT, physics=None
 )
 def equilibrium(
     scene: Scene, *, speed: AtSpeed, branch: Text | None = None, discretization: Discretization = "ritz"

@@ -36,10 +36,7 @@ if TYPE_CHECKING:
 
 
 TopOfSearch = Annotated[
-    float,
-    AsText(
-        lambda option, text, scene: parse_positive(option, text, "rad/s", scene),
-    ),
+    float, AsText(lambda option, text, scene: parse_positive(option, text, "rad/s", scene))
 ]
 
 

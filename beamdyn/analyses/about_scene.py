@@ -38,12 +38,7 @@ def terms(scene: Scene, *, outputs: AnswerFiles = NO_ANSWER_FILES) -> Terms:
     physics=None,
 )
 def tradeoff(
-    scene: Scene,
-    *,
-    speed: Text | None = None,
-    modes: Count = 3,
-    t_end: MeasuredEnd,
-    budget: Budget,
+    scene: Scene, *, speed: Text | None = None, modes: Count = 3, t_end: MeasuredEnd, budget: Budget
 ) -> Tradeoff:
     """Error against computing time of bases, elements, physics, integrators, numbers of modes and harmonics.
 

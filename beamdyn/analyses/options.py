@@ -85,7 +85,7 @@ Stations = Annotated[
     AsText(lambda option, text, _: parse_positions(option, text), absent=none_given, field="at"),
     Parameter(
         help='Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of '
-        "jumps.",
+        "jumps."
     ),
 ]
 SectionPoints = Annotated[
@@ -93,6 +93,6 @@ SectionPoints = Annotated[
     AsText(lambda option, text, _: parse_points(option, text), absent=none_given, field="points"),
     Parameter(
         help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, '
-        "in which the beam bends, and along the second. Default: the outermost.",
+        "in which the beam bends, and along the second. Default: the outermost."
     ),
 ]

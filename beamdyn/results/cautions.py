@@ -34,11 +34,6 @@ def warnings_of(
     return [as_in_files(worded(each, lambda part: word(part) or part.in_units(units))) for each in said]
 
 
-def _in_units_of(result: Any, sentence: str) -> str:
-    """A sentence with its speeds in the unit in which the result shows them."""
-    return said_in(result.display_units, sentence) if isinstance(result, Result) else sentence
-
-
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
     if isinstance(result, StatesModelError):
         yield from result.model_warnings(tolerance)
@@ -56,8 +51,8 @@ def notes_of(result: Any) -> list[str]:
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
     outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
-    each = [_in_units_of(result, said) for said in (*outside, *_of_model_error(result))]
-    return [said.partition(";")[0] for said in each]
+    units = result.display_units if isinstance(result, Result) else SI_UNITS
+    return [said_in(units, said).partition(";")[0] for said in (*outside, *_of_model_error(result))]
 
 
 def critical_label(point: CriticalPoint) -> str:

@@ -327,10 +327,7 @@ def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: A
 
 
 def plot_work_precision(
-    families: Mapping[str, np.ndarray],
-    front: np.ndarray,
-    title: str = "",
-    ax: Axes | None = None,
+    families: Mapping[str, np.ndarray], front: np.ndarray, title: str = "", ax: Axes | None = None
 ) -> Axes:
     """Draw error against time, one line a family, and the Pareto front as a broad band below them.
 
@@ -357,14 +354,7 @@ def plot_work_precision(
     ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
     for i, (name, points) in enumerate(families.items()):
         marker = _MARKERS[i % len(_MARKERS)]
-        ax.plot(
-            *_clip(points).T,
-            marker=marker,
-            markersize=4,
-            linewidth=1.2,
-            label=name,
-            **line_style(i),
-        )
+        ax.plot(*_clip(points).T, marker=marker, markersize=4, linewidth=1.2, label=name, **line_style(i))
     return add_legend(ax)
 
 

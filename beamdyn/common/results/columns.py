@@ -42,7 +42,8 @@ class Column:
         shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit("m")}.get(self.unit)
         if shown is None or (unit := shown()).per_si == 1.0:
             return self
-        return replace(self, values=[_scaled(each, unit.per_si) for each in self.cells()], unit=unit.name)
+        scaled = [each * unit.per_si if isinstance(each, float | int) else each for each in self.cells()]
+        return replace(self, values=scaled, unit=unit.name)
 
     def cells(self) -> list[Any]:
         """The values as Python's numbers and words."""
@@ -94,10 +95,6 @@ def name_in_heads(name: str, signs: str = ".") -> str:
     """A name as a part of a head: what is no letter, digit or one of the signs becomes "_"."""
     kept = (c if (c.isascii() and c.isalnum()) or c in signs else " " for c in name)
     return "_".join("".join(kept).split())
-
-
-def _scaled(cell: Any, factor: float) -> Any:
-    return cell * factor if isinstance(cell, float | int) else cell
 
 
 def in_display_units(rows: Iterable[Sequence[object]], units: DisplayUnits) -> Iterable[Sequence[object]]:

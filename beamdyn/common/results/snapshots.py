@@ -85,10 +85,7 @@ def encode(value: Any) -> Any:
     return {"left out": f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"}
 
 
-_PARTS: dict[type, Any] = {
-    complex: lambda z: (z.real, z.imag),
-    slice: lambda s: (s.start, s.stop, s.step),
-}
+_PARTS: dict[type, Any] = {complex: lambda z: (z.real, z.imag), slice: lambda s: (s.start, s.stop, s.step)}
 
 
 def decode(value: Any) -> Any:
