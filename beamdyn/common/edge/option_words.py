@@ -1,4 +1,4 @@
-"""Sentences of the core in the words of the command that was typed: options for names of arguments."""
+"""Messages in the words of the command that was typed: refusals of the core, and mistakes in typing it."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ import re
 from collections.abc import Sequence
 from contextvars import ContextVar
 from itertools import chain, pairwise
+from typing import Literal, get_args, get_origin
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
 
 from beamdyn.common.edge.file_words import as_in_files
+
+# Refusals by the core --------------------------------------------------------------------------------
+
 
 TYPED: ContextVar[tuple[App, Sequence[str]] | None] = ContextVar("typed", default=None)
 
@@ -88,3 +92,71 @@ def _options() -> set[str]:
         return {name for each in apps[-1].assemble_argument_collection() for name in each.names}
     except (CycloptsError, ValueError):
         return set()
+
+
+# Command lines that cannot be understood -------------------------------------------------------------
+
+
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # names under which options are looked for
+_KINDS = {"float": "is not a number", "int": "is not a whole number", "bool": "is no value of a switch"}
+_CONVERSION = re.compile(r'unable to convert "(.*)" into (\w+)')
+_QUOTED_OPTION = re.compile(r'"(--?[\w-]+)"')  # as the oldest version of cyclopts that we admit writes them
+
+
+def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
+    """Say in a sentence what cannot be understood, and where help is.
+
+    Parameters
+    ----------
+    app : App
+        The program.
+    error : CycloptsError
+        Why its command line cannot be understood.
+    given : sequence of str
+        The words after the program's name.
+    """
+    command = [word for word in given[:1] if word in set(app.resolved_commands())]
+    if "-" in given:
+        said = "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
+    elif isinstance(error, UnknownOptionError):
+        said = _with_meant_option(error, given)
+    elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
+        said = _say_too_many(error.unused_tokens, given)
+    elif isinstance(error, CoercionError):  # the oldest cyclopts that we admit omits what a switch is given
+        start = f"{error.token.keyword}=" if error.token else "="
+        joined = next((text.removeprefix(start) for text in given if text.startswith(start)), "")
+        said = _CONVERSION.sub(
+            lambda found: f'"{found[1] or joined}" {_KINDS.get(found[2], "is none")}', f"{error}"
+        )
+    else:
+        said = f"{error}"
+    said = _QUOTED_OPTION.sub(r"\1", said)
+    return f"{said} See {' '.join([app.name[0], *command])} --help."
+
+
+def check_names(given: Sequence[str]) -> None:
+    """Refuse an empty word in place of a file's name, which would be the current folder."""
+    if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
+        raise ValueError('one of the names is empty (""); give the name of a file')
+
+
+def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
+    """Say which words belong to no option, most often a unit that the shell has parted from its number."""
+    first = next((i for i, word in enumerate(given) if word == words[0]), 0)
+    option, value = given[first - 2 : first] if first > 1 else ("", "")
+    example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
+    said = " ".join(words)
+    return f"One word too many: {said}; leave it out, or put a value with spaces into quotes{example}."
+
+
+def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
+    """Say that an option is unknown, and which is meant: by a known other name, or by the value given."""
+    option = (error.token.keyword or error.token.value).partition("=")[0]
+    if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
+        return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
+    words = [word for text in given for word in text.split("=", 1)]
+    value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
+    for argument in error.argument_collection:
+        if get_origin(argument.hint) is Literal and value in get_args(argument.hint):
+            return f"Unknown option: {option}. Did you mean {argument.name}?"
+    return f"{error}"

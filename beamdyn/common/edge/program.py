@@ -13,9 +13,8 @@ from typing import Any, Literal
 
 from cyclopts import App, CycloptsError
 
-from beamdyn.common.edge.option_words import TYPED, as_given, as_typed
+from beamdyn.common.edge.option_words import TYPED, as_given, as_typed, check_names, say_mistake
 from beamdyn.common.edge.progress import at_work, quiet
-from beamdyn.common.edge.usage_words import check_names, say_mistake
 from beamdyn.common.results.announced import OutsideLinearTheory
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
