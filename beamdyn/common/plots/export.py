@@ -17,9 +17,6 @@ from beamdyn.common.results.pictures import save_animation
 
 if TYPE_CHECKING:
     import meshio
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
 
 SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
 SERIES_SUFFIXES = (".xdmf",)  # with the numbers as text, for which it does not
@@ -171,7 +168,13 @@ def animate(
 
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(Figure(figsize=(6.4, 3.6), layout="constrained"), notes)
-    line, title = _draw_axes(figure.subplots(), x, np.abs(deflection).max())
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # axes hold the whole motion
+    ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
+    ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
+    ax.grid(color="0.85", linewidth=0.7)
+    ax.axhline(0, color="0.4", linewidth=0.8)
+    (line,) = ax.plot(1e3 * x, 0 * x, color="#0072B2", linewidth=2.5)
+    title = ax.set_title("t = 0 s")
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, not for each frame
 
@@ -190,12 +193,17 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) ->
 
     if len(x) < 2:
         raise ValueError(f"x has {len(x)} position: a mesh needs at least two")
-    half = _half_width(x, width)
-    i = np.arange(len(x) - 1)
+    full = np.asarray(_DRAWN_RATIO * (x[-1] - x[0]) if width is None else width, dtype=float)
+    if full.shape not in ((), x.shape) or not (np.isfinite(full) & (full >= 0)).all():
+        raise ValueError(
+            f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
+        )
+    half, i = np.broadcast_to(full / 2, x.shape), np.arange(len(x) - 1)
+    edge = np.stack([x, half, np.zeros_like(x)], axis=1)
     if not half.any():
-        return meshio.Mesh(_points(x, half), [("line", np.stack([i, i + 1], axis=1))])
+        return meshio.Mesh(edge, [("line", np.stack([i, i + 1], axis=1))])
     j = i + len(x)
-    points = np.concatenate([_points(x, -half), _points(x, half)])
+    points = np.concatenate([edge * (1, -1, 1), edge])
     return meshio.Mesh(points, [("quad", np.stack([i, i + 1, j + 1, j], axis=1))])
 
 
@@ -210,30 +218,6 @@ def _check_history(
     if not np.isfinite(deflection).all():
         raise ValueError("deflection: every value must be finite")
     return x, t, deflection
-
-
-def _draw_axes(ax: Axes, x: np.ndarray, largest: float) -> tuple[Line2D, Text]:
-    """Draw the beam's line and a title on axes that hold the whole motion."""
-    reach = 1.1e3 * largest or 1.0
-    ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
-    ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
-    ax.grid(color="0.85", linewidth=0.7)
-    ax.axhline(0, color="0.4", linewidth=0.8)
-    (line,) = ax.plot(1e3 * x, 0 * x, color="#0072B2", linewidth=2.5)
-    return line, ax.set_title("t = 0 s")
-
-
-def _half_width(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> np.ndarray:
-    full = np.asarray(_DRAWN_RATIO * (x[-1] - x[0]) if width is None else width, dtype=float)
-    if full.shape not in ((), x.shape) or not (np.isfinite(full) & (full >= 0)).all():
-        raise ValueError(
-            f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
-        )
-    return np.broadcast_to(full / 2, x.shape)
-
-
-def _points(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return np.stack([x, y, np.zeros_like(x)], axis=1)
 
 
 def _check_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.ndarray:
