@@ -139,7 +139,17 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
     fit : Fit, optional
         Transformation to paper; chosen by what is drawn if not given.
     """
-    chosen, places = min(_tries(drawing, _inner(drawing, frame), fit), key=lambda found: _trouble(found[1]))
+    inner, tries = _inner(drawing, frame), []
+    low, high = drawing.extent()
+    for margin in _MARGINS[1:] if drawing.points else _MARGINS:  # points need room to be moved outwards
+        found = fit or Fit.of(low, high, inner, margin)
+        requests = [_request(label, found) for label in drawing.labels]
+        places = place_labels(requests, _obstacles(drawing, inner, found))
+        far = [1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places]
+        tries.append((sum(far), found, places))
+        if fit is not None or sum(far) == 0:  # else a larger margin, until no label is far from its point
+            break
+    _, chosen, places = min(tries, key=lambda each: each[0])
     return _composed(drawing, frame, chosen, places, fit)
 
 
@@ -180,24 +190,6 @@ def _composed(
         above.append(Text(at, (width, height), (line,), "", "text", letters))
     shown = (*above, *texts, *key_texts), (*rules, *key_rules)
     return Layout(drawing, frame, fit, *shown, numbered, tuple(places))
-
-
-def _tries(drawing: Drawing, inner: Frame, fit: Fit | None) -> Iterator[tuple[Fit, list[Place | None]]]:
-    """Yield fits and places of the labels, with growing margins until no label is far from its point."""
-    low, high = drawing.extent()
-    for margin in _MARGINS[1:] if drawing.points else _MARGINS:  # points need room to be moved outwards
-        found = fit or Fit.of(low, high, inner, margin)
-        places = place_labels(
-            [_request(label, found) for label in drawing.labels], _obstacles(drawing, inner, found)
-        )
-        yield found, places
-        if fit is not None or _trouble(places) == 0:
-            return
-
-
-def _trouble(places: Sequence[Place | None]) -> float:
-    """Penalty of labels that are far from their points, or have no place."""
-    return sum(1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places)
 
 
 def _request(label: Label, fit: Fit) -> LabelRequest:
@@ -284,18 +276,13 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
         bottom = inner[3] - LINE_HEIGHT * _SMALL * len(lines)
         inside = (*inner[:3], bottom)
         fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
-        places = place_labels(_numbered_requests(drawing, listed, fit), _obstacles(drawing, inside, fit))
+        requests = [_request(label, fit) for label in drawing.labels]
+        for number, i in enumerate(listed, 1):  # a number in brackets takes the place of each that is listed
+            width, height = text_size(f"({number})", _SMALL)
+            requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
+        places = place_labels(requests, _obstacles(drawing, inside, fit))
         more = [i for i, place in enumerate(places) if place is None and i not in listed]
     return _Listed(listed, bottom, fit, places)
-
-
-def _numbered_requests(drawing: Drawing, listed: Sequence[int], fit: Fit) -> list[LabelRequest]:
-    """Requests of all labels; a number in brackets takes the place of each that is listed."""
-    requests = [_request(label, fit) for label in drawing.labels]
-    for number, i in enumerate(listed, 1):
-        width, height = text_size(f"({number})", _SMALL)
-        requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
-    return requests
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:

@@ -151,10 +151,18 @@ def _marks(ax: Axes) -> Iterator[Artist]:
 
 
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
-    """Put a label before the names of what was drawn last, in colours that were not there before."""
+    """Put a label before the names of what was drawn last, in colours that were not there before.
+
+    Each of our own colours becomes one behind those taken, or a free one if these do not do.
+    """
     new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
     taken, own = _colours(before), _colours(new)
-    moves = _free_places(taken, own) if taken & own else {}
+    moves: dict[int, int] = {}
+    if taken & own:
+        moves = {place: place + len(taken) for place in own}
+        free = [place for place in range(len(COLOURS) - 1) if place not in taken]
+        if max(moves.values()) >= len(COLOURS) and len(free) >= len(own):
+            moves = dict(zip(sorted(own), free, strict=False))
     for mark in new:
         _recolour(mark, moves)
     names = [mark for mark in new if _name(mark)]
@@ -162,15 +170,6 @@ def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
         mark.set_label(f"{text}, {_name(mark)}" if _name(mark) else text)
     if new:
         add_legend(ax)
-
-
-def _free_places(taken: set[int], own: set[int]) -> dict[int, int]:
-    """What each of our own colours becomes: one behind those taken, or a free one if these do not do."""
-    behind = {place: place + len(taken) for place in own}
-    free = [place for place in range(len(COLOURS) - 1) if place not in taken]
-    if max(behind.values()) < len(COLOURS) or len(free) < len(own):
-        return behind
-    return dict(zip(sorted(own), free, strict=False))
 
 
 def _name(mark: Artist) -> str:
