@@ -195,7 +195,7 @@ def loads(
         remedy = "give --t-end or --speeds, too, or leave it out"
         raise ValueError(f"--{name} = {value}: the equilibrium does not depend on it; {remedy}")
     where = {"at": at, "points": points}
-    basis = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5} | chosen
+    basis: dict[str, Any] = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5} | chosen
     span = None if window is None else parse_window(window, t_end)
     tables = None
     if t_end is not None:

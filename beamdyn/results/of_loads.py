@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Group
@@ -100,7 +100,7 @@ def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
     return [supported(float(v), float(e), _MOST_DIGITS) for v, e in zip(values, errors, strict=True)]
 
 
-def _largest_lines(result: SpanLoads, **window: float) -> list[Text]:
+def _largest_lines(result: SpanLoads, **window: Any) -> list[Text]:
     """A sentence on the largest of each quantity that has values."""
     return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
 

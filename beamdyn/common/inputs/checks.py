@@ -160,7 +160,9 @@ def refuse(
     if not bad.any():
         return
     more = f" (and {int(bad.sum()) - 1} more of {bad.size} cases)" if bad.sum() > 1 else ""
-    values, limits = (x if x is None else np.broadcast_to(x, bad.shape) for x in (value, limit))
+    values, limits = np.broadcast_to(value, bad.shape), None
+    if limit is not None:
+        limits = np.broadcast_to(limit, bad.shape)
     past = None if limits is None else float(limits[bad][0])
     cases = RefusedCases(bad, values, limits) if bad.ndim == 1 else None
     raise InvalidValue(name, float(values[bad][0]), bound, remedy, unit, past, other, more, cases)
