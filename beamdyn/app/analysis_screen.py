@@ -14,10 +14,10 @@ from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.app.inputs import ASIDE, read_aside, read_scene
 from beamdyn.app.scene_screen import drawn, scene_screen
 from beamdyn.common.edge.inputs import Section, parts_of
+from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.result import Result
-from beamdyn.common.screens.folded_parts import FoldedPicture
-from beamdyn.common.screens.screens import Screen
+from beamdyn.common.screens.screens import FoldedPart, Screen
 from beamdyn.results.cautions import warnings_of
 
 _KINDS = (str, int, float)  # of options on a form
@@ -41,8 +41,14 @@ def analysis_screen(analysis: Analysis) -> Screen:
     def result(answer: Answer) -> Result:
         return answer.result
 
-    more = (FoldedPicture("Picture", lambda answer: drawn(answer.result)),)
-    return scene_screen(analysis.screen, analysis.question, solve, (table,), result, notes=notes, more=more)
+    more = FoldedPart(
+        "Picture",
+        lambda answer: picture(drawing(lambda: drawn(answer.result)), "Picture"),
+        lambda _: "<p>It is the drawing above.</p>",
+    )
+    return scene_screen(
+        analysis.screen, analysis.question, solve, (table,), result, notes=notes, more=(more,)
+    )
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:

@@ -22,7 +22,6 @@ from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
-from beamdyn.common.screens.courses import Onward
 from beamdyn.common.screens.screens import KeyResult, Slider
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.results.cautions import describe_choice
@@ -243,7 +242,7 @@ TRANSIENT = scene_screen(
     ("run",),
     result=lambda answer: answer.run,
     tables=tables,
-    slider=Slider("time", ("start", "end"), 0.001, 20.0, Onward),
+    slider=Slider("time", ("start", "end"), 0.001, 20.0, onward=True),
     drawings=drawings,
     charts=charts,
     headline=headline,

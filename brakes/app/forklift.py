@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from rich.console import RenderableType
-
+from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import table
-from beamdyn.common.screens.folded_parts import FoldedTable
+from beamdyn.common.screens.screens import FoldedPart
 from brakes.answers import forklift
 from brakes.answers.forklift import ForkliftAnswer, stage_outputs
 from brakes.answers.tables import list_outputs
@@ -13,14 +12,14 @@ from brakes.app.screens import make_document, make_screen
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 
-def table_as_printed(answer: ForkliftAnswer) -> RenderableType:
-    """Results beside those that follow from the paper's stop."""
+def _as_printed(answer: ForkliftAnswer) -> str:
+    """Results beside those that follow from the paper's stop, in HTML."""
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
-    return table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))
+    return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])
 
 
-_PAPER = FoldedTable("As the paper prints", table_as_printed)
+_PAPER = FoldedPart("As the paper prints", _as_printed, _as_printed)
 VEHICLE = make_screen(forklift.TYPES["vehicle"], _PAPER)
 KINEMATICS = make_screen(forklift.TYPES["kinematics"])
 FORCES = make_screen(forklift.TYPES["forces"], _PAPER)

@@ -12,9 +12,9 @@ from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.rendering import csv_text, html, png, svg
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.screens.document_report import drawn, report_of
 from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, tables_of, toml_of
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.tasks import drawn, report_of
 from brakes.app.bases import base
 from brakes.app.caliper import CALIPER
 from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE

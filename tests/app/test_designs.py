@@ -17,22 +17,19 @@ from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.browser_memory import named_designs, read_typed, refused_name
+from beamdyn.common.screens.browser_memory import LinkedDesign, named_designs, read_typed, refused_name
 from beamdyn.common.screens.comparison import (
     Difference,
-    OtherDesign,
     differences_html,
     headline_html,
     input_differences,
     result_differences,
     with_ghost,
 )
-from beamdyn.common.screens.comparison_panel import headline_of
-from beamdyn.common.screens.design_link import LinkedDesign
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.handles import draw_sheet
-from beamdyn.common.screens.history import History
-from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.open_document import History, OpenDocument, OtherDesign
+from beamdyn.common.screens.panels import headline_of
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]
@@ -309,7 +306,7 @@ def test_the_page_shows_the_headline_that_comes_with_the_answer():
 
     work = OpenDocument(SCENE)
     (screen,) = (screen for screen in SCENE.screens if screen.name == "Mode shapes")
-    held, full = (task(SCENE, screen, work.entries) for task in (tasks.glance, tasks.solve))
+    held, full = (task(SCENE, screen, work.entries) for task in (tasks.solve_for_drawing, tasks.solve))
     shown = replace(screen, headline=fail, quick_headline=fail)
     assert "model error at most" in headline_of(work, shown, full)
     assert "first frequency" in (quick := headline_of(work, shown, held)) and "model error" not in quick

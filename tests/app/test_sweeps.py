@@ -19,8 +19,7 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screens import Program
-from beamdyn.common.screens.sweep_charts import sweep_charts
-from beamdyn.common.screens.sweep_panel import around
+from beamdyn.common.screens.sweep_panel import around, sweep_charts
 from brakes.app.caliper import CALIPER, MECHANISM
 from brakes.app.program import BRAKES
 from brakes.cli import main

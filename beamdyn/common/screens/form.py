@@ -10,8 +10,17 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens.drag_slider import DragSlider
-from beamdyn.common.screens.form_entries import has_rows, in_unit, units_of
+from beamdyn.common.screens.controls import DragSlider
+from beamdyn.common.screens.form_entries import (
+    Reading,
+    has_rows,
+    in_unit,
+    is_bare,
+    read_entry,
+    unit_of,
+    units_of,
+    usual_unit,
+)
 from beamdyn.common.screens.input_words import (
     NOT_GIVEN,
     default_words,
@@ -24,7 +33,6 @@ from beamdyn.common.screens.input_words import (
     table_of,
 )
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.reading import Reading, is_bare, read_entry, unit_of, usual_unit
 from beamdyn.common.screens.screens import Drag
 
 
@@ -72,7 +80,6 @@ class Form:
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
         self._units: dict[str, str] = {}  # units of bare numbers, by path
-        self._headings = headings
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # of the fields
         self._changed = changed
@@ -80,19 +87,16 @@ class Form:
         self._drags = {drag.path: drag for drag in drags}
         for section in sections:
             chosen = [entry for entry in inputs if table_of(entry.path) == section]
-            if chosen:
-                self._section(section, chosen, entries)
-
-    def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
-        given = any(entries.get(entry.path, "") for entry in inputs)
-        usual = all(default_words(entry) != NOT_GIVEN for entry in inputs)
-        heading = heading_of(section, self._headings)
-        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
-        with table.props("dense"):
-            for entry in inputs:
-                with ui.element("div") as self._places[entry.path]:
-                    self._field(entry, entries.get(entry.path, ""))
-        self._tables[section] = table
+            if not chosen:
+                continue
+            given = any(entries.get(entry.path, "") for entry in chosen)
+            usual = all(default_words(entry) != NOT_GIVEN for entry in chosen)
+            table = ui.expansion(heading_of(section, headings), value=given or usual or not section)
+            with table.classes("w-full section").props("dense"):
+                for entry in chosen:
+                    with ui.element("div") as self._places[entry.path]:
+                        self._field(entry, entries.get(entry.path, ""))
+            self._tables[section] = table
 
     def _field(self, entry: Input, text: str) -> None:
         made = self._select(entry, text) if options_of(entry) else self._input(entry, text)
@@ -104,8 +108,8 @@ class Form:
         if entry.quantity.symbol:
             made.add_slot("label", label_html(entry))
         self.fields[entry.path] = made
-        if (drag := self._drags.get(entry.path)) is not None:
-            self._slider(drag, entry, made)
+        if entry.path in self._drags:
+            self._slider(self._drags[entry.path], entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
         """A slider that writes into a field and follows what is written there, limited to its range."""
@@ -122,53 +126,46 @@ class Form:
             if at is not None and at != place():  # else it has followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
+        def hold(held: bool) -> None:
+            if held != self._held:
+                self._held = held
+                self._hold(held)
+
         def follow(at: float, done: bool) -> None:
             if not done:
-                self._be_held(True)
+                hold(True)
             with self._writer.writing(field, made):
                 write(at)
             if done:
-                self._be_held(False)
+                hold(False)
 
-        start = place()
-        made = DragSlider(
-            follow, min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
-            on_change=lambda e: write(e.value),
-        )  # fmt: skip
+        start, ends = place(), {"min": drag.low, "max": drag.high}
+        at = drag.low if start is None else start
+        made = DragSlider(follow, **ends, step=drag.step, value=at, on_change=lambda e: write(e.value))
         unit = f" [{drag.unit}]" if drag.unit else ""
         made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
-
-    def _be_held(self, held: bool) -> None:
-        if held != self._held:
-            self._held = held
-            self._hold(held)
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in options_of(entry)}
         if not entry.required:
             default = default_words(entry)
             options = {"": default if default == NOT_GIVEN else f"{NOT_GIVEN}: {default}", **options}
-        value = text if text in options else None
-        return ui.select(
-            options,
-            value=value,
-            label=label(entry),
-            on_change=lambda e: self._changed(entry.path, e.value or ""),
-        )
+        made = ui.select(options, value=text if text in options else None, label=label(entry))
+        return made.on_value_change(lambda e: self._changed(entry.path, e.value or ""))
 
     def _input(self, entry: Input, text: str) -> Any:
-        made = _lines if has_rows(entry) else ui.input
-        field = made(
+        usual, several = default_words(entry), has_rows(entry)
+        field: Any = (ui.textarea if several else ui.input)(
             label(entry),
             value=text,
-            placeholder="" if entry.required else default_words(entry),
+            placeholder="" if entry.required else usual,
             on_change=lambda e: self._heard(entry, e.value or ""),
-        ).props("debounce=100 autocomplete=off spellcheck=false")
-        field.on("blur", lambda: self._tidy(entry))
-        self._units[entry.path] = (
-            unit_of(text, entry) or unit_of(default_words(entry), entry) or usual_unit(entry)
         )
+        field.props("debounce=100 autocomplete=off spellcheck=false" + " autogrow" * several)
+        field.on("blur", lambda: self._tidy(entry))
+        given = unit_of(text, entry) or unit_of(usual, entry)
+        self._units[entry.path] = given or usual_unit(entry.quantity.unit)
         units = units_of(entry)
         if len(units) > 1:
             with field.add_slot("append"):
@@ -178,20 +175,16 @@ class Form:
     def _heard(self, entry: Input, typed: str) -> None:
         """Read a text that was typed or written into a field, and show how it was read."""
         self.typed[entry.path] = typed
-        read = self._read(entry.path)
+        read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = unit_of(read.text, entry) or self._units[entry.path]
-        self._remark(entry, read)
+        field.props["hint"] = read.remark or help_of(entry)
+        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> Reading:
         """The text of a field, as it is read."""
         typed = self.fields[path].value or ""
         return read_entry(typed, self._inputs[path], self._units.get(path, ""))
-
-    def _remark(self, entry: Input, read: Reading) -> None:
-        field = self.fields[entry.path]
-        field.props["hint"] = read.remark or help_of(entry)
-        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
 
     def _tidy(self, entry: Input) -> None:
         """Replace a field's text by what was read from it, when the field is left."""
@@ -214,10 +207,6 @@ class Form:
 
         button = ui.button(icon="straighten", on_click=choose)
         button.props(f'flat dense round size=sm aria-label="unit of {name_words(entry)}"')
-
-    def shows(self, entries: Mapping[str, str]) -> bool:
-        """Whether these entries stand in the fields."""
-        return all(self._read(path).text == entries.get(path, "") for path in self.fields)
 
     def put(self, entries: Mapping[str, str]) -> None:
         """Show these entries; fields that show theirs already are left alone."""
@@ -247,8 +236,3 @@ class Form:
             field.error = " ".join(said) if said else None
             if said:
                 self._tables[table_of(path)].open()
-
-
-def _lines(*given: Any, **more: Any) -> Any:
-    """A text field that grows with its lines."""
-    return ui.textarea(*given, **more).props("autogrow")

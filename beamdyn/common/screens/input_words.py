@@ -33,12 +33,6 @@ def help_of(entry: Input) -> str:
     return entry.help if entry.required else f"{entry.help}; not required"
 
 
-def given_or_default(entry: Input, text: str) -> str:
-    """The text given for an input, or else its default in brackets."""
-    default = default_words(entry)
-    return text.strip() or (default if default == NOT_GIVEN else f"({default})")
-
-
 def name_words(entry: Input) -> str:
     """Name of an input in words, with the names of tables nested in its table before it."""
     return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
@@ -81,15 +75,13 @@ def default_words(entry: Input) -> str:
     value, unit = entry.default, entry.quantity.unit
     if value == math.inf and entry.quantity.infinite:
         return entry.quantity.infinite
+
+    def in_words(number: float) -> str:
+        short = unit == "m" and abs(number) < 1
+        return f"{1e3 * number:.6g} mm" if short else f"{number:.6g} {unit}".rstrip()
+
     if isinstance(value, tuple):
-        return toml_value([_said(number, unit) for number in value])
+        return toml_value([in_words(number) for number in value])
     if isinstance(value, bool) or not isinstance(value, int | float):
         return show(value).strip('"')
-    return _said(value, unit)
-
-
-def _said(number: float, unit: str) -> str:
-    """A number with its unit; short lengths in millimetres."""
-    if unit == "m" and abs(number) < 1:
-        number, unit = 1e3 * number, "mm"
-    return f"{number:.6g} {unit}".rstrip()
+    return in_words(value)

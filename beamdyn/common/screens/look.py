@@ -5,11 +5,10 @@ from __future__ import annotations
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.edge.rendering import STYLE as TABLES
 from beamdyn.common.screens.chart_board import STYLE as CHARTS
+from beamdyn.common.screens.controls import STYLE as PLAYER
 from beamdyn.common.screens.draggable_drawing import STYLE as BOARD
-from beamdyn.common.screens.folded_panel import STYLE as FOLDED
 from beamdyn.common.screens.list_editor import STYLE as LISTS
-from beamdyn.common.screens.player import STYLE as PLAYER
-from beamdyn.common.screens.sketch_panel import STYLE as SKETCH
+from beamdyn.common.screens.panels import STYLE as PANELS
 
 BLUE, RED = "#0072B2", "#8c1c00"
 _BAR = "#005a8c"
@@ -161,6 +160,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    _BASE + TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH + FOLDED
+    _BASE + TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + PANELS
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)
