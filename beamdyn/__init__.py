@@ -9,6 +9,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from beamdyn._version import __version__ as __version__
+from beamdyn.common.results.shown_by import MEDIA, SHOWN_BY
+
+MEDIA.append("beamdyn.common.edge.views")
+SHOWN_BY.update(
+    (f"beamdyn.{room}", f"beamdyn.{module}")
+    for module, rooms in {
+        "common.edge.spread_tables": ("common",),
+        "files.decks.deck_tables": ("files",),
+        "results.of_linear_models": ("linear",),
+        "results.of_loads": ("loads",),
+        "results.of_modes": ("equations", "modes", "scene"),
+        "results.of_motion": ("steady", "transient"),
+        "results.of_studies": ("studies",),
+    }.items()
+    for room in rooms
+)
 
 # The public names by their module.
 _NAMES = {
@@ -28,7 +44,7 @@ _NAMES = {
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
-    "equations.left_out": ("OmittedEffect",),
+    "equations.effects": ("OmittedEffect",),
     "equations.terms": ("Terms", "terms"),
     "scene.beam": ("Beam",),
     "scene.points": ("PointMass", "PointSpring", "TipMass"),
@@ -123,8 +139,8 @@ if TYPE_CHECKING:
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
     from beamdyn.equations.discretization import Discretization
+    from beamdyn.equations.effects import OmittedEffect
     from beamdyn.equations.fem import Fem
-    from beamdyn.equations.left_out import OmittedEffect
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
     from beamdyn.files.decks.audit import DeckAudit, PropertyStep, ShapeCheck

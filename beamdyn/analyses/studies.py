@@ -98,7 +98,7 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
     from beamdyn.results.cautions import warnings_of
-    from beamdyn.results.tables.studies import study_table
+    from beamdyn.results.of_studies import study_table
 
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress, of_file({}):

@@ -23,7 +23,7 @@ from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
-from beamdyn.modes.model_error.choice import plain_physics
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene

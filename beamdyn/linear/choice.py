@@ -10,9 +10,14 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, count, real
 from beamdyn.linear.excitations import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.modes.modal.choice import DiscretizationChoice, check_discretization, choose_model, most_modes
+from beamdyn.modes.modal.discretization_choice import (
+    DiscretizationChoice,
+    check_discretization,
+    choose_model,
+    most_modes,
+)
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.choice import choose_physics
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 

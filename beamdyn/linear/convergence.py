@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import InvalidValue, count, within
 from beamdyn.common.results.statements import Speeds, Words
 from beamdyn.linear.choice import model_at_speed, model_of_few_modes
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
 Evaluation = Callable[[ModelAtSpeed], np.ndarray]

@@ -22,7 +22,7 @@ from beamdyn.linear.excitations import BaseMotion, Excitation, PointForce, as_ex
 from beamdyn.linear.free_motion import free_motion
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.pole_errors import pole_errors
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene

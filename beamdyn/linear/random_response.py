@@ -26,7 +26,7 @@ from beamdyn.linear.parametric import ParametricTerm, parametric_term
 from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
 from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
 from beamdyn.linear.transfer import check_stable
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out

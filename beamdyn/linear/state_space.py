@@ -15,7 +15,7 @@ from beamdyn.linear.matrices import list_inputs, listed, steady_drive, warn_of_m
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.observations import Observation, StrainAtRoot, as_observation
 from beamdyn.linear.pole_errors import pole_errors
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -40,7 +40,7 @@ from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.scene import Scene

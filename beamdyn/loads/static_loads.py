@@ -18,11 +18,11 @@ from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
 from beamdyn.loads.stations import Positions, SpanStations, stations_at
-from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import static_load
-from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamdyn.common.results.statements import GROWING, NO_ANSWER, TOLERANCE, Statement, after
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modes.modal.choice import warn_of_missed_tolerance
+from beamdyn.modes.modal.discretization_choice import warn_of_missed_tolerance
 from beamdyn.modes.modal.many_designs import PencilStack, solve_many
 from beamdyn.scene.validity import (
     LARGE_DEFLECTION,

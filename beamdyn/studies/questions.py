@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.crossings import PossibleCrossing
 from beamdyn.studies.refinement import Refinement

@@ -10,7 +10,12 @@ import numpy as np
 from beamdyn.accuracy.refinement import refine
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.modal.choice import DEFAULT_TARGET, DiscretizationChoice, list_models, within_reach
+from beamdyn.modes.modal.discretization_choice import (
+    DEFAULT_TARGET,
+    DiscretizationChoice,
+    list_models,
+    within_reach,
+)
 from beamdyn.scene.scene import Scene
 
 _WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers

@@ -26,8 +26,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.mass import axial_tension
 from beamdyn.modes.modal.error_estimate import parts_of_distances
 from beamdyn.modes.modal.many_designs import Estimate, PencilStack
 from beamdyn.modes.modal.model import Model

@@ -31,7 +31,7 @@ from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
-from beamdyn.modes.modal.choice import TOLERANCES, DiscretizationChoice, check_discretization
+from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, check_discretization
 from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out

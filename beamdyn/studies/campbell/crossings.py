@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.modes.locus import Locus
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
-from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.modes.modal.model import plane_share
 from beamdyn.scene.motion import Line
 
 

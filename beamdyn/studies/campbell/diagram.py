@@ -19,7 +19,7 @@ from beamdyn.common.results.statements import after
 from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.modes.locus import Locus, frequency_locus
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line

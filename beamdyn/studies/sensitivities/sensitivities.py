@@ -17,7 +17,7 @@ from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.result import Provenance
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.critical import critical_point
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.scene import Scene

@@ -28,7 +28,7 @@ from beamdyn.common.spreading.tolerances import (
     check_holds,
     parse_tolerance,
 )
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, with_numbers
 from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene

@@ -17,7 +17,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends
-from beamdyn.modes.model_error.effects import list_effects
+from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.frequencies import sizes_of_eigenvalues, solve_reference
 from beamdyn.studies.tradeoffs.measurements import Diagram, Measurement, number_of

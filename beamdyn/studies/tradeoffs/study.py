@@ -17,8 +17,8 @@ from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import OUTSIDE, of_kind
-from beamdyn.modes.modal.choice import choose_model
-from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.modal.discretization_choice import choose_model
+from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds

@@ -20,14 +20,13 @@ from beamdyn.accuracy.margins import EFFECTS
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
-from beamdyn.modes.modal.choice import TOLERANCES, solve_to_tolerance
+from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends
-from beamdyn.modes.model_error.effects import list_effects
-from beamdyn.modes.model_error.large_deflection import EXCLUDED
+from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.of_modes import left_out_of_modes, vibrate, without_large_deflection
+from beamdyn.modes.model_error.of_modes import EXCLUDED, left_out_of_modes, vibrate, without_large_deflection
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
 from beamdyn.scene.scene import Scene
@@ -43,7 +42,7 @@ _NOTHING = "no mode vibrates and is stable"
 
 
 @dataclass(frozen=True)
-class Judged:
+class EffectSizes:
     """Sizes of the effects that a scene leaves out, for one answer.
 
     Parameters
@@ -59,7 +58,7 @@ class Judged:
     reasons: dict[str, str]
 
 
-Judge = Callable[[Scene], Judged]
+Judge = Callable[[Scene], EffectSizes]
 Solve = Callable[[Scene], int]  # solves the answer, and counts its coordinates
 
 
@@ -102,7 +101,7 @@ def choose_physics(
         target = min(max(_SOLVED * tolerance, TOLERANCES[0]), TOLERANCES[1])
         return solve_to_tolerance(candidate, "ritz", some, modes, target)
 
-    def judge(candidate: Scene) -> Judged:
+    def judge(candidate: Scene) -> EffectSizes:
         found = solve(candidate)
         s = found.eigen.eigenvalue[:, :modes]
         effects = left_out_of_modes(found.model, some, s)
@@ -136,7 +135,7 @@ def plain_physics(scene: Scene) -> Scene:
     return replace(scene, physics=Physics()) if scene.chooses_physics else scene
 
 
-def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> Judged:
+def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
     """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
 
     An effect that turns modes into others can be added: that its size is not known is no reason against it.
@@ -152,7 +151,7 @@ def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: 
         addable.add(_BENDING)
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
-    return Judged(sizes, nothing | assumed | refused)
+    return EffectSizes(sizes, nothing | assumed | refused)
 
 
 def _size(change: np.ndarray, counts: np.ndarray) -> float:
@@ -275,7 +274,7 @@ class _Candidate:
         left_out = {o: self._judged_again(o, judged) for o in self.left_out if o not in included}
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
 
-    def _judged_again(self, name: str, judged: Judged) -> float:
+    def _judged_again(self, name: str, judged: EffectSizes) -> float:
         """Size of an effect, as before where it is not known any more."""
         size = judged.sizes.get(name, math.nan)
         rough = name == _BENDING and name in judged.reasons

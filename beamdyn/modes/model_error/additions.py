@@ -7,8 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.effects import LARGE_DEFLECTION, SECOND_PLANE, SHEAR, TWIST, Effect, add_effects
-from beamdyn.equations.left_out import effects_left_out
+from beamdyn.equations.effects import (
+    LARGE_DEFLECTION,
+    SECOND_PLANE,
+    SHEAR,
+    TWIST,
+    Effect,
+    add_effects,
+    effects_left_out,
+)
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene

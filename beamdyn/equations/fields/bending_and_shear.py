@@ -1,4 +1,8 @@
-"""Bending: the transverse deflection of the beam with its sections normal to the axis, under tension."""
+"""Bending, with its sections normal to the axis, and shear (Timoshenko), each in two directions.
+
+The deflection is u = u_b + u_s, with the sections' rotation u_b'.  Shear is thus a field that vanishes at
+the root like the stretch; there is no locking, and the slender beam is the exact limit.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn.equations import explanations as why
-from beamdyn.equations.discretization import CLAMPED, HINGED, RootConditions
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Term
 from beamdyn.equations.fields.transverse import Pair, TransverseField, term_of
@@ -71,3 +75,46 @@ class SecondBending(Bending):
     def is_modelled(self, scene: Scene) -> bool:
         """Whether both planes of bending are modelled."""
         return scene.physics.planes == 2
+
+
+class Shear(TransverseField):
+    """Shear deflection in the direction of the bending angle."""
+
+    name = "shear"
+    direction = 0
+    rotates = False
+    partners = (*SecondBending.partners, SecondBending())
+    explanations: ClassVar[Mapping[str, Explanation]] = {
+        **TransverseField.explanations,
+        "shear stiffness": Explanation("KQ q2", "shear is modelled"),
+    }
+
+    def is_modelled(self, scene: Scene) -> bool:
+        """Whether `physics.shear` is set."""
+        return scene.physics.shear
+
+    def complete(self, scene: Scene) -> Scene:
+        """The scene as it is."""
+        return scene
+
+    def conditions(self, mount: Mount) -> RootConditions:
+        """No deflection at the root."""
+        return FIXED.against("shear_stiffness", self.direction)
+
+    def own_stiffness(self, pair: Pair) -> Iterator[Term]:
+        """Yield the shear stiffness of shear with shear."""
+        stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
+        if stiffness is not None and not pair.rows.rotates:
+            yield term_of("shear stiffness", pair, pair.integrate(stiffness, 1))
+
+
+class SecondShear(Shear):
+    """Shear deflection in the direction across."""
+
+    name = "second shear"
+    direction = 1
+    partners = (*Shear.partners, Shear())
+
+    def is_modelled(self, scene: Scene) -> bool:
+        """Whether shear and both planes are modelled."""
+        return scene.physics.shear and scene.physics.planes == 2

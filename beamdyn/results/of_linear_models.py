@@ -3,36 +3,41 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.tables import table, table_of
+from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import rounded_up
-from beamdyn.linear.frequency_response import FrequencyResponse
-from beamdyn.linear.matrices import Matrices
-from beamdyn.linear.random_response import RandomResponse
-from beamdyn.linear.resonance_peaks import ResonancePeaks
+
+if TYPE_CHECKING:
+    from beamdyn.linear.frequency_response import FrequencyResponse
+    from beamdyn.linear.matrices import Matrices
+    from beamdyn.linear.random_response import RandomResponse
 
 _MOST_PEAKS = 8  # of a table
 _NO_WIDTH = "-"  # in place of a width that a peak does not have
 _DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
+_MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "stiffness_by_axial_acceleration", "input_matrix")
+_PAIRS = 6  # of poles, whose errors the table has
 
 
 def response_table(result: FrequencyResponse) -> Group:
     """The resonance peaks, and the largest response at the frequencies given."""
-    at_speed = result.display_units.speed_unit().say(result.speed)
-    title = f"{result.output} by {result.input} at {at_speed}, by {result.provenance.method}"
-    heads = "peak at [Hz]", "answers at [Hz]", f"size [{result.unit}]", "half-power bandwidth [Hz]"
-    peaks, rows = result.peaks, []
+    speed, peaks, rows = result.display_units.speed_unit().say(result.speed), result.peaks, []
+    title = f"{result.output} by {result.input} at {speed}, by {result.provenance.method}"
     answers = peaks.frequency + peaks.harmonic * result.speed / (2 * np.pi)
     for k in sorted(np.argsort(peaks.size)[::-1][:_MOST_PEAKS].tolist()):
         at = supported(float(peaks.frequency[k]), float(peaks.frequency_error[k]), _DIGITS)
         size = supported(float(peaks.size[k]), float(peaks.size_error[k]), _DIGITS)
-        rows.append((at, f"{answers[k]:.6g}", size, _width(peaks, k)))
+        width, error = float(peaks.bandwidth[k]), float(peaks.bandwidth_error[k])
+        width = _NO_WIDTH if np.isnan(width) else supported(width, error, _DIGITS_OF_WIDTH)
+        rows.append((at, f"{answers[k]:.6g}", size, width))
     f, size = result.frequencies, np.abs(result.response)
     at = f"{f[0]:.6g} Hz" if len(f) == 1 else f"{f[0]:.6g} to {f[-1]:.6g} Hz"
     more = f"; the largest {_MOST_PEAKS} of {len(peaks)} are shown" if len(peaks) > _MOST_PEAKS else ""
@@ -43,17 +48,11 @@ def response_table(result: FrequencyResponse) -> Group:
         )
     i, j = np.unravel_index(int(size.argmax()), size.shape)
     value = supported(float(size[i, j]), float(result.error[i, j]), _DIGITS)
-    phase = np.degrees(np.angle(result.response[i, j]))
-    where = f"{f[i]:.6g} Hz, phase {phase:.1f} deg"
+    where = f"{f[i]:.6g} Hz, phase {np.degrees(np.angle(result.response[i, j])):.1f} deg"
     largest = f"Largest at those given: {value} {result.unit} at {where}; --csv has all."
+    heads = "peak at [Hz]", "answers at [Hz]", f"size [{result.unit}]", "half-power bandwidth [Hz]"
     shown = [table(title, heads, rows, ()), Text(note)] if rows else [Text(title), Text(f"No peak at {at}.")]
     return Group(*shown, Text(largest))
-
-
-def _width(peaks: ResonancePeaks, k: int) -> str:
-    """Half-power bandwidth of a peak [Hz], if it has one."""
-    width, error = float(peaks.bandwidth[k]), float(peaks.bandwidth_error[k])
-    return _NO_WIDTH if np.isnan(width) else supported(width, error, _DIGITS_OF_WIDTH)
 
 
 def response_csv(result: FrequencyResponse) -> Columns:
@@ -70,8 +69,7 @@ def response_csv(result: FrequencyResponse) -> Columns:
 
 def random_table(result: RandomResponse) -> Group:
     """Root mean square of input and response, and the size of what is left out."""
-    unit = result.unit and f" {result.unit}"
-    parametric = result.parametric
+    unit, parametric = result.unit and f" {result.unit}", result.parametric
     rows = [
         ("root mean square", f"{supported(result.rms, result.rms_error, _DIGITS)}{unit}"),
         ("its estimated error", f"{result.rms_error:.1g}{unit}"),
@@ -81,11 +79,10 @@ def random_table(result: RandomResponse) -> Group:
         ("stiffness varies by, left out", f"{parametric.stiffness_variation:.2g} (rms), relative"),
         ("which would raise it by some", f"{parametric.rms_change:.2g}, relative"),
     ]
-    title = (
-        f"{result.output} by random {result.input} at {result.display_units.speed_unit().say(result.speed)}"
-    )
+    speed = result.display_units.speed_unit().say(result.speed)
     note = f"By {result.provenance.method}; --csv has the density over frequency."
-    return Group(table(title, ("quantity", "value"), rows, (0,)), Text(note))
+    title = f"{result.output} by random {result.input} at {speed}"
+    return Group(table(title, ("quantity", "value"), rows), Text(note))
 
 
 def random_csv(result: RandomResponse) -> Columns:
@@ -100,41 +97,29 @@ def random_csv(result: RandomResponse) -> Columns:
 
 def squared(unit: str) -> str:
     """The square of a unit of the project, a product of names with powers: "m2/s4" of "m/s2"."""
-    return "/".join(" ".join(map(_square, part.split())) for part in unit.split("/"))
 
+    def square(factor: str) -> str:
+        name = factor.rstrip("0123456789")
+        return factor if not name else f"{name}{2 * int(factor[len(name) :] or 1)}"
 
-def _square(factor: str) -> str:
-    name = factor.rstrip("0123456789")
-    return factor if not name else f"{name}{2 * int(factor[len(name) :] or 1)}"
-
-
-_MATRICES = (
-    "mass",
-    "damping",
-    "gyroscopic",
-    "stiffness",
-    "stiffness_by_axial_acceleration",
-    "input_matrix",
-)
-
-_PAIRS = 6  # of poles, whose errors the table has
+    return "/".join(" ".join(map(square, part.split())) for part in unit.split("/"))
 
 
 def matrices_table(result: Matrices) -> Group:
     """What each coordinate is, with the diagonals of mass and stiffness."""
-    rows = [
-        (str(k + 1), name, f"{result.mass[k, k]:.6g}", f"{result.stiffness[k, k]:.6g}")
-        for k, name in enumerate(result.coordinates)
-    ]
-    title = (
-        f"Equations at {result.display_units.speed_unit().say(result.speed)}, by {result.provenance.method}"
-    )
-    heads = "row", "coordinate", "mass, diagonal", "stiffness, diagonal"
+    columns = {
+        "row": [str(k + 1) for k in range(len(result.coordinates))],
+        "coordinate": result.coordinates,
+        "mass, diagonal": [f"{entry:.6g}" for entry in result.mass.diagonal()],
+        "stiffness, diagonal": [f"{entry:.6g}" for entry in result.stiffness.diagonal()],
+    }
+    speed = result.display_units.speed_unit().say(result.speed)
     lowest = result.error[: 2 * _PAIRS : 2].tolist()
     of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
     errors = f"Relative errors of the lowest poles, pair by pair: {of_pairs}."
     inputs = f"{errors} Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
-    return Group(table(title, heads, rows, (1,)), Text(inputs))
+    title = f"Equations at {speed}, by {result.provenance.method}"
+    return Group(table_of(title, columns, ("coordinate",)), Text(inputs))
 
 
 def matrices_csv(result: Matrices) -> Columns:
@@ -147,3 +132,10 @@ def matrices_csv(result: Matrices) -> Columns:
         for (row, column), value in np.ndenumerate(matrix)
     )
     return columns_of_rows(("matrix", "row", "column", "value"), rows)
+
+
+VIEWS = {
+    "FrequencyResponse": View(response_table, response_csv, 1),
+    "Matrices": View(matrices_table, matrices_csv, 3),
+    "RandomResponse": View(random_table, random_csv, 1),
+}

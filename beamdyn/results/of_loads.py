@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.tables import table_of
+from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
@@ -17,8 +19,6 @@ from beamdyn.equations.directions import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES, UNITS
 
 if TYPE_CHECKING:
-    from beamdyn.common.results.display_units import ShownUnit
-    from beamdyn.common.results.result import Result
     from beamdyn.loads.cycles import LoadCycles
     from beamdyn.loads.equivalent_ranges import EquivalentRange
     from beamdyn.loads.random_loads import RandomLoads
@@ -45,61 +45,53 @@ def static_loads_table(result: StaticLoads) -> Group:
 
 def steady_loads_table(result: SteadyLoads) -> Group:
     """Largest magnitudes along the span at the speed at which they are largest."""
-    case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if result.response.stable.any() else 0
+    stable = result.response.stable.any()
+    case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if stable else 0
     speed = result.display_units.speed_unit().say(result.speeds[case], 10)
     at = f"at {speed}, where the bending moment is largest"
     title = f"Largest magnitudes in steady response {at}, by {result.provenance.method}"
-    lines = _largest_lines(result) if result.response.stable.any() else []
-    return Group(_table(result, title, case), *lines)
+    return Group(_table(result, title, case), *(_largest_lines(result) if stable else []))
 
 
 def transient_loads_table(result: TransientLoads, window: tuple[float, float] | None = None) -> Group:
     """Largest values along the span within a window, or the whole run."""
     start, end = window or (result.run.path.start, result.run.path.end)
-    values, _ = result.path.peaks(start, end)
     title = f"Loads of largest magnitude from {start:g} to {end:g} s, by {result.provenance.method}"
-    quantities = result.path.outputs.split(values)
-    return Group(_rows_table(result, title, quantities, None), *_largest_lines(result, (start, end)))
+    peaks = result.path.outputs.split(result.path.peaks(start, end)[0])
+    return Group(_table(result, title, None, peaks), *_largest_lines(result, start=start, end=end))
 
 
-def _table(result: SpanLoads, title: str, case: int) -> Group:
-    quantities = {name: result.values(name)[case] for name in _SCALES}
-    return _rows_table(result, title, quantities, case)
-
-
-def _rows_table(result: SpanLoads, title: str, values: dict[str, np.ndarray], case: int | None) -> Group:
+def _table(
+    result: SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
+) -> Group:
     """Rows of stations: axial and shear forces, moments, and the strain and stress that are largest there."""
-    columns: dict[str, list[str]] = {f"position [{_length_unit(result).name}]": _positions(result)}
+    columns = {f"position [{result.display_units.length_unit().name}]": _positions(result)}
     for name, (scale, unit) in _SCALES.items():
+        found = result.values(name)[case] if values is None else values[name]
         error = result.error_of(name) if case is None else result.error_of(name)[case]
-        if name in ("strain", "stress"):
-            of_points = values[name]
-            if of_points.shape[1] and np.isfinite(of_points).any():
-                columns[f"{name} [{unit}]"] = _largest_cells(of_points * scale, error * scale)
-            continue
-        for k, head in enumerate(_heads(result, name)):
-            columns[f"{head} [{unit}]"] = _cells(values[name][:, k], error[:, k])
-    return table(title, [*columns], [*zip(*columns.values(), strict=True)], ())
+        if name not in ("strain", "stress"):
+            for k, head in enumerate(_heads(result, name)):
+                columns[f"{head} [{unit}]"] = _cells(found[:, k], error[:, k])
+        elif found.shape[1] and np.isfinite(found).any():
+            k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]  # the largest of the points
+            at_largest = (np.take_along_axis(scale * each, k, 1)[:, 0] for each in (found, error))
+            columns[f"{name} [{unit}]"] = _cells(*at_largest)
+    return table_of(title, columns)
 
 
 def _heads(result: SpanLoads, quantity: str) -> list[str]:
-    words = words_of_directions(result.scene) or ("",)
-    named = [f"{word} ".lstrip() for word in words]
+    """Heads of forces or moments: those across the beam in each direction, if there are two."""
+    words = [f"{word} ".lstrip() for word in words_of_directions(result.scene) or ("",)]
     if quantity == "moment":
-        return [f"{word}moment" for word in named]
-    return ["axial force", *(f"{word}shear" for word in named)]
-
-
-def _length_unit(result: Result) -> ShownUnit:
-    return result.display_units.length_unit()
+        return [f"{word}moment" for word in words]
+    return ["axial force", *(f"{word}shear" for word in words)]
 
 
 def _positions(result: SpanLoads) -> list[str]:
     """Positions; those with two sides with the side."""
-    x, unit = result.x, _length_unit(result)
-    twice = np.isin(np.arange(len(x)), np.flatnonzero(np.diff(x) == 0)) | np.isin(
-        np.arange(len(x)), 1 + np.flatnonzero(np.diff(x) == 0)
-    )
+    x, unit = result.x, result.display_units.length_unit()
+    jumps = np.flatnonzero(np.diff(x) == 0)
+    twice = np.isin(np.arange(len(x)), [*jumps, *(jumps + 1)])
     sides = ["-" if inboard else "+" for inboard in result.inboard]
     return [f"{unit.of(at):.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
 
@@ -108,34 +100,24 @@ def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
     return [supported(float(v), float(e), _MOST_DIGITS) for v, e in zip(values, errors, strict=True)]
 
 
-def _largest_cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
-    """The value of largest magnitude of the points of each station."""
-    k = np.nan_to_num(np.abs(values), nan=-1.0).argmax(axis=1)[:, None]
-    return _cells(np.take_along_axis(values, k, 1)[:, 0], np.take_along_axis(errors, k, 1)[:, 0])
-
-
-def _largest_lines(result: SpanLoads, window: tuple[float, float] | None = None) -> list[Text]:
+def _largest_lines(result: SpanLoads, **window: float) -> list[Text]:
     """A sentence on the largest of each quantity that has values."""
-    given: dict[str, Any] = {} if window is None else {"start": window[0], "end": window[1]}
+    return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
+
+
+def _lines(result: SpanLoads, say: Callable[[str], str]) -> list[Text]:
+    """A sentence on each quantity that has values, and what strains need where there are none."""
     known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
-    said = [Text(_say_largest(result, result.largest(name, **given))) for name in reversed(known)]
-    return [*said, *_say_what_strains_need(known)]
-
-
-def _say_what_strains_need(known: Sequence[str]) -> list[Text]:
-    """A sentence if the section has no points at which there are strains."""
-    return [] if "strain" in known else [Text(f"No strains: {REMEDIES['strain']}.")]
+    lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
+    return [*map(Text, (*map(say, reversed(known)), *lacking))]
 
 
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
-    scale, unit = _SCALES[found.quantity]
+    (scale, unit), (name, unit_of_case), units = _SCALES[found.quantity], result.case, result.display_units
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    name, unit_of_case = result.case
-    case = f"{found.case:.6g} {unit_of_case}"
-    if name == "speed":
-        case = result.display_units.speed_unit().say(found.case)
-    what, place = _say_component(result, found), _length_unit(result).say(found.x)
-    return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {case}."
+    in_case = units.speed_unit().say(found.case) if name == "speed" else f"{found.case:.6g} {unit_of_case}"
+    what, place = _say_component(result, found), units.length_unit().say(found.x)
+    return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {in_case}."
 
 
 def _say_component(result: SpanLoads, found: LargestLoad) -> str:
@@ -150,43 +132,33 @@ def _say_component(result: SpanLoads, found: LargestLoad) -> str:
 
 def random_loads_table(result: RandomLoads) -> Group:
     """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
-    units = result.display_units
-    columns = {f"position\n[{_length_unit(result).name}]": _positions(result)}
+    units, at = result.display_units, np.arange(len(result.x))
+    columns = {f"position\n[{units.length_unit().name}]": _positions(result)}
     for name in ("moment", "strain", "stress"):
-        scale, unit = _SCALES[name]
-        for k, head in _columns_of_random(result, name):
-            rms, error = (scale * each(name) for each in (result.rms, result.rms_error))
-            most, most_error = (scale * each(name)[0] for each in (result.values, result.error_of))
-            at = np.arange(len(rms))
-            columns[f"{head}\nrms [{unit}]"] = _cells(rms[at, k], error[at, k])
-            columns[f"{head}\nlargest [{unit}]"] = [
-                _expected(*pair) for pair in zip(most[at, k], most_error[at, k], strict=True)
-            ]
+        (scale, unit), values = _SCALES[name], result.values(name)[0]
+        if not np.isfinite(values).any():
+            continue
+        if name == "moment":
+            shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
+        else:  # of the point that is largest there
+            shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
+        for k, head in shown:
+            rms, error = (scale * each(name)[at, k] for each in (result.rms, result.rms_error))
+            most, wrong = (scale * each(name)[0][at, k] for each in (result.values, result.error_of))
+            columns[f"{head}\nrms [{unit}]"] = _cells(rms, error)
+            columns[f"{head}\nlargest [{unit}]"] = [*map(_expected, most, wrong)]
     title = (
         f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
         f"at {units.speed_unit().say(result.speed)}, by {said_in(units, result.provenance.method)}"
     )
-    known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
-    lines = [Text(_say_expected(result, result.largest(name))) for name in reversed(known)]
-    lines += _say_what_strains_need(known)
-    rows = [*zip(*columns.values(), strict=True)]
-    return Group(table(title, [*columns], rows, ()), *lines, Text(_ESTIMATE))
+    lines = _lines(result, lambda name: _say_expected(result, result.largest(name)))
+    return Group(table_of(title, columns), *lines, Text(_ESTIMATE))
 
 
 _ESTIMATE = (
     "Estimates for a Gaussian input; passages of both signs count as independent, with the root mean square "
     "at the angle of rotation at which it is largest, and all parts add up: rather high."
 )
-
-
-def _columns_of_random(result: RandomLoads, name: str) -> list[tuple[np.ndarray, str]]:
-    """Component at each station, and head, of each column: of strains the point that is largest there."""
-    values = result.values(name)[0]
-    if not np.isfinite(values).any():
-        return []
-    if name == "moment":
-        return [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
-    return [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
 
 
 def _expected(value: float, error: float = 0.0) -> str:
@@ -204,7 +176,7 @@ def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
         _expected(scale * float(np.abs(each(name)[place])))
         for each in (result.mean, result.gravity, result.rms, result.quantile)
     )
-    what, where = _say_component(result, found), _length_unit(result).say(found.x)
+    what, where = _say_component(result, found), result.display_units.length_unit().say(found.x)
     rate = _expected(float(result.crossings(name)[place]))
     return (
         f"Largest {name} expected ({what}): {value} {unit}, at {where}; constant {mean}, gravity {gravity}, "
@@ -212,34 +184,46 @@ def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
     )
 
 
+# Cycles -------------------------------------------------------------------------------------------------
+
+
 def cycles_table(cycles: LoadCycles) -> Group:
     """Cycles by their range, in equal classes up to the largest."""
     scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
-    top = scale * float(cycles.ranges.max(initial=0.0))
-    edges = np.linspace(0, top or 1.0, _CLASSES + 1)
+    edges = np.linspace(0, scale * float(cycles.ranges.max(initial=0.0)) or 1.0, _CLASSES + 1)
     counts, _ = np.histogram(scale * cycles.ranges, edges, weights=cycles.counts)
-    rows = [
-        (f"{low:.4g} to {high:.4g}", f"{count:g}")
-        for low, high, count in zip(edges[:-1], edges[1:], counts, strict=True)
-    ]
-    place = _length_unit(cycles).say(cycles.x)
+    columns = {
+        f"range [{unit}]": [f"{low:.4g} to {high:.4g}" for low, high in pairwise(edges)][::-1],
+        "cycles": [f"{count:g}" for count in counts[::-1]],
+    }
+    place = cycles.display_units.length_unit().say(cycles.x)
     title = f"Cycles of {cycles.quantity} at {place}, {cycles.start:g} to {cycles.end:g} s"
-    return table(title, (f"range [{unit}]", "cycles"), rows[::-1], ())
+    return table_of(title, columns)
 
 
 def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
     """Ranges of equal cycles of one quantity that do the damage of those counted, by the Woehler exponent."""
     quantity, number = equivalents[0].quantity, equivalents[0].cycles
     scale, unit = _SCALES.get(quantity, (1.0, "1/m"))
-    rows = [
-        (f"{each.exponent:g}", supported(scale * each.range, scale * each.error, _MOST_DIGITS))
-        for each in equivalents
-    ]
-    title = f"Damage-equivalent ranges (number of equal cycles: {number:g})"
-    return table(title, ("Woehler exponent", f"range of {quantity} [{unit}]"), rows, ())
+    ranges = [supported(scale * each.range, scale * each.error, _MOST_DIGITS) for each in equivalents]
+    columns = {
+        "Woehler exponent": [f"{each.exponent:g}" for each in equivalents],
+        f"range of {quantity} [{unit}]": ranges,
+    }
+    return table_of(f"Damage-equivalent ranges (number of equal cycles: {number:g})", columns)
 
 
-# CSV ----------------------------------------------------------------------------------------------
+def cycles_csv(result: LoadCycles) -> Columns:
+    """Range, mean and count of each cycle."""
+    unit = UNITS[result.quantity]
+    return Columns(
+        Column(f"range_of_{result.quantity}", result.ranges, unit),
+        Column("mean", result.means, unit),
+        Column("cycles", result.counts),
+    )
+
+
+# Columns of files -------------------------------------------------------------------------------------
 
 
 def loads_csv(result: SpanLoads) -> Columns:
@@ -295,3 +279,12 @@ def _components(result: SpanLoads, quantity: str) -> list[str]:
     if quantity == "force":
         return ["axial_force", *(f"shear_force{end}" for end in ends)]
     return [f"{quantity}{end}" for end in ends]
+
+
+VIEWS = {
+    "LoadCycles": View(cycles_table, cycles_csv),
+    "RandomLoads": View(random_loads_table, random_loads_csv, 2),
+    "StaticLoads": View(static_loads_table, loads_csv, 3),
+    "SteadyLoads": View(steady_loads_table, loads_csv, 3),
+    "TransientLoads": View(transient_loads_table, loads_csv, 3),
+}
