@@ -16,9 +16,7 @@ from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, t
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.tasks import drawn, report_of
 from brakes.app.bases import base
-from brakes.app.caliper import CALIPER
-from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER, FORCES, FORKLIFT, KINEMATICS, VEHICLE
 from brakes.calipers import NAMED
 from brakes.config.forklift import parse_forklift
 

@@ -14,9 +14,7 @@ from beamdyn.common.screens.handles import Sheet, changed_texts, describe_place,
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Screen
-from brakes.app.caliper import CALIPER
-from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER, FORKLIFT, KINEMATICS, VEHICLE
 from brakes.calipers import NAMED
 
 SVG = "{http://www.w3.org/2000/svg}"

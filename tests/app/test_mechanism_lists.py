@@ -9,9 +9,8 @@ import pytest
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.lists import gone_with
 from beamdyn.common.screens.open_document import OpenDocument
-from brakes.app.caliper import MECHANISM
 from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, MECHANISM
 
 SCREEN = MECHANISM.screens[0]
 CLAMP = (Path(__file__).parents[2] / "examples" / "calipers" / "toggle-clamp.toml").read_text("utf-8")

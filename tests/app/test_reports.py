@@ -12,11 +12,10 @@ from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.input_words import NOT_GIVEN, default_words, label
+from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.tasks import report_of
-from brakes.app.caliper import CALIPER
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER
 
 DRUM = next(document for document in BRAKES.documents if document.name == "drum")
 DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]

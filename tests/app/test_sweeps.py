@@ -20,8 +20,7 @@ from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screens import Program
 from beamdyn.common.screens.sweep_panel import around, sweep_charts
-from brakes.app.caliper import CALIPER, MECHANISM
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER, MECHANISM
 from brakes.cli import main
 from tests.app.serving import PATIENCE
 

@@ -1,4 +1,4 @@
-"""What the browser holds of a page: designs of a tab, what is being typed, named designs, the look, links."""
+"""Data of a page that the browser holds: a tab's designs, what is being typed, named designs, look, links."""
 
 from __future__ import annotations
 

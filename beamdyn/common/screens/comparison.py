@@ -12,7 +12,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.shapes import Disc, Drawing, Outline
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens.input_words import NOT_GIVEN, default_words, label
+from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import differing
 from beamdyn.common.screens.screens import KeyResult
 
@@ -92,18 +92,18 @@ class _TableRow(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Its first number, such as the speed of which the others are results."""
+        """The first number of the row, such as the speed of which the others are results."""
         head, text = next(iter(self.numbers.items()), ("", ""))
         return f"{head.removeprefix(', ')} {text}"
 
     @property
     def counted(self) -> str:
-        """Its words and its number."""
+        """Words and number of the row."""
         return ", ".join(filter(None, (self.words, f"row {self.number}")))
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """What rows of two tables are known by: words of their own, else places that both have, else numbers."""
+    """Choose how rows of two tables are named: by words of their own, places that both have, or numbers."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}

@@ -57,7 +57,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
 
 
 class Player:
-    """A button before a slider, which plays it and pauses it; so does the space bar on the slider.
+    """A slider above a drawing, and a button that plays and pauses it; so does the space bar on the slider.
 
     The slider moves on when the page has painted the last picture, so that pictures never pile up.  Moving it
     by hand pauses it, and so does a page that is not seen.  Where the browser prefers reduced motion, a few
@@ -65,26 +65,43 @@ class Player:
 
     Parameters
     ----------
-    slider : DragSlider
-        The slider on the page; whoever draws follows its changes.
     motion : Slider
         Its name, and its positions over time.
     writer : PageWriter
-        Writes into the page while it plays.
-    rested : callable
-        Called when it has been paused.
+        Writes into the page while it plays or is dragged.
+    turned : callable
+        Called when it has been moved, or paused.
     """
 
-    def __init__(
-        self, slider: DragSlider, motion: Slider, writer: PageWriter, rested: Callable[[], object]
-    ) -> None:
-        self._slider, self._motion, self._writer, self._rested = slider, motion, writer, rested
+    def __init__(self, motion: Slider, writer: PageWriter, turned: Callable[[], object]) -> None:
+        self._motion, self._writer, self._turned = motion, writer, turned
         self._task: asyncio.Task[None] | None = None
-        self._sets = False  # whether it moves the slider itself
-        self._button: Any = ui.button(on_click=self.toggle).props("flat round dense").classes("player")
-        slider.on("keydown.space.prevent", self.toggle)
-        slider.on_value_change(lambda: None if self._sets else self.pause())
-        self._show()
+        self._sets, self._swings = False, False  # whether it moves by itself, or is dragged
+        last, marks = motion.last, ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(motion.marks))
+        with ui.row().classes("stroke w-full"):
+            self._slider = DragSlider(
+                self._swing, min=0, max=last, step=motion.step, value=last, on_change=turned
+            )
+            self._slider.props(f'aria-label="{motion.label}" :marker-labels="{{{marks}}}" markers=1')
+            self._slider.classes("slider").on("keydown.space.prevent", self.toggle)
+            self._slider.on_value_change(lambda: None if self._sets else self.pause())
+            self._button: Any = ui.button(on_click=self.toggle).props("flat round dense").classes("player")
+        self._show_button()
+
+    @property
+    def place(self) -> float:
+        """Position of the slider."""
+        return float(self._slider.value or 0.0)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it plays or is dragged."""
+        return self.plays or self._swings
+
+    def _swing(self, place: float, done: bool) -> None:
+        self._swings = not done
+        with self._writer.writing(self._slider):
+            self._slider.set_value(place)
 
     @property
     def plays(self) -> bool:
@@ -97,17 +114,17 @@ class Player:
             self.pause()
         else:
             self._task = background_tasks.create(self._play())
-            self._show()
+            self._show_button()
 
     def pause(self) -> None:
         """Stop at the present position."""
         task, self._task = self._task, None
         if task is not None:
-            self._show()
+            self._show_button()
             self._writer.synchronize()
-            self._rested()
+            self._turned()
 
-    def _show(self) -> None:
+    def _show_button(self) -> None:
         words = f"{'pause' if self.plays else 'play'} {self._motion.label}"
         self._button.props["icon"] = "pause" if self.plays else "play_arrow"
         self._button.props["aria-label"] = self._button.props["title"] = words
@@ -115,7 +132,7 @@ class Player:
 
     async def _play(self) -> None:
         task = asyncio.current_task()
-        elapsed, last = self._motion.elapsed(self._slider.value or 0.0), time.monotonic()
+        elapsed, last = self._motion.elapsed(self.place), time.monotonic()
         while self._task is task and not self._slider.is_deleted:
             try:  # wait until the page has painted what it was sent
                 code = _PAINTED.format(id=self._button.id)

@@ -169,13 +169,13 @@ class LinkDialog:
     async def show(self, fragment: str) -> None:
         """Show the link with this part after "#"."""
         address = await ui.run_javascript("return location.origin + location.pathname;", timeout=10)
-        self._put(f"{address}#{fragment}", "")
+        self._show_link(f"{address}#{fragment}", "")
 
     def refuse(self, sentence: str) -> None:
         """Say why there is no link."""
-        self._put("", sentence)
+        self._show_link("", sentence)
 
-    def _put(self, link: str, sentence: str) -> None:
+    def _show_link(self, link: str, sentence: str) -> None:
         self._link.set_value(link)
         self._said.set_text(sentence)
         self._copy.set_enabled(bool(link))

@@ -11,7 +11,7 @@ from nicegui import ui
 
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.screens.handles import Place, Sheet, Viewport
-from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.screens import Handle
 
 STYLE = (
@@ -117,7 +117,7 @@ class DraggableDrawing:
                 self._machine.set_content(sheet.element)
             self._how.set_visibility(bool(sheet.handles))
             for element in self._handles:
-                element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
+                toggle(element, "away", not sheet.handles)
             if sheet.handles:  # else the last ones stay, hidden: one of them may be held
                 self._put_handles(sheet, words)
 

@@ -12,25 +12,23 @@ from nicegui import ui
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens.controls import DragSlider
 from beamdyn.common.screens.form_entries import (
-    Reading,
-    has_rows,
-    in_unit,
-    is_bare,
-    read_entry,
-    unit_of,
-    units_of,
-    usual_unit,
-)
-from beamdyn.common.screens.input_words import (
     NOT_GIVEN,
+    Reading,
     default_words,
+    has_rows,
     heading_of,
     help_of,
+    in_unit,
+    is_bare,
     label,
     label_html,
     name_words,
     options_of,
+    read_entry,
     table_of,
+    unit_of,
+    units_of,
+    usual_unit,
 )
 from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screens import Drag

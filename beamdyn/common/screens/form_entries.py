@@ -1,17 +1,21 @@
-"""Texts of the fields of a form: how they are read, and the nested tables of a TOML file that they make."""
+"""Texts of the fields of a form: names and defaults of inputs, how what is typed is read, and TOML tables."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
+from beamdyn.common.drawing.symbols import symbol_html
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
+from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
@@ -222,7 +226,7 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
         The unit shown, which a bare number is given.
     """
     if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
-        # the coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm"
+        # They are the coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
         each = [_QUANTITY.fullmatch(part.strip()) for part in parts]
         made = [f"{m[1].replace(',', '.')} {(m[2] or '').strip() or unit}".strip() for m in each if m]
         text = toml_value(made)
@@ -257,3 +261,78 @@ def unit_of(text: str, entry: Input) -> str:
 def usual_unit(unit: str) -> str:
     """The unit that a field of an SI unit has as long as none has been chosen."""
     return _USUAL.get(unit, unit)
+
+
+NOT_GIVEN = "not given"
+_KEY = re.compile(r"\[(\w+)\] (\w+) = ")
+
+
+def label(entry: Input) -> str:
+    """Name and symbol of an input."""
+    symbol = entry.quantity.symbol
+    return f"{name_words(entry)}, {symbol}" if symbol and symbol != entry.name else name_words(entry)
+
+
+def label_html(entry: Input) -> str:
+    """The label as HTML, with the symbol typeset as in a sketch."""
+    words, _, symbol = label(entry).rpartition(", ")
+    return f"{escape(words)}, {symbol_html(symbol)}" if words else escape(symbol)
+
+
+def help_of(entry: Input) -> str:
+    """Meaning, unit and bounds, and whether it may be left out."""
+    return entry.help if entry.required else f"{entry.help}; not required"
+
+
+def name_words(entry: Input) -> str:
+    """Name of an input in words, with the names of tables nested in its table before it."""
+    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
+
+
+def table_of(path: str) -> str:
+    """Name of the table that holds an input; "" outside any."""
+    return path.partition(".")[0] if "." in path else ""
+
+
+def heading_of(section: str, headings: Mapping[str, str]) -> str:
+    """Heading of a table of the form."""
+    return headings.get(section, section.replace("_", " ").capitalize() or "General")
+
+
+def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, str]) -> str:
+    """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
+    tables = {table_of(entry.path) for entry in inputs}
+
+    def named(found: re.Match[str]) -> str:
+        if found[1] not in tables:
+            return found[0]
+        return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
+
+    return _KEY.sub(named, sentence)
+
+
+def options_of(entry: Input) -> tuple[str, ...]:
+    """The words or numbers from which an input is chosen; none where it is typed."""
+    if entry.kind is bool:
+        return ("true", "false")
+    few = all(isinstance(choice, str | int) for choice in entry.choices)
+    return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
+
+
+def default_words(entry: Input) -> str:
+    """The default value, as a user would type it."""
+    if entry.default is None or entry.default in ("", [], ()):
+        return NOT_GIVEN
+    value, unit = entry.default, entry.quantity.unit
+    if value == math.inf and entry.quantity.infinite:
+        return entry.quantity.infinite
+
+    def in_words(number: float) -> str:
+        short = unit == "m" and abs(number) < 1
+        return f"{1e3 * number:.6g} mm" if short else f"{number:.6g} {unit}".rstrip()
+
+    if isinstance(value, tuple):
+        return toml_value([in_words(number) for number in value])
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return show(value).strip('"')
+    return in_words(value)

@@ -100,7 +100,7 @@ class Sheet:
 
     @cached_property
     def text(self) -> str:
-        """Its SVG file, or why there is none."""
+        """The SVG file of the drawing, or why there is none."""
         return as_file(self.element) if self.element else self.said
 
     @property

@@ -203,13 +203,13 @@ class ListEditor:
         self._lists, self._now, self._changed, self._writer = lists, now, changed, writer
 
         def empty() -> None:
-            self._take(lists.empty(now()))
+            self._replace_entries(lists.empty(now()))
 
         def put(item: Item, key: str, text: str) -> None:
-            self._take(lists.put(now(), item, key, text))
+            self._replace_entries(lists.put(now(), item, key, text))
 
         def add(kind: str) -> None:
-            self._take(lists.add(now(), kind))
+            self._replace_entries(lists.add(now(), kind))
 
         with ui.column().classes("lists w-full gap-1"):
             ui.button("Start from nothing", icon="note_add", on_click=empty).props("flat dense no-caps")
@@ -239,12 +239,12 @@ class ListEditor:
 
     def _remove(self, item: Item) -> None:
         before, left = self._now(), self._lists.remove(self._now(), item)
-        self._take(left)
+        self._replace_entries(left)
         if gone := gone_with(item, self._lists.groups(before), self._lists.groups(left)):
             said = f"Removed along with {item.name}: {', '.join(gone)}. Undo brings all back."
             ui.notify(said, timeout=_READ, close_button="Close")
 
-    def _take(self, entries: Entries) -> None:
+    def _replace_entries(self, entries: Entries) -> None:
         if entries != self._now():
             self.show(entries)
             self._changed(entries)

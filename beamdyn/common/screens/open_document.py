@@ -141,8 +141,7 @@ class OpenDocument:
     answered: dict[str, ShownAnswer] = field(init=False, default_factory=dict)
     mistakes: dict[str, dict[str, list[str]]] = field(init=False, default_factory=dict)
     other: OtherDesign | None = field(init=False, default=None)
-    compared: dict[str, ShownAnswer] = field(init=False, default_factory=dict)
-    not_compared: dict[str, str] = field(init=False, default_factory=dict)
+    compared: dict[str, Outcome] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self.entries = dict(self.document.base_entries)
@@ -152,27 +151,22 @@ class OpenDocument:
         """Compare with another design from now on, or with none."""
         self.other = other
         self.compared.clear()
-        self.not_compared.clear()
 
     def wants_other(self, screen: Screen) -> bool:
         """Whether the other design has not been solved yet for a screen."""
-        known = screen.name in self.compared or screen.name in self.not_compared
-        return self.other is not None and not known
+        return self.other is not None and screen.name not in self.compared
 
-    def keep_other(self, screen: Screen, outcome: Outcome) -> None:
-        """Keep the other design's answer, or why there is none."""
-        if isinstance(outcome, ShownAnswer):
-            self.compared[screen.name] = outcome
-        else:
-            sentences = [each for said in outcome.values() for each in said]
-            self.not_compared[screen.name] = " ".join(sentences)
+    def other_answer(self, screen: Screen) -> ShownAnswer | None:
+        """The answer to the other design, if it has one."""
+        found = self.compared.get(screen.name)
+        return found if isinstance(found, ShownAnswer) else None
 
     def go(self, steps: int) -> bool:
         """Undo if `steps` is negative, redo if it is positive; say whether there was such a step."""
         entries = self.history.go(steps)
         if entries is None:
             return False
-        self._take(entries)
+        self._replace_entries(entries)
         return True
 
     @property
@@ -195,7 +189,7 @@ class OpenDocument:
 
     def show(self, entries: Mapping[str, str]) -> None:
         """Replace the design by entries that were kept earlier."""
-        self._take({path: str(text) for path, text in entries.items()})
+        self._replace_entries({path: str(text) for path, text in entries.items()})
         self.mistakes = {}
         self.history.part()
 
@@ -204,7 +198,7 @@ class OpenDocument:
         base = self.document.base_entries
         changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
         before = self.entries
-        self._take({path: str(text) for path, text in stored.items()} | changed)
+        self._replace_entries({path: str(text) for path, text in stored.items()} | changed)
         return self.entries != before
 
     def text(self) -> str:
@@ -219,9 +213,9 @@ class OpenDocument:
 
     def put(self, path: str, text: str) -> None:
         """Change one entry; entries of inputs that no longer exist are dropped."""
-        self._take(self.entries | {path: text})
+        self._replace_entries(self.entries | {path: text})
 
-    def _take(self, entries: Entries) -> None:
+    def _replace_entries(self, entries: Entries) -> None:
         """Replace the entries by these, as far as there are inputs for them."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 

@@ -62,7 +62,7 @@ async def open_page(program: Program, solver: RunsTasks) -> None:
 
 
 class Page:
-    """What one client sees; nothing in it is shared with another.
+    """The page of one client; nothing in it is shared with another.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ class Page:
         future = self.solver.submit(tasks.solve, work.document, screen, dict(other.entries))
         await asyncio.wait([future])
         if work.other is other:
-            work.keep_other(screen, outcome_of(future, work, screen))
+            work.compared[screen.name] = outcome_of(future, work, screen)
             self.panels[screen.name].show()
 
     # Over a reload, or a restart of the program -----------------------------------------------------

@@ -56,8 +56,9 @@ class ComparisonPanel:
         if other is None:
             return
         self._fold.set_text(f"Compared with {other.name}")
-        there = self.work.compared.get(self.screen.name)
-        self._said.set_text(self.work.not_compared.get(self.screen.name, ""))
+        found, there = self.work.compared.get(self.screen.name), self.work.other_answer(self.screen)
+        mistakes = {} if found is None or isinstance(found, ShownAnswer) else found
+        self._said.set_text(" ".join(each for sentences in mistakes.values() for each in sentences))
         wanted = [entry for entry in self.work.inputs if entry.path in self.work.entries]
         inputs = [*input_differences(self.work.entries, other.entries, wanted)]
         self._inputs.set_content(differences_html(inputs, "inputs", other.name))
@@ -67,7 +68,7 @@ class ComparisonPanel:
 
 def headline_of(work: OpenDocument, screen: Screen, answered: ShownAnswer) -> str:
     """The most important results of an answer in HTML, beside those of the design it is compared with."""
-    there = work.compared.get(screen.name)
+    there = work.other_answer(screen)
     other = () if there is None else there.headline
     return headline_html(answered.headline, other, work.other.name if work.other else "")
 

@@ -130,7 +130,7 @@ class Processes:
                 place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
 
     async def _run(self, wanted: bytes) -> Any:
-        worker = await self._take()
+        worker = await self._idle_worker()
         keep_one_idle = asyncio.get_running_loop().call_later(
             _SPARE, lambda: None if self._idle else self.start()
         )
@@ -155,7 +155,7 @@ class Processes:
             raise TakesTooLong(f"it takes more than {MEMORY} MB of memory")
         raise result
 
-    async def _take(self) -> _Worker:
+    async def _idle_worker(self) -> _Worker:
         """An idle process; where there is none another is started, and the first that is free is taken."""
         while self._idle:
             worker = self._idle.pop()

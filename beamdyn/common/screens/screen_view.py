@@ -19,18 +19,17 @@ from beamdyn.common.screens import tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.comparison import with_other_curves
 from beamdyn.common.screens.computations import LatestComputation, download
-from beamdyn.common.screens.controls import BranchChoice, DragSlider, Player
+from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
 from beamdyn.common.screens.form import Form
-from beamdyn.common.screens.form_entries import Entries
+from beamdyn.common.screens.form_entries import Entries, as_on_form, options_of
 from beamdyn.common.screens.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
-from beamdyn.common.screens.input_words import as_on_form, options_of
 from beamdyn.common.screens.list_editor import ListEditor
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
-from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.panels import ComparisonPanel, FoldedPanel, SketchPanel, headline_of
 from beamdyn.common.screens.processes import RunsTasks, Task
-from beamdyn.common.screens.screens import Handle, Screen, Slider
+from beamdyn.common.screens.screens import Handle, Screen
 from beamdyn.common.screens.sweep_panel import SweepPanel
 from beamdyn.common.screens.tasks import at_fault, outcome_of
 
@@ -60,14 +59,12 @@ class ScreenView:
         self.work, self.screen, self._edited, self._solver = work, screen, edited, solver
         self.narrow = False  # the page, so that drawings have narrow paper
         self._drawn = False
-        self._sentences: list[
-            tuple[str, str]
-        ] = []  # mistakes and warnings that are shown, with their classes
+        self._sentences: list[tuple[str, str]] = []  # that are shown, with their classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
         self._holds = False  # a slider of the form
-        self._swings = False  # the slider above the drawing
         self._charted = 0.0  # when the charts were shown last [s]
-        self._writer = PageWriter(lambda: self.dragged or self._swings or self._plays)
+        self._player: Player | None = None
+        self._writer = PageWriter(lambda: self.dragged or (self._player is not None and self._player.moves))
         self._partial = False  # whether the tables shown are those of an answer before
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -95,13 +92,11 @@ class ScreenView:
 
     def _make_results(self) -> None:
         screen, name = self.screen, self.screen.name
-        self._at: Any = None
-        self._player: Player | None = None
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
-                if screen.slider is not None:
-                    self._make_slider(screen.slider)
+                if screen.slider is not None:  # it draws to the same scale
+                    self._player = Player(screen.slider, self._writer, lambda: self._draw(self.board.view))
                 self._branch = BranchChoice(self._draw)
                 self.board = DraggableDrawing(f"{name}: drawing of the result", self._moved, self._writer)
                 self._charts = ChartBoard(f"{name}: charts of the result", self._writer)
@@ -115,28 +110,10 @@ class ScreenView:
         with ui.column().classes("after w-full gap-2"):
             with ui.row().classes("gap-2"):
                 for kind in ("SVG", "PNG", "CSV"):
-                    button = ui.button(kind, on_click=partial(self._take, kind.lower()), icon="download")
+                    button = ui.button(kind, on_click=partial(self._download, kind.lower()), icon="download")
                     button.props(f'flat dense no-caps aria-label="download {name} as {kind}"')
             sweeps = screen.sweeps
             self.sweep = None if sweeps is None else SweepPanel(self.work, screen, sweeps, self._solver)
-
-    def _make_slider(self, slider: Slider) -> None:
-        def turn() -> None:
-            self._draw(self.board.view)  # to the same scale
-
-        def swing(place: float, done: bool) -> None:
-            self._swings = not done
-            with self._writer.writing(self._at):
-                self._at.set_value(place)
-
-        marks = ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(slider.marks))
-        with ui.row().classes("stroke w-full"):
-            self._at = DragSlider(
-                swing, min=0, max=slider.last, step=slider.step, value=slider.last, on_change=turn
-            )
-            self._at.props(f'aria-label="{slider.label}" :marker-labels="{{{marks}}}" markers=1')
-            self._at.classes("slider")
-            self._player = Player(self._at, slider, self._writer, turn)
 
     # The form -----------------------------------------------------------------------------------------
 
@@ -273,7 +250,7 @@ class ScreenView:
         if not mistakes or (not self.dragged and "waits" in self._tables.classes):
             self.show()
         self.state()
-        self._say(mistakes)
+        self._show_sentences(mistakes)
         if not self.dragged:
             self._writer.synchronize()  # not before: the page would be rendered twice
             self._edited()
@@ -284,7 +261,7 @@ class ScreenView:
         self.work.mistakes[self.screen.name] = mistakes = {"": [_NOT_SHOWN.format(error)]}
         self.state()
         self._writer.synchronize()
-        self._say(mistakes)
+        self._show_sentences(mistakes)
 
     def state(self) -> None:
         """Say whether the answer shown is the present one, and grey it where another one takes its time."""
@@ -292,12 +269,9 @@ class ScreenView:
         stale = self.work.stale(self.screen) or (self._partial and not held)
         failed = bool(self.work.mistakes.get(self.screen.name))
         follows = held and not (failed or slow)
-        for element, name, on in (
-            (self._head, "stale", stale and not follows),
-            (self._good, "greyed", stale and (slow or failed or not busy)),
-            (self._good, "refused", stale and failed),
-        ):
-            element.classes(add=name if on else "", remove="" if on else name)
+        toggle(self._head, "stale", stale and not follows)
+        toggle(self._good, "greyed", stale and (slow or failed or not busy))
+        toggle(self._good, "refused", stale and failed)
         self._busy.set_visibility(slow)
         words = _STALE if self._answered else "No result yet."
         state = "Computing. " if busy else "Refused. " if failed else ""
@@ -306,7 +280,7 @@ class ScreenView:
         if self.sweep is not None:
             self.sweep.state()
 
-    def _say(self, mistakes: dict[str, list[str]]) -> None:
+    def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
@@ -334,14 +308,9 @@ class ScreenView:
         return self._holds or self.board.held is not None
 
     @property
-    def _plays(self) -> bool:
-        """Whether the slider above the drawing is played."""
-        return self._player is not None and self._player.plays
-
-    @property
     def progress(self) -> float:
-        """Place of the slider."""
-        return float(self._at.value) if self._at is not None else self.screen.last
+        """Place of the slider above the drawing."""
+        return self.screen.last if self._player is None else self._player.place
 
     def show(self) -> None:
         """Show the latest answer, and the design that it is compared with."""
@@ -352,7 +321,7 @@ class ScreenView:
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()
-        self._tables.classes(add="waits" if held else "", remove="" if held else "waits")
+        toggle(self._tables, "waits", held)
         if not held:  # while a point is moved, its drawing alone follows
             self._tables.set_content(self._as_on_form(html(answered.tables)))
             self.comparison.show(answered)
@@ -373,12 +342,13 @@ class ScreenView:
         answered, screen, place = self._answered, self.screen, self.progress
         if answered is None:
             return
-        answer, there = self._drawn_answer(answered), self.work.compared.get(screen.name)
+        answer, there = self._drawn_answer(answered), self.work.other_answer(screen)
         name = self.work.other.name if self.work.other else ""
         other = () if there is None else screen.drawings(there.answer, place)
         made = draw_sheet(screen, answer, place, self.board.held or view, other, name, self.narrow)
         self._drawn = True
-        moves = self._plays or (self.dragged and made.view is not None)
+        plays = self._player is not None and self._player.plays
+        moves = plays or (self.dragged and made.view is not None)
         if screen.charts is not None and (not moves or monotonic() - self._charted >= _CHARTS_APART):
             self._charted = monotonic()
             charts = screen.charts(answer, place)
@@ -406,7 +376,7 @@ class ScreenView:
             if done:
                 self._edited()
 
-    async def _take(self, kind: str) -> None:
+    async def _download(self, kind: str) -> None:
         """Download the drawing, as "svg" or "png", or the numbers, as "csv"."""
         await self.settled()
         if answered := self._answered:

@@ -239,7 +239,7 @@ class Screen:
     headline : callable
         ``headline(answer)``: the two to four most important results, each in a few words.
     quick_headline : callable, optional
-        The same without what takes time, for use while something is held; `headline` if not given.
+        The results without those that take time, for use while something is held; `headline` if not given.
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
@@ -269,8 +269,8 @@ class Screen:
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
     lists: Lists | None = None
-    headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
-    quick_headline: Callable[[Any], Sequence[KeyResult]] | None = None
+    headline: Callable[[Any], Iterable[KeyResult]] = lambda _: ()
+    quick_headline: Callable[[Any], Iterable[KeyResult]] | None = None
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
     branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}

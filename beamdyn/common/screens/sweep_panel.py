@@ -24,10 +24,9 @@ from beamdyn.common.plots.curves import input_words, panels_of
 from beamdyn.common.screens import tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.computations import download
-from beamdyn.common.screens.form_entries import Entries, in_unit, tables_of, usual_unit
-from beamdyn.common.screens.input_words import table_of
+from beamdyn.common.screens.form_entries import Entries, in_unit, table_of, tables_of, usual_unit
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.processes import RunsTasks, TakesTooLong
 from beamdyn.common.screens.screens import Screen, Sweeps
 
@@ -109,7 +108,7 @@ class SweepPanel:
                     ui.button("Cancel", on_click=self.close).props("outline no-caps")
                 self._busy.set_visibility(False)
                 for kind in ("CSV", "SVG", "PNG"):
-                    take = partial(self._take, kind.lower())
+                    take = partial(self._download, kind.lower())
                     ui.button(f"Sweep as {kind}", icon="download", on_click=take).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
             self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
@@ -129,7 +128,7 @@ class SweepPanel:
             self._results.set_options(names, value=kept or names[:1])
         stale = self._shown not in (None, needed)
         self._late.set_visibility(stale)
-        self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
+        toggle(self._good, "greyed", stale)
 
     def _inputs(self) -> dict[str, Input]:
         """The inputs that have a value, given or by default."""
@@ -196,7 +195,7 @@ class SweepPanel:
         title = f"Sweep of {self.screen.name}: {names.replace(',', ', ')} over {text}"
         return title, swept
 
-    async def _take(self, kind: str) -> None:
+    async def _download(self, kind: str) -> None:
         """Download the rows of the sweep, as "csv", or its picture, as "svg" or "png"."""
         swept = await self._run()
         if swept and kind == "csv":

@@ -1,4 +1,4 @@
-"""What is computed for a page, in any process: answers, sweeps, files and reports; why there is none."""
+"""Tasks of a page that run in any process: answers, sweeps, files, reports; and why there is no answer."""
 
 from __future__ import annotations
 
@@ -15,8 +15,15 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.screens.form_entries import Entries, tables_of
-from beamdyn.common.screens.input_words import NOT_GIVEN, default_words, help_of, label, table_of
+from beamdyn.common.screens.form_entries import (
+    NOT_GIVEN,
+    Entries,
+    default_words,
+    help_of,
+    label,
+    table_of,
+    tables_of,
+)
 from beamdyn.common.screens.open_document import OpenDocument, Outcome, ShownAnswer
 from beamdyn.common.screens.processes import TakesTooLong
 from beamdyn.common.screens.screens import Document, Screen
@@ -180,7 +187,7 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
 
 
 def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
-    """What is wrong on a screen, by the path of the field at fault.
+    """Mistakes on a screen, by the path of the field at fault.
 
     What is about no single field is about all that have changed since the last answer.  So is what is about
     others than these, if they are few: a top speed is refused since the beam has been made longer.
