@@ -64,9 +64,10 @@ def scene_screen(
 
     def shown(answer: Any) -> Sequence[RenderableType]:
         found = result(answer)
-        stated = left_out_of and isinstance(found, StatesModelError)
-        effects = [left_out_table(found.left_out_effects, left_out_of)] if stated else []
-        return [*tables_with_choice(found), *effects]
+        tables = tables_with_choice(found)
+        if left_out_of and isinstance(found, StatesModelError):
+            tables.append(left_out_table(found.left_out_effects, left_out_of))
+        return tables
 
     usual: dict[str, Any] = {
         "tables": shown,

@@ -116,12 +116,7 @@ def groups(entries: Mapping[str, str]) -> list[ListGroup]:
         ("Points", drawn, points, {"point": "point"}),
         ("Joints", "They hold bodies together, or to the ground.", of_joints, joints),
         ("Loads", free, of_loads, loads),
-        (
-            "Stroke",
-            "The load that moves the mechanism, and how far.",
-            [Item("run", None, "stroke", stroke)],
-            {},
-        ),
+        ("Stroke", "The load that moves the mechanism, and how far.", stroke, {}),
     )
     return [ListGroup(heading, about, tuple(items), kinds) for heading, about, items, kinds in each]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 from nicegui import ui
@@ -30,29 +29,26 @@ from beamdyn.common.screens.form_entries import (
     units_of,
     usual_unit,
 )
+from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.screens import Drag
+from beamdyn.common.screens.screens import Drag, Screen
 
 
 class Form:
-    """The fields of some tables.
+    """The fields of the tables of a screen.
 
     Parameters
     ----------
+    work : OpenDocument
+        The document, whose entries stand in the fields at first.
+    screen : Screen
+        Which of its screens.
     inputs : sequence of Input
-        Inputs, each with a field.
-    sections : sequence of str
-        Tables shown, in this order; "" for inputs outside any.
-    entries : mapping
-        Texts of the fields at first, by path.
+        Inputs that have a field, if they are in one of the screen's tables.
     changed : callable
         Called with path and text when a field changes.
-    drags : sequence of Drag
-        Sliders below fields.
     hold : callable
         Called with True when a slider is taken hold of, with False when it is let go.
-    headings : mapping
-        Headings of tables, where one that is made from the table's name does not serve.
     writer : PageWriter
         Writes into the fields while something is held.
 
@@ -64,26 +60,23 @@ class Form:
 
     def __init__(
         self,
+        work: OpenDocument,
+        screen: Screen,
         inputs: Sequence[Input],
-        sections: Sequence[str],
-        entries: Mapping[str, str],
         changed: Callable[[str, str], object],
-        drags: Sequence[Drag] = (),
-        hold: Callable[[bool], object] = lambda _: None,
-        headings: Mapping[str, str] = MappingProxyType({}),
-        writer: PageWriter | None = None,
+        hold: Callable[[bool], object],
+        writer: PageWriter,
     ) -> None:
-        self._writer = writer or PageWriter()
+        self._changed, self._hold, self._held, self._writer = changed, hold, False, writer
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
-        self._units: dict[str, str] = {}  # units of bare numbers, by path
+        self._units: dict[str, str] = {}  # of bare numbers, by path
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # of the fields
-        self._changed = changed
-        self._hold, self._held = hold, False
-        self._drags = {drag.path: drag for drag in drags}
-        for section in sections:
+        self._drags = {drag.path: drag for drag in screen.drags}
+        entries, headings = work.entries, work.document.headings
+        for section in screen.sections:
             chosen = [entry for entry in inputs if table_of(entry.path) == section]
             if not chosen:
                 continue
@@ -161,7 +154,13 @@ class Form:
             on_change=lambda e: self._heard(entry, e.value or ""),
         )
         field.props("debounce=100 autocomplete=off spellcheck=false" + " autogrow" * several)
-        field.on("blur", lambda: self._tidy(entry))
+
+        def tidy() -> None:  # what was read replaces what was typed when the field is left
+            read = self._read(entry.path)
+            if read.remark and not field.error:
+                field.set_value(read.text)
+
+        field.on("blur", tidy)
         given = unit_of(text, entry) or unit_of(usual, entry)
         self._units[entry.path] = given or usual_unit(entry.quantity.unit)
         units = units_of(entry)
@@ -183,12 +182,6 @@ class Form:
         """The text of a field, as it is read."""
         typed = self.fields[path].value or ""
         return read_entry(typed, self._inputs[path], self._units.get(path, ""))
-
-    def _tidy(self, entry: Input) -> None:
-        """Replace a field's text by what was read from it, when the field is left."""
-        read, field = self._read(entry.path), self.fields[entry.path]
-        if read.remark and not field.error:
-            field.set_value(read.text)
 
     def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
         """A button whose menu converts the field's value to another unit; made at the first click."""

@@ -127,10 +127,7 @@ class ScreenView:
             self._lists = (
                 None if lists is None else ListEditor(lists, lambda: work.entries, self._listed, self._writer)
             )
-            self.form = Form(
-                fielded, self.screen.sections, work.entries, self._changed, self.screen.drags, self._hold,
-                work.document.headings, self._writer,
-            )  # fmt: skip
+            self.form = Form(work, self.screen, fielded, self._changed, self._hold, self._writer)
         self._shape = [entry.path for entry in fielded]
         self._choices = {entry.path for entry in fielded if options_of(entry)}
         self.form.mark(at_fault(work, self.screen))

@@ -143,13 +143,26 @@ class SweepPanel:
             self._values.set_value(around(entry, self.work.entries))
 
     async def _run(self) -> InputSweep | None:
-        """Run the sweep; None if it fails, with the reason shown."""
-        text = f"{self._input.value}={self._values.value}"
-        names = ",".join(self._results.value)
+        """Run the sweep; None if it fails, with the reason shown.  One that is under way is ended first."""
+        text, names = f"{self._input.value}={self._values.value}", ",".join(self._results.value)
         request = (self.work.needed(self.screen), text, names)
         if self._found is not None and self._found[0] == request:
             return self._found[1]
-        swept = await self._swept(text, names)
+        self.close()
+        document, entries = self.work.document, dict(self.work.entries)
+        future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
+        self._busy.set_visibility(True)
+        swept: tasks.Swept
+        try:
+            swept = await future
+        except asyncio.CancelledError:
+            swept = "Cancelled."
+        except (TakesTooLong, BrokenExecutor) as error:
+            swept = f"Given up: {error}. Sweep fewer values."
+        finally:
+            if self._future is future:
+                self._future = None
+                self._busy.set_visibility(False)
         words, kind = (swept, "mistake") if isinstance(swept, str) else ("\n".join(swept.warnings), "warning")
         self._said.set_text(words)
         self._said.classes(add=kind if words else "", remove="mistake warning")
@@ -157,23 +170,6 @@ class SweepPanel:
             return None
         self._found = request, swept
         return swept
-
-    async def _swept(self, text: str, names: str) -> tasks.Swept:
-        """The sweep, or why there is none; one that is under way is ended first."""
-        self.close()
-        document, entries = self.work.document, dict(self.work.entries)
-        future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
-        self._busy.set_visibility(True)
-        try:
-            return await future
-        except asyncio.CancelledError:
-            return "Cancelled."
-        except (TakesTooLong, BrokenExecutor) as error:
-            return f"Given up: {error}. Sweep fewer values."
-        finally:
-            if self._future is future:
-                self._future = None
-                self._busy.set_visibility(False)
 
     def close(self) -> None:
         """End the sweep that is under way."""
