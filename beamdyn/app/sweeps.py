@@ -23,9 +23,7 @@ from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.plots.notes import note_below
 from beamdyn.common.screens.form_entries import entries_of
 from beamdyn.common.screens.screens import Sweeps
-from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR
-from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import warnings_of
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse
@@ -49,48 +47,24 @@ class SweepCase:
 
     def __init__(self, scene: Scene, top: float, modes: int) -> None:
         self.scene, self.top, self.modes = scene, top, modes
-        self.answers: list[Any] = []  # those that were computed
+        self.answers: dict[tuple[Any, ...], Any] = {}  # those asked for, by function and arguments
 
-    def _keep(self, answer: Kept) -> Kept:
-        self.answers.append(answer)
-        return answer
+    def ask(self, function: Callable[..., Kept], *given: Any) -> Kept:
+        """The answer of a function on the scene, which is computed once."""
+        asked = function, *given
+        if asked not in self.answers:
+            self.answers[asked] = function(self.scene, *given)
+        return self.answers[asked]
 
-    @cached_property
-    def at_rest(self) -> Modes:
-        """The modes at rest."""
-        return self._keep(natural_modes(self.scene, 0.0, self.modes))
-
-    @cached_property
-    def at_top(self) -> Modes:
-        """The modes at the top speed."""
-        return self._keep(natural_modes(self.scene, self.top, self.modes))
-
-    @cached_property
-    def critical(self) -> CriticalPoint:
-        """The critical speed."""
-        return self._keep(critical_point(self.scene))
-
-    @cached_property
     def crossings(self) -> np.ndarray:
         """Speeds at which the motion excites a mode [rad/s]."""
         if self.scene.motion is None:
             return np.array([])
-        found = self._keep(resonance_speeds(self.scene, self.top, self.modes))
-        return np.array([crossing.speed for crossing in found])
+        return np.array([found.speed for found in self.ask(resonance_speeds, self.top, self.modes)])
 
-    @cached_property
-    def amplitude(self) -> float:
-        """Steady amplitude at the top speed [m]."""
-        return self._amplitude_at(self.top)
-
-    def _amplitude_at(self, speed: float) -> float:
-        return float(self._keep(self._response(np.array([speed]))).amplitude[0])
-
-    def _response(self, speeds: np.ndarray) -> SteadyResponse:
-        """Steady response; its amplitudes are nan where there is none."""
-        if self.scene.motion is None:
-            raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
-        return steady_response(self.scene, speeds, self.modes)
+    def amplitude(self, speed: float) -> float:
+        """Steady amplitude at a speed [m]; nan where there is none."""
+        return float(self.ask(_steady_response, (speed,), self.modes).amplitude[0])
 
     @cached_property
     def peak(self) -> tuple[float, float]:
@@ -101,53 +75,59 @@ class SweepCase:
         ValueError
             If the beam is not damped: then the amplitude at a resonance has no bound.
         """
-        if not self.scene.is_damped and len(self.crossings):
+        crossings, best = self.crossings(), 0
+        if not self.scene.is_damped and len(crossings):
             bound = "without damping the amplitude at a resonance has no bound"
             advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
             raise InvalidValue("model.damping_ratio", 0.0, bound, advice)
-        speeds, best = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), self.crossings), 0
+        speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), crossings)
         for finer in range(_ROUNDS + 1):
             if finer:
                 low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
                 speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
-            amplitudes = self._response(speeds).amplitude
+            amplitudes = _steady_response(self.scene, speeds, self.modes).amplitude
             if np.isnan(amplitudes).all():
                 raise ValueError("at no speed up to the top speed is there a steady response")
             best = int(np.nanargmax(amplitudes))
-        return float(speeds[best]), self._amplitude_at(float(speeds[best]))
+        return float(speeds[best]), self.amplitude(float(speeds[best]))
 
     @cached_property
     def model_error(self) -> float:
         """Largest model error of the answers that were asked for; nan where it is not known."""
-        errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers]
+        errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers.values()]
         return float(np.max(errors, initial=0.0))
 
 
+def _steady_response(scene: Scene, speeds: Sequence[float] | np.ndarray, modes: int) -> SteadyResponse:
+    if scene.motion is None:
+        raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
+    return steady_response(scene, speeds, modes)
+
+
 def frequency_outputs(modes: int) -> list[Output]:
-    """Frequencies at the top speed and at rest [Hz], nan where a mode diverges; critical speed, resonance."""
-
-    def frequency(of: str, mode: int, case: SweepCase) -> float:
-        return float(getattr(case, of).frequency[mode])
-
-    def first_resonance(case: SweepCase) -> float:
-        return float(case.crossings.min(initial=np.inf))
-
+    """Frequencies at the top speed and at rest, critical speed, lowest speed of resonance."""
     frequencies = [
-        Output(f"frequency_{i + 1}{where}", f"frequency {i + 1}", partial(frequency, of, i), "Hz")
-        for where, of in (("", "at_top"), ("_at_rest", "at_rest"))
+        Output(f"frequency_{i + 1}{at}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
+        for at, share in (("", 1.0), ("_at_rest", 0.0))
         for i in range(modes)
     ]
+    first = "lowest speed of resonance"
     return [
         *frequencies,
-        Output("critical_speed", "critical speed", lambda case: case.critical.speed, "rad/s"),
-        Output("first_resonance", "lowest speed of resonance", first_resonance, "rad/s"),
+        Output("critical_speed", "critical speed", lambda case: case.ask(critical_point).speed, "rad/s"),
+        Output("first_resonance", first, lambda case: case.crossings().min(initial=np.inf), "rad/s"),
     ]
+
+
+def _frequency(mode: int, share: float, case: SweepCase) -> float:
+    """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
+    return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
     """The steady amplitude at the top speed, and the largest one up to there."""
     return [
-        Output("amplitude", "amplitude at top speed", lambda case: case.amplitude, "mm", 1e-3),
+        Output("amplitude", "amplitude at top speed", lambda case: case.amplitude(case.top), "mm", 1e-3),
         Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
         Output("speed_of_largest", "its speed", lambda case: case.peak[0], "rad/s"),
     ]
@@ -191,14 +171,16 @@ def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
     ):
         if some:
             first = max(some, key=lambda case: case.model_error) if some is large else some[0]
-            said = dict.fromkeys(said for answer in first.answers for said in warnings_of(answer))
+            said = dict.fromkeys(said for answer in first.answers.values() for said in warnings_of(answer))
             warned = "; ".join(said) or "of a mode that does not vibrate, for instance"
             yield f"at {len(some)} of {len(cases)} values {what}: {warned}."
 
 
 def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
     """Yield at how many values which effects were added, where the physics was chosen."""
-    choices = [[a.physics_choice for a in case.answers if a.physics_choice is not None] for case in cases]
+    choices = [
+        [a.physics_choice for a in case.answers.values() if a.physics_choice is not None] for case in cases
+    ]
     if not any(choices):
         return
     added = Counter(

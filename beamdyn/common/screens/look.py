@@ -67,7 +67,7 @@ body {{ font-size: 15px; }}
 .q-tab-panels, .q-tab-panel, .q-panel {{ overflow: visible; }}
 .screen {{ display: grid; grid-template-columns: minmax(270px, 330px) minmax(0, 1fr); gap: 1rem;
   width: 100%; }}
-.screen h2 {{ font-size: 1.15rem; font-weight: 600; line-height: 1.3; }}
+.screen h2, .designs h2 {{ font-size: 1.15rem; font-weight: 600; line-height: 1.3; }}
 .left {{ position: sticky; top: 44px; align-self: start; max-height: calc(100vh - 52px); overflow-y: auto;
   padding: 4px 6px 4px 4px; flex-wrap: nowrap; }}
 .right {{ min-width: 0; container-type: inline-size; }}
@@ -85,7 +85,6 @@ body {{ font-size: 15px; }}
   .shown {{ grid-template-columns: minmax(0, 1fr) minmax(380px, 38%); }}
 }}
 .designs {{ width: min(640px, 92vw); max-width: none; }}
-.designs h2 {{ font-size: 1.15rem; font-weight: 600; }}
 .designs h3 {{ font-size: 1rem; font-weight: 600; margin-top: 0.5rem; }}
 .design {{ border-top: 1px solid var(--edge); padding: 0.15rem 0; gap: 0.25rem; line-height: 1.3; }}
 .section {{ border: 1px solid var(--edge); border-radius: 4px; flex: none; }}
