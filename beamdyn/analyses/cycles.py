@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.equivalent_ranges import EquivalentRange
+    from beamdyn.loads.transient_loads import EquivalentRange
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 

@@ -16,8 +16,8 @@ from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.edge.tables import table
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screens import KeyResult
@@ -29,7 +29,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.margins import Margin, margins_at_rated
+from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged

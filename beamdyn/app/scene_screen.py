@@ -22,7 +22,7 @@ from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.edge.wording import of_file
-from beamdyn.common.plots.notes import note_below
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result

@@ -16,16 +16,16 @@ from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.directions import words_of_directions
-from beamdyn.loads.span_loads import REMEDIES, UNITS
+from beamdyn.loads.span_loads import REMEDIES
+from beamdyn.loads.stations import UNITS
 
 if TYPE_CHECKING:
     from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.equivalent_ranges import EquivalentRange
     from beamdyn.loads.random_loads import RandomLoads
     from beamdyn.loads.span_loads import LargestLoad, SpanLoads
     from beamdyn.loads.static_loads import StaticLoads
     from beamdyn.loads.steady_loads import SteadyLoads
-    from beamdyn.loads.transient_loads import TransientLoads
+    from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
 _DIGITS_EXPECTED = 3  # of the largest that are expected: statistics have no more
@@ -113,9 +113,10 @@ def _lines(result: SpanLoads, say: Callable[[str], str]) -> list[Text]:
 
 
 def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
-    (scale, unit), (name, unit_of_case), units = _SCALES[found.quantity], result.case, result.display_units
+    (scale, unit), case, units = _SCALES[found.quantity], result.case, result.display_units
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
-    in_case = units.speed_unit().say(found.case) if name == "speed" else f"{found.case:.6g} {unit_of_case}"
+    is_speed = case.name == "speed"
+    in_case = units.speed_unit().say(found.case) if is_speed else f"{found.case:.6g} {case.unit}"
     what, place = _say_component(result, found), units.length_unit().say(found.x)
     return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {in_case}."
 
