@@ -60,7 +60,7 @@ READERS = {
     "beamdyn/common/screens/open_document.py",
     "beamdyn/common/screens/request_guard.py",
     "beamdyn/common/drawing/symbols.py",
-    "beamdyn/common/edge/columns.py",
+    "beamdyn/common/edge/toml_columns.py",
     "beamdyn/common/edge/csv_columns.py",
     "beamdyn/common/edge/data_text.py",
     "beamdyn/common/edge/units.py",
