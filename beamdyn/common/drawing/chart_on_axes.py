@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
 _PALE, _CURSOR = "0.6", "0.4"
 _GAP = 0.01  # between the foot of the axes and a text, over the height of the axes
+_BESIDE: dict[str, Any] = {"va": "bottom"}
 _ALONG: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90}
 _BEHIND_LEGEND = 0.92  # height of texts at the top of marks, over that of the axes
 
@@ -47,7 +48,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
     for mark in chart.marks:  # a vertical line, with its text beside it at the foot or along it at the top
         colour = colour_of.get(mark.curve, _CURSOR)
         ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
-        height, place = (_GAP, {"va": "bottom"}) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
+        height, place = (_GAP, _BESIDE) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
         ax.text(mark.at, height, f" {mark.text} ", color=colour, fontsize=_LETTERS, transform=across, **place)
     if chart.cursor is not None:
         ax.axvline(chart.cursor, color=_CURSOR, linewidth=1, linestyle=":")
