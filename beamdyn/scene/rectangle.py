@@ -7,9 +7,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.special import zeta
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
-from beamdyn.scene.profile import Profile, as_profile
+from beamdyn.scene.profile import Profile, as_profile, combine
 
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
@@ -63,6 +64,11 @@ class Rectangle:
             "second_rotary_inertia": edge.scaled(rho / 12),
         }
 
+    @cached_property
+    def torsion_factor(self) -> Profile:
+        """Torsional constant J of the section over b t^3/3, that of an infinitely wide one (Saint-Venant)."""
+        return combine(_torsion_factor, self.width, self.thickness)[0]
+
     def check_thickness(self, length: float) -> None:
         """Refuse a thickness that exceeds the length [m] of the beam, or the width anywhere."""
         ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
@@ -74,6 +80,16 @@ class Rectangle:
         advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
         k = int((h > b).argmax())
         refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])
+
+
+def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """The series of 3 J/(b t^3) of sides (c, n) with b >= t, as shape (1, c, n).
+
+    With tanh = 1 its terms add up to a multiple of zeta(5); what is left falls as exp(-n pi b/t).
+    """
+    n = np.arange(1, 16, 2)[:, None, None]
+    left = ((1 - np.tanh(n * np.pi * b / (2 * t))) / n**5).sum(axis=0)
+    return (1 - 192 / np.pi**5 * t / b * (31 / 32 * zeta(5) - left))[None]
 
 
 def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
