@@ -320,7 +320,7 @@ def _check_plate(beam: Beam, physics: Physics) -> None:
 
 
 def _with_corners(beam: Beam) -> Profile:
-    """Mass per length with breakpoints near the clamped root, where stresses in the corners of a plate vary."""
+    """Mass per length with breakpoints near the root, where stresses in the corners of a plate vary."""
     assert beam.section is not None
     part = float(beam.section.width(np.zeros(1))[0]) / beam.length
     places = [part * each for each in _CORNERS if part * each < _LAST_CORNER]

@@ -11,7 +11,13 @@ import pytest
 import beamdyn as bd
 
 PACKAGE = Path(bd.__file__).parent
-EDGE = ("app", "cli", "edge", "decks", "screens")  # whose texts are about keys, options, forms, other programs' names
+EDGE = (
+    "app",
+    "cli",
+    "edge",
+    "decks",
+    "screens",
+)  # whose texts are about keys, options, forms, other programs' names
 # "Scene(beam)", "Beam.from_stiffness", "MotionSample"; a dotted name such as "numpy.unique" is complete.
 CLASS = re.compile(r"(?<![\w.])([A-Z][a-z]+(?:[A-Z]\w*)?)(?=\(|\.[a-z_]+)|(?<![\w.])([A-Z][a-z]+[A-Z]\w*)\b")
 FUNCTION = re.compile(r"(?<![\w.])([a-z]+_[a-z_]+)\(")

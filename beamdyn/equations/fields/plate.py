@@ -4,8 +4,8 @@ The deflection of a thin rectangular section of width b and thickness t is
 
     w(x, y) = sum_k u_k(x) p_k(eta),    eta = 2 y/b,    p_k = (2 k + 1)^(1/2) P_k (Legendre),
 
-with bending u_0, the mean over the width, torsion (odd k) and camber (even k from 2).  The strain energy of a
-Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
+with bending u_0, the mean over the width, torsion (odd k) and camber (even k from 2).  The strain energy of
+a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
 
     1/2 int int D [w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) c w_xy^2] dy dx.
 
@@ -166,9 +166,7 @@ class Strip:
 
     def deflection(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> Deflection:
         """The deflection by functions of some numbers across."""
-        return Deflection(
-            self.section, self.scene.beam.length, field.name, numbers, conditions, self.points
-        )
+        return Deflection(self.section, self.scene.beam.length, field.name, numbers, conditions, self.points)
 
     def integrate(
         self,
@@ -205,9 +203,7 @@ class Strip:
             + bend(D, (rows, "w_yy"), (columns, "w_yy"))
             + bend(cross, (rows, "w_xx"), (columns, "w_yy"))
             + bend(cross, (rows, "w_yy"), (columns, "w_xx"))
-            + bend(
-                (D * section.torsion_factor).scaled(2 * (1 - nu)), (rows, "w_xy"), (columns, "w_xy")
-            )
+            + bend((D * section.torsion_factor).scaled(2 * (1 - nu)), (rows, "w_xy"), (columns, "w_xy"))
         )
 
 
@@ -285,13 +281,17 @@ class SectionField(Field):
         mass, (n_a, n_b) = beam.mass_per_length, axial_tension(beam)
         eta, _ = gauss_rule(strip.points)
 
-        def stiffness(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0) -> Term:
+        def stiffness(
+            name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0
+        ) -> Term:
             return Term(f"{name} of {self.name}", *names, 0, matrix, quantity, factor)
 
         inertia = strip.integrate(mass, (rows, "w"), (columns, "w"))
         yield Term(f"mass of {self.name}", *names, 2, inertia)
         if scene.physics.rotary_inertia and beam.rotary_inertia is not None:
-            tilts = (strip.integrate(beam.rotary_inertia, (rows, each), (columns, each)) for each in ("w_x", "w_y"))
+            tilts = (
+                strip.integrate(beam.rotary_inertia, (rows, each), (columns, each)) for each in ("w_x", "w_y")
+            )
             yield Term(f"rotary inertia of {self.name}", *names, 2, sum(tilts, np.zeros_like(inertia)))
         yield stiffness("stiffness", strip.stiffness(rows, columns))
         slopes = (rows, "w_x"), (columns, "w_x")
@@ -299,7 +299,9 @@ class SectionField(Field):
         yield stiffness("centrifugal stiffening", strip.integrate(n_b, *slopes), "speed_squared", cosine**2)
         yield stiffness("tension by root acceleration", strip.integrate(n_a, *slopes), "root_axial", -1.0)
         width = strip.section.width
-        pull = strip.integrate((mass * width * width).scaled(1 / 8), (rows, "w_y"), (columns, "w_y"), 1 - eta**2)
+        pull = strip.integrate(
+            (mass * width * width).scaled(1 / 8), (rows, "w_y"), (columns, "w_y"), 1 - eta**2
+        )
         yield stiffness("pull across", pull, "speed_squared", 1 - c2**2)
         yield stiffness("spin softening", inertia, "speed_squared", -(1 - c1**2))
 
@@ -331,7 +333,9 @@ def _explanations(name: str) -> dict[str, Explanation]:
         f"pull across of {name}": Explanation(
             "ω² KNk qk", "rotation pulls the width apart", (why.TURNS, why.TILTED)
         ),
-        f"spin softening of {name}": Explanation("-ω² c² Mkk qk", why.say_softening, (why.TURNS, why.SOFTENED)),
+        f"spin softening of {name}": Explanation(
+            "-ω² c² Mkk qk", why.say_softening, (why.TURNS, why.SOFTENED)
+        ),
         f"damping of {name}": Explanation("C qk'", "the beam is damped", (why.DAMPED,)),
     }
 
@@ -344,7 +348,9 @@ class Torsion(SectionField):
     first = 1
     explanations: ClassVar[Mapping[str, Explanation]] = {
         **_explanations("torsion"),
-        "mass of the tip body in torsion": Explanation("Jp r rᵀ qk''", "a body at the tip turns", (why.TIP_BODY,)),
+        "mass of the tip body in torsion": Explanation(
+            "Jp r rᵀ qk''", "a body at the tip turns", (why.TIP_BODY,)
+        ),
         "spin of the tip body in torsion": Explanation(
             "-ω² (c² - s²) (J1 - J2) r rᵀ qk", "a body at the tip turns", (why.TIP_BODY, why.TURNS)
         ),
