@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.equivalent_ranges import EquivalentRange
+    from beamdyn.loads.transient_loads import EquivalentRange
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
@@ -88,14 +88,14 @@ class CycleOptions:
 
     def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
         """Counted cycles, and the equal cycles that do the same damage."""
-        from beamdyn.results.tables.loads import cycles_table, equivalents_table
+        from beamdyn.results.of_loads import cycles_table, equivalents_table
 
         made: list[RenderableType] = [cycles_table(cycles)]
         return [*made, equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
-        from beamdyn.results.tables.single_answers import cycles_csv
+        from beamdyn.results.of_loads import cycles_csv
 
         if self.cycles_file is None:
             return

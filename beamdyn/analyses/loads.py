@@ -187,7 +187,7 @@ def _in_transient(
     where: dict[str, Any],
     basis: dict[str, Any],
 ) -> tuple[SpanLoads, list[RenderableType]]:
-    from beamdyn.results.tables.loads import transient_loads_table
+    from beamdyn.results.of_loads import transient_loads_table
 
     if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")

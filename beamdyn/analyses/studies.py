@@ -98,7 +98,7 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
     from beamdyn.results.cautions import warnings_of
-    from beamdyn.results.tables.studies import study_table
+    from beamdyn.results.of_studies import study_table
 
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress, of_file({}):
@@ -114,7 +114,7 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
     from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
     from beamdyn.common.edge.wording import of_file
     from beamdyn.scene.numbers import unit_of
-    from beamdyn.studies.spreads.spread import nominal_value
+    from beamdyn.studies.spread import nominal_value
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""

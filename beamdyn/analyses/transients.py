@@ -61,7 +61,7 @@ def simulate(
     animation
         Write an animation of the same: .gif.
     """
-    from beamdyn.results.tables.results import transient_table
+    from beamdyn.results.of_motion import transient_table
 
     span = None if window is None else parse_window(window, t_end)
     run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)
@@ -129,7 +129,7 @@ def _close_up(run: Transient, window: tuple[float, float]) -> tuple[np.ndarray, 
     """Positions, times and deflections: a few periods around the largest deflection in a window."""
     import numpy as np
 
-    from beamdyn.results.tables.results import time_of_peak
+    from beamdyn.results.of_motion import time_of_peak
 
     middle, _ = time_of_peak(run, *window)
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0

@@ -23,13 +23,13 @@ from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
-from beamdyn.modes.model_error.choice import plain_physics
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.margins import Margin, margins_at_rated
+from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
 _COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance

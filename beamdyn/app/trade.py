@@ -21,15 +21,14 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoin
 from beamdyn.common.edge.tables import table
 from beamdyn.common.plots.notes import note_below
 from beamdyn.common.screens.screens import Drag
-from beamdyn.modes.model_error.choice import plain_physics
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import notes_of, warnings_of
-from beamdyn.results.tables.tradeoffs import diagram_csv, diagram_table
+from beamdyn.results.of_studies import diagram_csv, diagram_table
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
-from beamdyn.studies.tradeoffs.physics import physics_diagram
 
 _BUDGET = 2.0  # for all measurements of a diagram [s]
 _RUNS = 5  # of the chosen model, the shortest of which counts

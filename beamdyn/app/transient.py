@@ -26,7 +26,7 @@ from beamdyn.common.screens.courses import Onward
 from beamdyn.common.screens.screens import KeyResult, Slider
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.results.cautions import describe_choice
-from beamdyn.results.tables.results import time_of_peak, transient_table
+from beamdyn.results.of_motion import time_of_peak, transient_table
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
 from beamdyn.transient.transient import Transient

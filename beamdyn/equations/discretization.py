@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
-from beamdyn.equations.arc_quadrature import Cells
+from beamdyn.equations.quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
@@ -129,7 +129,7 @@ class Discretization(Protocol):
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
        `converges_regularly` says whether the estimate needs no further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
-       in `beamdyn.modes.modal.choice`.
+       in `beamdyn.modes.modal.discretization_choice`.
 
     Examples
     --------

@@ -12,8 +12,8 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import HINGED, RootConditions
+from beamdyn.equations.quadrature import Cells
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree

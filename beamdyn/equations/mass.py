@@ -1,7 +1,7 @@
-"""Integrals over the mass of the beam: that of its sections, and the point masses along it.
+"""Integrals over the mass of the beam's sections and the point masses along it, and the axial force by it.
 
-What stands at the tip is not among them: a body there has an offset and moments of inertia, and enters with
-the fields.
+A body at the tip is not among the integrals: it has an offset and moments of inertia, and enters with the
+fields.
 """
 
 from __future__ import annotations
@@ -70,3 +70,21 @@ def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
     outboard = of_sections.scaled(length).outboard_integral()
     moment = _moment_per_length(beam).scaled(length**2).outboard_integral()
     return outboard.stepped(xi, mass), moment.stepped(xi, mass * xi * length)
+
+
+@lru_cache(maxsize=64)
+def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
+    """Tension N_A [kg] per root acceleration and N_B [kg m] per squared speed, over x/L.
+
+    The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
+    """
+    n_a, n_b = outboard_moments(beam)
+    if beam.tip is None:
+        return n_a, n_b
+    reach = beam.length + beam.tip.offset
+    return _add_constant(n_a, beam.tip.mass), _add_constant(n_b, beam.tip.mass * reach)
+
+
+def _add_constant(profile: Profile, constant: float) -> Profile:
+    rows = tuple((row[0] + constant, *row[1:]) for row in profile.coefficients)
+    return Profile(profile.breakpoints, rows)

@@ -33,11 +33,10 @@ from scipy.linalg.lapack import dgeqp3, dorgqr
 
 from beamdyn.common.legendre import legendre_series, legendre_values
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions
+from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.piecewise_polynomials import PiecewisePolynomials
-from beamdyn.equations.sampled_space import SampledSpace, Sampler, product_of
+from beamdyn.equations.quadrature import ArcQuadrature, Cells, SampledSpace, Sampler, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.equations.moment_functions import MomentSpaces
-from beamdyn.equations.sampled_space import SampledSpace, product_of
+from beamdyn.equations.quadrature import Cells, SampledSpace, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree

@@ -12,11 +12,11 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Provenance, Result
+from beamdyn.equations.effects import OmittedEffect, list_left_out
 from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term
-from beamdyn.equations.left_out import OmittedEffect, list_left_out
 from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene

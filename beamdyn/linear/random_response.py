@@ -15,18 +15,34 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.linear.choice import check_linear, with_forces
-from beamdyn.linear.convergence import evaluate_accurately, evaluate_also
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.frequency_grid import about_resonances, frequencies_of_response, one_of_each
-from beamdyn.linear.mean_square import PartialFractions, damped_motion, partial_fractions
+from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
+from beamdyn.linear.inputs_outputs import (
+    AccelerationAt,
+    DeflectionAt,
+    Excitation,
+    Observation,
+    as_observation,
+)
+from beamdyn.linear.mean_square import (
+    ParametricTerm,
+    PartialFractions,
+    damped_motion,
+    parametric_term,
+    partial_fractions,
+)
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import AccelerationAt, DeflectionAt, Observation, as_observation
-from beamdyn.linear.parametric import ParametricTerm, parametric_term
-from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
-from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.spectra import (
+    PowerSpectrum,
+    RoadRoughness,
+    about_resonances,
+    frequencies_of_response,
+    highest_frequency,
+    one_of_each,
+    random_input,
+    warn_of_band,
+)
 from beamdyn.linear.transfer import check_stable
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out

@@ -17,9 +17,8 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.legendre import gauss_points_on, gauss_rule
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
-from beamdyn.equations.sampled_space import SampledSpace
+from beamdyn.equations.quadrature import Cells, SampledSpace
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 

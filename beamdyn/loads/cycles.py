@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,9 +13,8 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, kind, positive
 from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.loads.equivalent_ranges import EquivalentRange
-from beamdyn.loads.span_loads import UNITS
-from beamdyn.loads.transient_loads import TransientLoads, window_in
+from beamdyn.loads.stations import UNITS
+from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads, window_in
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -177,7 +176,10 @@ def count_cycles(
     (chosen,) = loads.check_component(quantity, component)
     place = count("station", station, 0, len(loads.x) - 1)
     first, last = window_in(loads.run, start, end)
-    extract_cycles = _load_counter()
+    try:
+        from rainflow import extract_cycles  # an extra
+    except ImportError:
+        raise ImportError("count_cycles needs rainflow: pip install 'beamdyn[fatigue]'") from None
     index = loads.path.outputs.places[quantity].start + chosen
     values = loads.path.turning_values(place, index, first, last)
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3)
@@ -194,12 +196,3 @@ def count_cycles(
         provenance=Provenance(__version__, "rainflow counting (ASTM E1049)", "", perf_counter() - begin),
         scene=loads.scene,
     )
-
-
-def _load_counter() -> Callable[[np.ndarray], Iterable[tuple[float, ...]]]:
-    """The function that counts, of a package that is an extra."""
-    try:
-        from rainflow import extract_cycles
-    except ImportError:
-        raise ImportError("count_cycles needs rainflow: pip install 'beamdyn[fatigue]'") from None
-    return extract_cycles

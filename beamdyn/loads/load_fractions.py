@@ -14,20 +14,20 @@ whose mean over a turn is the first integral, and whose largest value has the se
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from beamdyn.equations.root_motion import root_motion
-from beamdyn.linear.excitations import BaseMotion, Excitation
+from beamdyn.equations.root_motion import Quantity, root_motion
+from beamdyn.linear.inputs_outputs import BaseMotion, Excitation
 from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.section_points import StationOutputs
-from beamdyn.loads.stations import SpanStations
+from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.scene.motion import MotionSample
 
 _TURN = 2 * np.pi
@@ -120,16 +120,29 @@ class LinearLoads:
         InvalidValue
             If the excitation does not load the beam, or a mode is not damped.
         """
-        rows, inertia = self._rows
         free = damped_motion(self.model)
-        position, velocity = self._at_speed(rows)
+        position, velocity = self._at_speed
         found = []
         for harmonic, drive in self.model.drives(excitation).items():
             q = residues(free, drive.load)
             seen = position @ q + (velocity @ q) * free.poles
             shift = harmonic * self.model.speed / _TURN
-            found.append(LoadFractions(shift, self._direct(rows, inertia, drive), seen, free.poles))
+            found.append(LoadFractions(shift, self._direct(drive), seen, free.poles))
         return (*found,)
+
+    def _direct(self, drive: HarmonicDrive) -> np.ndarray:
+        """Outputs (S, K) of a unit input itself, with the accelerations that it causes."""
+        rows, by_force = self._rows
+        total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
+        if drive.force is None:
+            return total
+        (at, direction), planes = drive.force, self.model.equations.planes
+        xi, inboard = self.stations.xi, self.stations.inboard
+        outboard = (xi < at) | (inboard & (xi == at))
+        loads = np.zeros((len(xi), 1 + 2 * planes))  # of a unit force on the parts outboard of it alone
+        loads[:, 1 + direction] = outboard
+        loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
+        return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)
 
     def steady(self) -> tuple[np.ndarray, np.ndarray]:
         """Outputs of steady rotation, and amplitudes of their variation by gravity within a turn.
@@ -139,69 +152,53 @@ class LinearLoads:
         constant, amplitude : ndarray, shape (S, K)
             At rest gravity counts in the constant outputs, as at the angle of rotation 0.
         """
-        rows, _ = self._rows
-        root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
-        vectors, position = self.model.equations.vectors, self._at_speed(rows)[0]
-        f = sum((getattr(root, name) * vector for name, vector in vectors.items()), np.zeros(self._size))
-        constant = position @ np.linalg.solve(self.model.K, f)
-        constant = constant + sum(getattr(root, name) * load for name, load in rows.load.items())
-        by_harmonic = dict(self._of_gravity(rows))
-        return constant + np.real(by_harmonic.pop(0, 0.0)), sum(
-            map(np.abs, by_harmonic.values()), np.zeros_like(constant)
-        )
-
-    def _of_gravity(self, rows: LoadRows) -> list[tuple[int, np.ndarray]]:
-        """Outputs (S, K) of gravity at each harmonic of the rotation."""
-        model, vectors = self.model, self.model.equations.vectors
-        position, velocity = self._at_speed(rows)
-        found = []
+        (rows, _), model, vectors = self._rows, self.model, self.model.equations.vectors
+        position, velocity = self._at_speed
+        zero, unloaded = np.zeros(rows.shape), np.zeros(model.equations.size)
+        static = np.linalg.solve(model.K, _sum(self._values(vectors), vectors, unloaded))
+        constant, amplitude = position @ static + _sum(self._values(rows.load), rows.load, zero), zero
         accelerations = BaseMotion("n2").accelerations(model.scene.mount, model.speed)
         for harmonic, given in accelerations.items() if model.scene.gravity else ():
             s = 1j * harmonic * model.speed
-            f = sum((a * vectors[name] for name, a in given.items() if name in vectors), np.zeros(self._size))
-            q = np.linalg.solve(s**2 * model.M + s * model.C + model.K, f)
-            direct = sum((a * rows.load[name] for name, a in given.items() if name in rows.load), 0.0)
-            found.append((harmonic, model.scene.gravity * (direct + position @ q + s * (velocity @ q))))
-        return found
-
-    @property
-    def _size(self) -> int:
-        return self.model.equations.size
+            load = _sum(given, vectors, unloaded)
+            q = np.linalg.solve(s**2 * model.M + s * model.C + model.K, load)
+            moved = position @ q + s * (velocity @ q)
+            output = model.scene.gravity * (_sum(given, rows.load, zero) + moved)
+            if harmonic:
+                amplitude = amplitude + np.abs(output)
+            else:
+                constant = constant + np.real(output)
+        return constant, amplitude
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
         """Rows without accelerations, and the outputs (S, K, n) of a unit force on each coordinate."""
-        model = self.model
+        model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
-        acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, self._size)))
-        flat = np.linalg.solve(model.M.T, acceleration.reshape(-1, self._size).T).T
+        acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
+        flat = np.linalg.solve(model.M.T, acceleration.reshape(-1, n).T).T
         by_force = np.einsum("spk,skn->spn", self.outputs.matrix, flat.reshape(acceleration.shape))
         return rows.in_motion(model.equations).through(self.outputs.matrix), by_force
 
-    def _at_speed(self, rows: LoadRows) -> tuple[np.ndarray, np.ndarray]:
+    @cached_property
+    def _at_speed(self) -> tuple[np.ndarray, np.ndarray]:
         """Outputs (S, K, n) by coordinates and velocities, in steady rotation."""
-        root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
-        zero = np.zeros((*rows.shape, self._size))
-        both = rows.position.items(), rows.velocity.items()
-        position, velocity = (sum((getattr(root, name) * row for name, row in each), zero) for each in both)
+        rows, _ = self._rows
+        zero = np.zeros((*rows.shape, self.model.equations.size))
+        position, velocity = (_sum(self._values(row), row, zero) for row in (rows.position, rows.velocity))
         return position, velocity
 
-    def _direct(self, rows: LoadRows, by_force: np.ndarray, drive: HarmonicDrive) -> np.ndarray:
-        """Outputs (S, K) of a unit input itself, with the accelerations that it causes."""
-        given = drive.accelerations.items()
-        total = sum((a * rows.load[name] for name, a in given if name in rows.load), np.zeros(rows.shape))
-        if drive.force is None:
-            return np.asarray(total)
-        return total + by_force @ drive.load + self._of_point_force(*drive.force)
+    def _values(self, by_quantity: Mapping[Quantity, np.ndarray]) -> dict[Quantity, np.ndarray]:
+        """Values in steady rotation of the quantities of the root's motion that count."""
+        root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
+        return {name: getattr(root, name) for name in by_quantity}
 
-    def _of_point_force(self, at: float, direction: int) -> np.ndarray:
-        """Outputs (S, K) of a unit force at x/L on the parts outboard of it alone."""
-        xi, inboard, planes = self.stations.xi, self.stations.inboard, self.model.equations.planes
-        outboard = (xi < at) | (inboard & (xi == at))
-        loads = np.zeros((len(xi), 1 + 2 * planes))
-        loads[:, 1 + direction] = outboard
-        loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
-        return np.einsum("spk,sk->sp", self.outputs.matrix, loads)
+
+def _sum(
+    values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
+) -> np.ndarray:
+    """Sum of arrays times the values of the quantities of the root's motion."""
+    return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
 
 
 def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum) -> np.ndarray:

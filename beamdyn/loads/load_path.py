@@ -10,13 +10,13 @@ import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.load_time_error import time_errors_of_rows
 from beamdyn.loads.mode_error import mode_error, through, with_neighbours
-from beamdyn.loads.section_points import StationOutputs
-from beamdyn.loads.stations import SpanStations
+from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.simulate import Transient
 from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
+from beamdyn.transient.trajectory import Trajectory
 
 _COMPARED = 4000  # times at which two runs are compared; at most twice as many
 _BATCH = 500  # times at once
@@ -70,10 +70,21 @@ class LoadPath(FieldsOnly):
         """Outputs at times t [s] (T,): shape (T, S, K)."""
         return self.rows.at(self._system.root(t), *self.run.path.at(t))
 
+    def loads_at(self, t: np.ndarray) -> np.ndarray:
+        """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
+        return self.loads.at(self._system.root(t), *self.run.path.at(t))
+
+    # Turning points and largest magnitudes --------------------------------------------------------
+
     def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
         """Values of one output of one station at its turning points from start to end [s], and at these."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
-        t = self._dense_times(start, end)
+        samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
+        between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
+        pieces = np.array(smooth_piece_ends(self.run.request.motion, self.run.path.end))
+        before = pieces[1:] - _BEFORE_JUMP * np.diff(pieces)
+        t = np.unique(np.concatenate([between, before, [start, end]]))
+        t = t[(t >= start) & (t <= end)]
         values = np.concatenate([self._each_at(single, some[None])[0] for some in _batches(t)])
         signs = np.sign(np.diff(values))
         rising = np.flatnonzero(signs)  # not on a plateau, of which the first sample is the turning point
@@ -86,30 +97,23 @@ class LoadPath(FieldsOnly):
             found.insert(-1, best[:, 0])
         return np.concatenate(found)
 
-    def _dense_times(self, start: float, end: float) -> np.ndarray:
-        """Times from start to end [s], several between two samples of the run and one before each jump."""
-        samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
-        between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
-        pieces = np.array(smooth_piece_ends(self.run.request.motion, self.run.path.end))
-        before = pieces[1:] - _BEFORE_JUMP * np.diff(pieces)
-        t = np.unique(np.concatenate([between, before, [start, end]]))
-        return t[(t >= start) & (t <= end)]
-
-    def loads_at(self, t: np.ndarray) -> np.ndarray:
-        """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
-        return self.loads.at(self._system.root(t), *self.run.path.at(t))
-
-    # Largest magnitudes ---------------------------------------------------------------------------
-
     def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
         """Values of largest magnitude from start to end [s], and their times [s]: shapes (S, K)."""
-        values, times = self._largest_samples(start, end)
-        station, component = (index.ravel() for index in np.indices(values.shape))
-        single = self.rows.chosen(station, component)
+        t = self.run.path.samples[0]
+        longest_gap = float(np.diff(t).max())
+        t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
+        best, times = np.zeros(self.rows.shape), np.full(self.rows.shape, start)
+        for some in _batches(t):
+            values = self.at(some)
+            k = np.abs(values).argmax(axis=0)[None]
+            largest = np.take_along_axis(values, k, axis=0)[0]
+            larger = np.abs(largest) > np.abs(best)
+            best, times = np.where(larger, largest, best), np.where(larger, some[k[0]], times)
+        single = self.rows.chosen(*(index.ravel() for index in np.indices(best.shape)))
         t = times.ravel()[:, None]
-        window = np.maximum(t - self._longest_gap, start), np.minimum(t + self._longest_gap, end)
+        window = np.maximum(t - longest_gap, start), np.minimum(t + longest_gap, end)
         found, t = self._refine(single, np.abs, t, *window, _REFINEMENTS)
-        return found.reshape(values.shape), t.reshape(values.shape)
+        return found.reshape(best.shape), t.reshape(best.shape)
 
     def _refine(
         self,
@@ -130,22 +134,6 @@ class LoadPath(FieldsOnly):
             half_width = half_width / _FINE
         return found, t
 
-    @property
-    def _longest_gap(self) -> float:
-        return float(np.diff(self.run.path.samples[0]).max())
-
-    def _largest_samples(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-        t = self.run.path.samples[0]
-        t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
-        best, times = np.zeros(self.rows.shape), np.full(self.rows.shape, start)
-        for some in _batches(t):
-            values = self.at(some)
-            k = np.abs(values).argmax(axis=0)[None]
-            largest = np.take_along_axis(values, k, axis=0)[0]
-            larger = np.abs(largest) > np.abs(best)
-            best, times = np.where(larger, largest, best), np.where(larger, some[k[0]], times)
-        return best, times
-
     def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
         """Single outputs (O, 1) at times of their own, t (O, T): shape (O, T)."""
         root = self._system.root(t)
@@ -163,32 +151,55 @@ class LoadPath(FieldsOnly):
     @cached_property
     def error(self) -> np.ndarray:
         """Estimated errors (S, K) over the whole run: of the modes left out, and of time integration."""
-        if self.run.refined is None:
+        run, refined = self.run, self.run.refined
+        if refined is None:
             return np.full(self.rows.shape, np.inf)
         everywhere = with_neighbours(self.stations)
-        distance, largest = _compare(*(LoadPath(run, everywhere) for run in (self.run, self.run.refined)))
-        along_span = largest.max(axis=0)
-        basis = self.run.request.basis
-        length = self.run.scene.beam.length
-        of_modes = mode_error(distance, along_span, self.stations, self.outputs, basis, length)
-        return of_modes + through(self.outputs, self._time_errors)
+        own, other = (LoadPath(each, everywhere) for each in (run, refined))
+        distance, largest = np.zeros((2, *own.loads.shape))
+        t = run.path.samples[0]
+        for some in _batches(t[:: 1 + len(t) // _COMPARED]):
+            values = own.loads_at(some)
+            distance = np.maximum(distance, np.abs(values - other.loads_at(some)).max(axis=0))
+            largest = np.maximum(largest, np.abs(values).max(axis=0))
+        where = self.stations, self.outputs, run.request.basis, run.scene.beam.length
+        of_modes = mode_error(distance, largest.max(axis=0), *where)
+        return of_modes + through(self.outputs, self._time_errors())
 
-    @property
     def _time_errors(self) -> np.ndarray:
-        """Time-integration errors of the loads (S, 1 + 2 d)."""
-        return time_errors_of_rows(self.loads, self._system, self.run.path, self.run.time_error)
+        """Time-integration errors of the loads (S, 1 + 2 d).
+
+        They are nan where the error of the tip is not known, and 0 where the beam stays in equilibrium.
+        """
+        rows, system, path = self.loads, self._system, self.run.path
+        if self.run.time_error == 0 or not isinstance(path, Trajectory):
+            return np.full(rows.shape, self.run.time_error)
+        frequencies = vibration_frequencies(system, path.end - path.start)
+        sizes, errors = largest_per_coordinate(rows, system, path, frequencies), np.zeros(rows.shape)
+        rank = np.argsort(np.diag(system.equations.matrices[0]["unity"]), kind="stable")
+        for k in range(rows.shape[1]):
+            largest = sizes[:, k].max(axis=0)
+            error = estimate_time_error(system, path.segments, np.diag(largest))
+            contributions = np.empty(system.size)
+            contributions[rank] = error.modes
+            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # of each station
+            totals = shares @ contributions + shares.max(axis=1) * error.interpolation
+            errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
+        return errors
 
 
-def _compare(path: LoadPath, other: LoadPath) -> tuple[np.ndarray, np.ndarray]:
-    """Largest distance of the loads of two runs over time, and their largest magnitude: (S, 1 + 2 d)."""
-    distance, largest = np.zeros((2, *path.loads.shape))
-    t = path.run.path.samples[0]
-    for some in _batches(t[:: 1 + len(t) // _COMPARED]):
-        values = path.loads_at(some)
-        distance = np.maximum(distance, np.abs(values - other.loads_at(some)).max(axis=0))
-        largest = np.maximum(largest, np.abs(values).max(axis=0))
-    return distance, largest
+def largest_per_coordinate(
+    rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
+) -> np.ndarray:
+    """Largest load over the run per unit amplitude of each coordinate: shape (S, K, n)."""
+    root = system.root(path.samples[0])  # several in each step: steps are short where a shock acts
+    total = np.zeros((*rows.shape, system.size))
+    for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):
+        for quantity, row in by_quantity.items():
+            total += np.abs(row) * np.abs(getattr(root, quantity)).max() * factor
+    return total
 
 
 def _batches(t: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield values in batches that are evaluated at once."""
     return (t[k : k + _BATCH] for k in range(0, len(t), _BATCH))

@@ -16,19 +16,19 @@ Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import FieldEquations
 from beamdyn.equations.fields.stretch import Stretch
+from beamdyn.equations.quadrature import Cells
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
 from beamdyn.loads.stations import SpanStations
@@ -76,22 +76,26 @@ class LoadRows:
                 total += getattr(root, quantity)[:, None, None] * np.moveaxis(row @ state.T, -1, 0)
         return total
 
+    def each(self, change: Callable[[np.ndarray], np.ndarray]) -> LoadRows:
+        """The rows after a change of every array."""
+
+        def changed(part: ByQuantity) -> ByQuantity:
+            return {name: change(row) for name, row in part.items()}
+
+        return LoadRows(*map(changed, self.parts))
+
+    @property
+    def parts(self) -> tuple[ByQuantity, ByQuantity, ByQuantity, ByQuantity]:
+        """Loads by nothing but the root's motion, by position, velocity and acceleration."""
+        return self.load, self.position, self.velocity, self.acceleration
+
     def chosen(self, station: np.ndarray, component: np.ndarray) -> LoadRows:
         """Rows of O single loads as those of O stations with one component."""
-
-        def pick(by_quantity: ByQuantity) -> ByQuantity:
-            return {name: row[station, component][:, None] for name, row in by_quantity.items()}
-
-        return LoadRows(pick(self.load), pick(self.position), pick(self.velocity), pick(self.acceleration))
+        return self.each(lambda row: row[station, component][:, None])
 
     def through(self, matrix: np.ndarray) -> LoadRows:
         """Rows of P quantities that are linear in the loads of their station: matrix (S, P, K)."""
-
-        def turned(by_quantity: ByQuantity) -> ByQuantity:
-            return {name: np.einsum("spk,sk...->sp...", matrix, row) for name, row in by_quantity.items()}
-
-        each = (self.load, self.position, self.velocity, self.acceleration)
-        return LoadRows(*map(turned, each))
+        return self.each(lambda row: np.einsum("spk,sk...->sp...", matrix, row))
 
     def in_motion(self, equations: Equations) -> LoadRows:
         """Rows without accelerations, which the equations of motion give."""
@@ -149,27 +153,16 @@ def span_rows(
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
     stretched = Stretch().complete(scene.undamped)  # its equation has the axial force
     assembled = {f.name: f.assemble(stretched, spaces) for f in FIELDS if f.is_modelled(stretched)}
-    parts = [*_displacements(assembled, equations.planes)]
-    rows = _gather([_rows_of(assembled, equations, *part) for part in parts])
+    directions = _FIELD_OF_DIRECTION[: equations.planes]
+    moves = [(field, False) for field in (Stretch.name, *directions)]  # along the beam, and across it
+    parts = []
+    for field, turns in (*moves, *((field, True) for field in directions)):
+        space, cuts = assembled[field].space, len(stations.xi)
+        assert isinstance(space, CutSpace)
+        first = space.trials if turns else space.size - cuts
+        parts.append(_rows_of(assembled, equations, field, slice(first, first + cuts)))
+    rows = LoadRows(*map(_stack, zip(*(part.parts for part in parts), strict=True)))
     return _across_deflected_axis(rows, equations, stations, beam.length)
-
-
-def _displacements(assembled: Mapping[str, FieldEquations], planes: int) -> Iterator[tuple[str, slice]]:
-    """Field and virtual displacements of each component: along the beam, across it, rotations."""
-    for field in (Stretch.name, *_FIELD_OF_DIRECTION[:planes]):
-        yield field, _translations(assembled[field].space)
-    for field in _FIELD_OF_DIRECTION[:planes]:
-        yield field, _rotations(assembled[field].space)
-
-
-def _rotations(space: object) -> slice:
-    assert isinstance(space, CutSpace)
-    return slice(space.trials, space.trials + len(space.quadrature.stations.xi))
-
-
-def _translations(space: object) -> slice:
-    assert isinstance(space, CutSpace)
-    return slice(space.size - len(space.quadrature.stations.xi), space.size)
 
 
 def _rows_of(
@@ -190,25 +183,13 @@ def _rows_of(
     return LoadRows(load, *by_order)
 
 
-def _gather(components: list[LoadRows]) -> LoadRows:
-    """Stack the rows of K components along a new second axis."""
-
-    def stack(parts: list[ByQuantity]) -> ByQuantity:
-        names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
-        return {name: np.stack(_filled([part.get(name) for part in parts]), axis=1) for name in names}
-
-    return LoadRows(
-        stack([c.load for c in components]),
-        stack([c.position for c in components]),
-        stack([c.velocity for c in components]),
-        stack([c.acceleration for c in components]),
-    )
-
-
-def _filled(rows: list[np.ndarray | None]) -> list[np.ndarray]:
-    """The arrays, with zeros in place of those that are None."""
-    like = next(row for row in rows if row is not None)
-    return [np.zeros_like(like) if row is None else row for row in rows]
+def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:
+    """Stack the rows of K components along a new second axis, with zeros where one has none."""
+    like: ByQuantity = {name: row for part in parts for name, row in part.items()}
+    return {
+        name: np.stack([part.get(name, np.zeros_like(row)) for part in parts], axis=1)
+        for name, row in like.items()
+    }
 
 
 def _across_deflected_axis(

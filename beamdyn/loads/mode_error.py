@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from beamdyn.accuracy.margins import MODES_OF_FORCES, MODES_OF_MOMENTS
-from beamdyn.loads.section_points import StationOutputs
-from beamdyn.loads.stations import SpanStations
+from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.modal_basis import ModalBasis
 
 _LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
@@ -56,26 +55,18 @@ def mode_error(
         Infinite where the distance exceeds 0.3 of the largest value along the span, and rounding: then it
         does not bound the error.
     """
-    everywhere = with_neighbours(stations).xi
-    half_wave = 1 / (_count_modes(basis) + 0.5)
-    near = np.abs(stations.xi[:, None] - everywhere) <= half_wave
+    modes = np.inf if basis.modes is None else basis.modes  # of a field
+    near = np.abs(stations.xi[:, None] - with_neighbours(stations).xi) <= 1 / (modes + 0.5)
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     planes = (distance.shape[-1] - 1) // 2
     factors = MODES_OF_MOMENTS.factor, MODES_OF_FORCES.factor, MODES_OF_MOMENTS.factor
     margins = np.repeat(factors, [1, planes, planes])
-    rounding = through(outputs, _rounding(along_span, length)[..., None, :])
+    force = along_span[..., : 1 + planes].max(axis=-1, keepdims=True)  # the largest, also on the whole length
+    moment = np.maximum(along_span[..., 1 + planes :].max(axis=-1, keepdims=True), length * force)
+    both = [np.repeat(force, 1 + planes, axis=-1), np.repeat(moment, planes, axis=-1)]
+    rounding = through(outputs, (_ROUNDING * np.concatenate(both, axis=-1))[..., None, :])
     too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :]) + rounding
     return np.where(too_large, np.inf, through(outputs, margins * nearby) + rounding)
-
-
-def _rounding(along_span: np.ndarray, length: float) -> np.ndarray:
-    """Rounding errors of the loads (..., 1 + 2 d): of the largest force, and of that on the whole length."""
-    planes = (along_span.shape[-1] - 1) // 2
-    forces, moments = along_span[..., : 1 + planes], along_span[..., 1 + planes :]
-    largest = forces.max(axis=-1, keepdims=True)
-    of_moments = np.maximum(moments.max(axis=-1, keepdims=True), length * largest)
-    both = [np.repeat(largest, 1 + planes, axis=-1), np.repeat(of_moments, planes, axis=-1)]
-    return _ROUNDING * np.concatenate(both, axis=-1)
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
@@ -83,8 +74,3 @@ def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
     weights = np.abs(outputs.matrix)
     with np.errstate(invalid="ignore"):  # what is infinite does not matter where it has no weight
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)
-
-
-def _count_modes(basis: ModalBasis) -> float:
-    """Number of modes of a field; infinite where all functions of a discretization are kept."""
-    return np.inf if basis.modes is None else basis.modes

@@ -1,122 +1,47 @@
-"""Loads along the span under a random input, such as a rough road: mean squares and largest expected.
-
-A stationary Gaussian process with the mean squares s^2 of its values and r^2 of their rates passes its mean
-upwards nu = r / (2 pi s) times a second (Rice).  Of N = 2 nu T passages in the duration T, of both signs and
-taken as independent, the largest is
-
-    s (sqrt(2 ln N) + 0.5772 / sqrt(2 ln N))
-
-on the average (Davenport (1964), Proceedings of the Institution of Civil Engineers 28, 187-196), and with the
-probability p none passes s sqrt(2 ln(N / -ln p)).
-"""
+"""Loads along the span under a random input, such as a rough road: mean squares and largest expected."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from time import perf_counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refuse, within
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
-from beamdyn.common.results.result import Provenance
-from beamdyn.linear.choice import check_linear, model_of_few_modes, with_forces
-from beamdyn.linear.convergence import Refined, evaluate_accurately
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.mean_square import partial_fractions
+from beamdyn.linear.convergence import check_linear, with_forces
+from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
+from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import DeflectionAt
-from beamdyn.linear.parametric import ParametricTerm, parametric_term
-from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
-from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
-from beamdyn.linear.transfer import check_stable
-from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
-from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
-from beamdyn.loads.span_loads import UNITS, SpanLoads, placed, with_unit
-from beamdyn.loads.stations import Positions, SpanStations, stations_at
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, random_input, warn_of_band
+from beamdyn.loads.load_fractions import LoadFractions
+from beamdyn.loads.load_statistics import (
+    InputAndOutputs,
+    RandomStatistics,
+    error_of_largest,
+    expected_factor,
+    safe_factor,
+)
+from beamdyn.loads.span_loads import AskedLoads, Case, SpanLoads, with_unit
+from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
-from beamdyn.scene.direction import ACROSS
+from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import warn_of_deflection, warn_of_elastic_limit, warn_of_left_out
+from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TURN = 2 * np.pi
 _HOUR = 3600.0
-_FIRST_MODES = 4  # of a model that tells the sizes of the outputs
-_OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors follow their logarithm
 _FEW = 10.0  # crossings in the duration, below which the largest is no matter of statistics
-_LEAST = math.e  # crossings that the formula is evaluated with, at least
 _DIGITS = 3  # of the largest that are expected: statistics have no more
 _UNSURE = 0.05  # error over the largest, above which no digit of it may be sure
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
-
-
-@dataclass(frozen=True)
-class RandomStatistics:
-    """Statistics of K outputs at S stations; the components of all quantities stand one after the other.
-
-    Parameters
-    ----------
-    mean : ndarray, shape (S, K)
-        Constant part, by the steady rotation [unit of the output].
-    gravity : ndarray, shape (S, K)
-        Amplitude of what gravity makes of it within a turn [same unit].
-    rms : ndarray, shape (S, K)
-        Root mean square of the random part, over time and over a turn [same unit].
-    rms_in_turn : ndarray, shape (S, K)
-        That at the angle of rotation at which it is largest [same unit].
-    rate_rms : ndarray, shape (S, K)
-        Root mean square of its rate [same unit / s].
-
-    References
-    ----------
-    Rice (1944), Mathematical analysis of random noise; Davenport (1964), Proceedings of the Institution of
-    Civil Engineers 28, 187-196.
-
-    Examples
-    --------
-    >>> scene = bd.load_scene("examples/harvester_on_road.toml")
-    >>> found = bd.random_loads(scene, 83.3, bd.RoadRoughness("C", highest=10.0), at=[0.0])
-    >>> type(found.statistics).__name__
-    'RandomStatistics'
-    """
-
-    mean: np.ndarray
-    gravity: np.ndarray
-    rms: np.ndarray
-    rms_in_turn: np.ndarray
-    rate_rms: np.ndarray
-
-    @property
-    def crossings(self) -> np.ndarray:
-        """How often a second the random part passes 0 upwards [1/s], shape (S, K); 0 where there is none."""
-        moving = self.rms > 0
-        return np.where(moving, self.rate_rms, 0.0) / (_TURN * np.where(moving, self.rms, 1.0))
-
-    def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
-        """Largest magnitude (S, K), with a peak factor by the number of crossings of both signs."""
-        count = np.maximum(2 * self.crossings * duration, _LEAST)
-        return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
-
-
-def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Mean of the largest of so many crossings, over the root mean square."""
-    root = np.sqrt(2 * np.log(count))
-    return root + np.euler_gamma / root
-
-
-def safe_factor(count: np.ndarray, probability: float) -> np.ndarray:
-    """Quantile of the largest of so many crossings, with a probability, over the root mean square."""
-    return np.sqrt(2 * np.log(np.maximum(count / -math.log(probability), 1.0)))
 
 
 @dataclass(frozen=True)
@@ -158,7 +83,7 @@ class RandomLoads(SpanLoads):
     fractions: tuple[LoadFractions, ...] = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
+    case: ClassVar[Case] = Case("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""
@@ -170,11 +95,6 @@ class RandomLoads(SpanLoads):
                 yield error_at_most(self.error_of(name), UNITS[name])
         yield f"expected in {self.duration:g} s"
         yield warned(self.warnings)
-
-    @property
-    def cases(self) -> np.ndarray:
-        """The speed [rad/s], shape (1,)."""
-        return np.array([self.speed])
 
     def rms(self, quantity: str = "strain") -> np.ndarray:
         """Root mean square of the random part of a quantity, over time and over a turn: shape (S, k)."""
@@ -254,14 +174,11 @@ class RandomLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
         """Draw the largest magnitude expected of a quantity along the span."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
-
-        self.check_known(quantity)
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"
-        values, labels = self.values(quantity), self.components(quantity)
-        return plot_along_span(self.x, values, labels, label, ax, self.display_units)
+        return self.draw(ax, quantity, self.values, label)
 
     def _of(self, quantity: str, values: np.ndarray) -> np.ndarray:
+        """The components (S, k) of a quantity among those of all."""
         self.check_component(quantity, None)
         return values[:, self.outputs.places[quantity]]
 
@@ -328,34 +245,30 @@ def random_loads(
     >>> found.rms("strain").shape
     (1, 2)
     """
-    start = perf_counter()
     duration = positive("duration", duration, "s")
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
-    drive, spectrum = _coloured_input(scene, speed, psd, input)
-    stations = stations_at(scene.modelled_beam, at)
-    sections = sections_at(scene, stations, points, youngs_modulus)
-    asked = _InputAndOutputs(drive, spectrum, stations, StationOutputs.of_sections(sections))
-    refined = asked.refine(with_forces(scene, [drive]), speed, modes, tolerance, discretization)
+    drive, spectrum = random_input(scene, speed, psd, input)
+    if not isinstance(spectrum, PowerSpectrum):  # a cut moves with the input at once
+        bound = "mean squares of loads by white noise are not finite"
+        raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
+    asked = AskedLoads.of(scene, at, points, youngs_modulus)
+    of_input = InputAndOutputs(drive, spectrum, asked.stations, asked.outputs)
+    refined = of_input.refine(with_forces(scene, [drive]), speed, modes, tolerance, discretization)
     found, error = RandomStatistics(*refined.value), RandomStatistics(*refined.error)
     parametric = parametric_term(refined.model, drive, spectrum)
-    largest = asked.outputs.split(found.largest(expected_factor, duration)[None])
-    of_largest = asked.outputs.split(_error_of_largest(found, error, duration)[None], "_error")
+    largest, of_largest = found.largest(expected_factor, duration), error_of_largest(found, error, duration)
+    moments = asked.outputs.places["moment"]
+    warnings = (
+        *warn_of_left_out(scene),
+        *warn_of_rotation(refined.model.model, speed),
+        *parametric.warnings(),
+        *warn_of_band(spectrum, drive, refined.model),
+        *_warn_of_few(found, duration),
+        *_warn_of_few_modes(largest[:, moments], of_largest[:, moments], refined.model),
+        *warn_of_deflection(_tip_deflection(refined.model, drive, spectrum), scene.beam.length),
+    )
     return RandomLoads(
-        **placed(scene, stations, sections),
-        **largest,
-        **of_largest,
-        warnings=(
-            *sections.notes,
-            *warn_of_left_out(scene),
-            *warn_of_rotation(refined.model.model, speed),
-            *parametric.warnings(),
-            *warn_of_band(spectrum, drive, refined.model),
-            *_warn_of_few(found, duration),
-            *_warn_of_few_modes(largest["moment"][0], of_largest["moment_error"][0], refined.model),
-            *warn_of_deflection(_tip_deflection(refined.model, drive, spectrum), scene.beam.length),
-            *warn_of_elastic_limit(largest["strain"]),
-        ),
-        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        **asked.result(largest[None], of_largest[None], warnings, refined.method, refined.compared_with),
         speed=speed,
         duration=duration,
         statistics=found,
@@ -363,102 +276,9 @@ def random_loads(
         parametric=parametric,
         input=f"{drive.label} [{drive.unit}]",
         spectrum=spectrum,
-        fractions=asked.fractions(refined.model),
+        fractions=of_input.fractions(refined.model),
         outputs=asked.outputs,
     )
-
-
-def _coloured_input(
-    scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness, input: Excitation | str | None
-) -> tuple[Excitation, PowerSpectrum]:
-    """The excitation and its density, refused if it is white: a cut moves with the input at once."""
-    drive, spectrum = random_input(scene, speed, psd, input)
-    if not isinstance(spectrum, PowerSpectrum):
-        bound = "mean squares of loads by white noise are not finite"
-        raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
-    return drive, spectrum
-
-
-@dataclass(frozen=True)
-class _InputAndOutputs:
-    """A random input, and the outputs along the span whose statistics are asked for."""
-
-    drive: Excitation
-    spectrum: PowerSpectrum
-    stations: SpanStations
-    outputs: StationOutputs
-
-    def fractions(self, model: ModelAtSpeed) -> tuple[LoadFractions, ...]:
-        """Transfer functions from the input to the outputs, one for each harmonic of the rotation."""
-        return LinearLoads(model, self.stations, self.outputs).fractions(self.drive)
-
-    def statistics(self, model: ModelAtSpeed) -> np.ndarray:
-        """The fields of `RandomStatistics`, in their order: shape (5, S, K)."""
-        check_stable(model)
-        fractions, spectrum = self.fractions(model), self.spectrum
-        mean, gravity = LinearLoads(model, self.stations, self.outputs).steady()
-        squares = [sum(each.mean_square(spectrum, order) for each in fractions) for order in (0, 2)]
-        most = largest_in_turn(fractions, spectrum)
-        rms, rate, in_turn = (_root(np.asarray(square)) for square in (*squares, most))
-        return np.stack([mean, gravity, rms, in_turn, rate])
-
-    def refine(
-        self,
-        loaded: Scene,
-        speed: float,
-        modes: int | str,
-        tolerance: float,
-        discretization: DiscretizationChoice,
-    ) -> Refined:
-        """`statistics` and their errors, nan where there is none, with as many modes as they need."""
-        few = self.statistics(model_of_few_modes(loaded, speed, _FIRST_MODES, discretization))
-        size = _sizes(few)
-
-        def relative(model: ModelAtSpeed) -> np.ndarray:
-            return np.nan_to_num(self.statistics(model)) / size
-
-        top = _TURN * highest_frequency(self.spectrum) + abs(speed)
-        refined = evaluate_accurately(loaded, speed, top, modes, tolerance, discretization, relative, 0)
-        size = size * np.where(np.isnan(few), np.nan, 1.0)
-        value = refined.value * size
-        rounding = _rounding(self.fractions(refined.model), RandomStatistics(*value), self.spectrum)
-        return replace(refined, value=value, error=refined.error * size + rounding)
-
-
-def _sizes(statistics: np.ndarray) -> np.ndarray:
-    """What errors of the statistics (5, S, K) are relative to, the largest along the span: (5, 1, K)."""
-    size = np.nan_to_num(np.abs(statistics)).max(axis=1, keepdims=True)
-    return np.where(size > 0, size, 1.0) * np.array([1, 1, 1, 1, _OF_RATES])[:, None, None]
-
-
-def _root(squares: np.ndarray) -> np.ndarray:
-    """Square roots (S, K) of sums that may round to less than 0."""
-    return np.sqrt(np.maximum(squares, 0.0))
-
-
-def _rounding(
-    fractions: Sequence[LoadFractions], found: RandomStatistics, spectrum: PowerSpectrum
-) -> np.ndarray:
-    """Rounding errors of the fields of `RandomStatistics`, in their order: shape (5, S, K)."""
-    value, rate = (sum(each.rounding(spectrum, order) for each in fractions) for order in (0, 2))
-    pairs = (found.rms, value), (found.rms_in_turn, 2 * value), (found.rate_rms, rate)
-    none = np.zeros_like(found.mean)
-    return np.stack([none, none, *(np.hypot(rms, np.sqrt(square)) - rms for rms, square in pairs)])
-
-
-def _error_of_largest(found: RandomStatistics, error: RandomStatistics, duration: float) -> np.ndarray:
-    """Errors (S, K) of the largest expected: how far it rises with the errors of all statistics."""
-    total = found.rms + error.rms
-    with np.errstate(invalid="ignore"):
-        less = np.where(np.isfinite(total) & (total > 0), found.rms**2 / np.where(total > 0, total, 1.0), 0.0)
-    raised = RandomStatistics(
-        np.abs(found.mean) + error.mean,
-        found.gravity + error.gravity,
-        less,
-        found.rms_in_turn + error.rms_in_turn,
-        found.rate_rms + error.rate_rms,
-    )
-    return raised.largest(expected_factor, duration) - found.largest(expected_factor, duration)
 
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:

@@ -2,24 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.directions import modelled_directions
-from beamdyn.loads.section_points import QUANTITIES, Sections
-from beamdyn.loads.stations import SpanStations
+from beamdyn.loads.stations import (
+    UNITS,
+    Positions,
+    SectionPoints,
+    SpanStations,
+    StationOutputs,
+    sections_at,
+    stations_at,
+)
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_elastic_limit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}
+REMEDIES = {
+    "strain": "give the beam an outer_fibre, or points of the section",
+    "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
+}
+
+
+class Case(NamedTuple):
+    """What the first axis of the arrays is, its unit, and the field that has its values."""
+
+    name: str
+    unit: str
+    field: str
+
+
+SPEEDS = Case("speed", "rad/s", "speeds")
 
 
 @dataclass(frozen=True)
@@ -121,7 +145,7 @@ class SpanLoads(Result):
     provenance: Provenance
     scene: Scene = field(repr=False)
 
-    case: ClassVar[tuple[str, str]]  # what the first axis of the arrays is, and its unit
+    case: ClassVar[Case]
 
     def headline(self) -> Iterator[str]:
         """What it says in one line; see `Result.headline`."""
@@ -136,21 +160,21 @@ class SpanLoads(Result):
     @property
     def cases(self) -> np.ndarray:
         """Times [s] or speeds [rad/s], shape (C,)."""
-        raise NotImplementedError
+        return np.atleast_1d(getattr(self, self.case.field))
 
     def values(self, quantity: str) -> np.ndarray:
         """A quantity by its name (C, S, k)."""
-        one_of("quantity", quantity, QUANTITIES)
+        one_of("quantity", quantity, (*UNITS,))
         return getattr(self, quantity)
 
     def error_of(self, quantity: str) -> np.ndarray:
-        """Its error, as an array that broadcasts against the values."""
-        one_of("quantity", quantity, QUANTITIES)
+        """Error of a quantity, as an array that broadcasts against its values."""
+        one_of("quantity", quantity, (*UNITS,))
         return getattr(self, f"{quantity}_error")
 
     def components(self, quantity: str) -> tuple[str, ...]:
         """Names of the components of a quantity."""
-        one_of("quantity", quantity, QUANTITIES)
+        one_of("quantity", quantity, (*UNITS,))
         if quantity in ("strain", "stress"):
             return tuple(f"point {k + 1}" for k in range(self.points.shape[1]))
         directions = modelled_directions(self.scene)
@@ -211,28 +235,88 @@ class SpanLoads(Result):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw a quantity along the span: of few cases, else the range in which it lies."""
+        return self.draw(ax, quantity, self.values, with_unit(quantity))
+
+    def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
+        """Draw values (C, S, k) of a quantity along the span, if the result has it."""
         from beamdyn.common.plots.plots_along_span import plot_along_span
 
         self.check_known(quantity)
-        values, labels = self.values(quantity), self.components(quantity)
-        return plot_along_span(self.x, values, labels, with_unit(quantity), ax, self.display_units)
+        named = self.components(quantity)
+        return plot_along_span(self.x, values(quantity), named, label, ax, self.display_units)
 
 
 def with_unit(quantity: str) -> str:
     """A quantity with its unit, for an axis."""
+    one_of("quantity", quantity, (*UNITS,))
     return f"{quantity} [{UNITS[quantity]}]" if UNITS[quantity] else quantity
 
 
-REMEDIES = {
-    "strain": "give the beam an outer_fibre, or points of the section",
-    "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
-}
+# What is asked for --------------------------------------------------------------------------------
 
 
-def placed(scene: Scene, stations: SpanStations, sections: Sections) -> dict[str, Any]:
-    """Stations, points and scene, as arguments of the classes of results."""
-    x = stations.xi * scene.beam.length
-    return {"x": x, "inboard": stations.inboard, "points": sections.points, "scene": scene}
+@dataclass(frozen=True)
+class AskedLoads:
+    """What is asked for along the span of a scene, from which the results of all kinds are made.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    stations : SpanStations
+        The S stations.
+    outputs : StationOutputs
+        The K outputs there.
+    points : ndarray, shape (S, P, 2)
+        Points of the sections [m].
+    notes : tuple of str
+        What the strain lacks.
+    start : float
+        When it was asked [s].
+    """
+
+    scene: Scene
+    stations: SpanStations
+    outputs: StationOutputs
+    points: np.ndarray
+    notes: tuple[str, ...]
+    start: float
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        at: Positions | None,
+        points: SectionPoints | None,
+        youngs_modulus: float | None,
+    ) -> AskedLoads:
+        """Check the stations, the points of the sections and Young's modulus of a request."""
+        start, stations = perf_counter(), stations_at(scene.modelled_beam, at)
+        sections = sections_at(scene, stations, points, youngs_modulus)
+        return cls(scene, stations, sections.outputs, sections.points, sections.notes, start)
+
+    def result(
+        self,
+        values: np.ndarray,
+        errors: np.ndarray,
+        warnings: Iterable[str],
+        method: str,
+        compared_with: str,
+        first: tuple[str, ...] = (),
+    ) -> dict[str, Any]:
+        """Fields of a `SpanLoads`, with values and errors of the outputs (..., S, K)."""
+        by_quantity = self.outputs.split(values)
+        beyond = warn_of_elastic_limit(by_quantity["strain"])
+        return {
+            "x": self.stations.xi * self.scene.beam.length,
+            "inboard": self.stations.inboard,
+            "points": self.points,
+            "scene": self.scene,
+            **by_quantity,
+            **self.outputs.split(errors, "_error"),
+            "warnings": (*first, *self.notes, *warnings, *beyond),
+            "provenance": Provenance(__version__, method, compared_with, perf_counter() - self.start),
+        }
 
 
 def refuse_large_deflection(scene: Scene) -> None:

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from time import perf_counter
 from typing import ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
 from beamdyn.common.inputs.checks import ascending, real
 from beamdyn.common.results.announced import announced
-from beamdyn.common.results.result import Provenance
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
-from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection
-from beamdyn.loads.stations import Positions, SpanStations, stations_at
-from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.loads.span_loads import SPEEDS, AskedLoads, Case, SpanLoads, refuse_large_deflection
+from beamdyn.loads.stations import Positions, SectionPoints
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import static_load
-from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
-    warn_of_elastic_limit,
     warn_of_left_out,
     warn_of_static_deflection,
     warn_of_strain,
@@ -65,12 +60,7 @@ class StaticLoads(SpanLoads):
     angle: float
     tip: np.ndarray
 
-    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
-
-    @property
-    def cases(self) -> np.ndarray:
-        """The speeds [rad/s]."""
-        return self.speeds
+    case: ClassVar[Case] = SPEEDS
 
 
 @announced
@@ -130,63 +120,40 @@ def static_loads(
     >>> round(float(pull), 4), round(7850 * 0.01 * 0.0002 * 0.05 * (0.215 + 0.025) * 50**2, 4)  # m r w^2
     (0.471, 0.471)
     """
-    start = perf_counter()
     check_scene(scene)
     refuse_large_deflection(scene)
     scene, of_plain = plain_physics(scene), tuple(warn_of_plain(scene))
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")
-    stations = stations_at(scene.modelled_beam, at)
-    sections = sections_at(scene, stations, points, youngs_modulus)
+    asked = AskedLoads.of(scene, at, points, youngs_modulus)
     model = choose_model(scene.undamped, discretization, speeds, _MODES)
-    outputs = StationOutputs.of_sections(sections)
-    found, tip = _solve(model, stations, outputs, speeds, theta)
-    error = _error(found, _solve(model.coarser, stations, outputs, speeds, theta)[0])
-    values = outputs.split(found)
-    return StaticLoads(
-        **placed(scene, stations, sections),
-        **values,
-        **outputs.split(error, "_error"),
-        warnings=(*of_plain, *sections.notes, *_warnings(scene, model, speeds, tip, values["strain"])),
-        provenance=Provenance(
-            __version__,
-            str(model.discretization),
-            str(model.coarser.discretization),
-            perf_counter() - start,
-        ),
-        speeds=speeds,
-        angle=theta,
-        tip=tip,
-    )
+    (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
+    rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
+    error = BASES_OF_STATIC_LOADS.factor * np.abs(found - coarse) + rounding
+    names = str(model.discretization), str(model.coarser.discretization)
+    made = asked.result(found, error, _warnings(scene, model, speeds, tip), *names, first=of_plain)
+    return StaticLoads(**made, speeds=speeds, angle=theta, tip=tip)
 
 
-def _warnings(
-    scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray, strain: np.ndarray
-) -> Iterator[str]:
+def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -> Iterator[str]:
     """Yield what limits the answer: effects left out, and large deflection or strain at the speeds (C,)."""
     yield from warn_of_left_out(scene)
     _, stretch = static_load(model, speeds)
     yield from warn_of_strain(float(stretch.max()))
     size = np.hypot.reduce(np.abs(tip), axis=1)
     yield from warn_of_static_deflection(size, scene.beam.length, speeds)
-    yield from warn_of_elastic_limit(strain)
 
 
 def _solve(
-    model: Model, stations: SpanStations, outputs: StationOutputs, speeds: np.ndarray, theta: float
+    model: Model, asked: AskedLoads, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Outputs (C, S, K) in equilibrium at each speed, and the deflection of the tip (C, d)."""
     equations = model.equations
-    rows = span_rows(model.scene, model.discretization, equations, stations).through(outputs.matrix)
-    root = equations.root(_at_angle(speeds, theta))
+    rows = span_rows(model.scene, model.discretization, equations, asked.stations)
+    root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))
     q = _equilibria(equations.matrix(0, root), equations.load(root), speeds)
-    return rows.at(root, q, np.zeros_like(q)), q @ equations.tips.T
-
-
-def _at_angle(speeds: np.ndarray, theta: float) -> MotionSample:
-    steady = MotionSample.steady(speeds)
-    return replace(steady, angle=np.full(len(speeds), theta))
+    return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T
 
 
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
@@ -200,9 +167,3 @@ def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarr
             "weight buckles it there or before, or it turns freely about its root"
         )
     return np.linalg.solve(scaled, (load / size)[..., None])[..., 0] / size
-
-
-def _error(values: np.ndarray, coarse: np.ndarray) -> np.ndarray:
-    """Error of values (C, S, K) by their distance from those of a coarser model, and of rounding."""
-    largest = np.abs(values).max(axis=1, keepdims=True)
-    return BASES_OF_STATIC_LOADS.factor * np.abs(values - coarse) + _ROUNDING * largest

@@ -1,22 +1,32 @@
-"""Stations along the span, at which loads are asked for."""
+"""Stations along the span, and what is asked for there, as linear outputs of the loads.
+
+The outputs are the loads themselves, and curvature, strain and stress at points of the sections.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, refuse
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, positive, real_array, refuse
 from beamdyn.scene.beam import Beam
+from beamdyn.scene.profile import Profile
+from beamdyn.scene.scene import Scene
 
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
+SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
+
+UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # of the quantities
 
 _EVENLY = 21  # stations by default, besides both sides of each jump
-_MOST = 1001
+_MOST, _MOST_POINTS = 1001, 100
 _SAME = 1e-12  # distance over the length at which a position is that of a breakpoint: as breakpoints merge
 _BESIDE = 2e-12  # distance over the length at which the properties beside a jump are read
+_ROUNDING = 1e-9  # relative: a point on the edge is inside
+_WITHOUT_AXIAL = "the strain is that of bending alone: the beam has no axial_stiffness"
 
 
 @dataclass(frozen=True)
@@ -52,12 +62,12 @@ def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
         xi = np.unique(np.concatenate([_snapped(np.linspace(0, 1, _EVENLY), ends), ends]))
         xi = np.sort(np.concatenate([xi, ends[1:-1]]))
     else:
-        xi = _snapped(_checked(at, beam.length) / beam.length, ends)
+        xi = _snapped(_checked_positions(at, beam.length) / beam.length, ends)
     twice = np.append(xi[1:] == xi[:-1], False)
     return SpanStations(xi, twice | (xi == 1))
 
 
-def _checked(at: Positions, length: float) -> np.ndarray:
+def _checked_positions(at: Positions, length: float) -> np.ndarray:
     """Positions [m] that ascend along the beam, each at most twice."""
     array = as_floats(at)
     x = real_array("at", array.reshape(1) if array is not None and not array.ndim else at)
@@ -68,9 +78,8 @@ def _checked(at: Positions, length: float) -> np.ndarray:
     refuse(np.diff(x, prepend=0.0) < 0, "at", x, "m", "positions must ascend", "sort them")
     again = np.zeros(len(x), dtype=bool)
     again[2:] = x[2:] == x[:-2]
-    refuse(
-        again, "at", x, "m", "a position stands for one side, or twice for both sides of it", "give it twice"
-    )
+    bound = "a position stands for one side, or twice for both sides of it"
+    refuse(again, "at", x, "m", bound, "give it twice")
     return x
 
 
@@ -78,3 +87,133 @@ def _snapped(xi: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Positions, those within rounding of a breakpoint exactly at it."""
     nearest = ends[np.abs(xi[:, None] - ends).argmin(axis=1)]
     return np.where(np.abs(xi - nearest) <= _SAME, nearest, xi)
+
+
+# Outputs ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class StationOutputs:
+    """All outputs at S stations, as linear functions of the loads there.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (S, K, 1 + 2 d)
+        K components by the loads: forces, moments, curvatures, strains and stresses, one after the other.
+    sizes : tuple of int
+        Number of components of each quantity.
+    """
+
+    matrix: np.ndarray
+    sizes: tuple[int, ...]
+
+    @property
+    def places(self) -> dict[str, slice]:
+        """Components of each quantity."""
+        ends = np.cumsum(self.sizes).tolist()
+        return {name: slice(b - n, b) for name, n, b in zip(UNITS, self.sizes, ends, strict=True)}
+
+    def split(self, values: np.ndarray, suffix: str = "") -> dict[str, Any]:
+        """The components (..., K) of each quantity, by its name and a suffix."""
+        return {name + suffix: values[..., place] for name, place in self.places.items()}
+
+
+class Sections(NamedTuple):
+    """The outputs of the sections at stations, their points (S, P, 2) [m], and what the strain lacks."""
+
+    outputs: StationOutputs
+    points: np.ndarray
+    notes: tuple[str, ...]
+
+
+def sections_at(
+    scene: Scene,
+    stations: SpanStations,
+    points: SectionPoints | None = None,
+    youngs_modulus: float | None = None,
+) -> Sections:
+    """Find the outputs of the sections of a scene at S stations.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    stations : SpanStations
+        The stations.
+    points : sequence of (float, float), optional
+        Points of every section [m], along its first direction, in which `bending_stiffness` counts, and along
+        the second; if not given, the corners of a rectangle that bends in two planes, else the outer fibres,
+        and none if the beam has no outer fibre.
+    youngs_modulus : float, optional
+        Young's modulus [Pa]; that of a rectangular beam if not given, and stresses are nan if there is none.
+
+    Returns
+    -------
+    Sections
+
+    Raises
+    ------
+    InvalidValue
+        If the points are not pairs of finite numbers, or lie outside a section, or the modulus is not
+        positive.
+    """
+    beam, rectangle, xi = scene.modelled_beam, scene.beam.section, stations.beside
+    planes = scene.physics.planes
+    half = np.full((len(xi), 2), np.nan)  # distances of the edges from the centre, where they are known
+    if scene.beam.outer_fibre is not None:
+        half[:, 0] = scene.beam.outer_fibre(xi)
+    if rectangle is not None:
+        half[:, 1] = rectangle.width(xi) / 2
+    if points is not None:
+        at_stations = np.broadcast_to(given := _checked_points(points, half), (len(xi), *given.shape))
+    elif np.isnan(half[:, 0]).any():
+        at_stations = np.zeros((len(xi), 0, 2))
+    else:
+        corners = planes == 2 and rectangle is not None
+        signs = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]] if corners else [[-1, 0], [1, 0]])
+        at_stations = signs * np.nan_to_num(half)[:, None]
+    curvature = _curvature(beam, xi, planes)
+    modulus = np.nan if rectangle is None else rectangle.youngs_modulus
+    if youngs_modulus is not None:
+        modulus = positive("youngs_modulus", youngs_modulus, "Pa")
+    loads = curvature.shape[2]
+    axial = np.zeros((len(xi), 1, loads))
+    if beam.axial_stiffness is not None:
+        axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
+    strain = axial - np.einsum("spi,sik->spk", at_stations[..., :planes], curvature)
+    unchanged = np.broadcast_to(np.eye(loads), (len(xi), loads, loads))
+    parts = (unchanged[:, : 1 + planes], unchanged[:, 1 + planes :], curvature, strain, modulus * strain)
+    outputs = StationOutputs(np.concatenate(parts, axis=1), tuple(part.shape[1] for part in parts))
+    lacks_axial = beam.axial_stiffness is None and at_stations.shape[1]
+    return Sections(outputs, at_stations, (_WITHOUT_AXIAL,) if lacks_axial else ())
+
+
+def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
+    """Points (P, 2) that lie in every section whose edges are known."""
+    array = as_floats(points)
+    if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
+        many = f"give 1 to {_MOST_POINTS} pairs"
+        bound = f"{many}: the distances from the neutral axes along the section's directions"
+        raise InvalidValue("points", points, bound, "such as [(-0.001, 0.0), (0.001, 0.0)]", "m")
+    if not np.isfinite(array).all():
+        raise InvalidValue("points", points, "give finite numbers", unit="m")
+    for side, name in enumerate(("first", "second")):
+        limit = half[:, side].min()  # nan is no limit
+        bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
+        bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
+        remedy = "leave points out: the outermost of each"
+        refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
+    return array
+
+
+def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
+    """Curvature in each direction of the section per load, (S, d, 1 + 2 d)."""
+    turned = np.zeros(len(xi)) if beam.twist is None else beam.twist(xi)
+    cos, sin = np.cos(turned), np.sin(turned)
+    matrix = np.zeros((len(xi), planes, 1 + 2 * planes))
+    stiffness = (beam.bending_stiffness, beam.second_bending_stiffness)[:planes]
+    for k, (EI, along) in enumerate(zip(stiffness, ((cos, sin), (-sin, cos)), strict=False)):
+        assert isinstance(EI, Profile)
+        for i in range(planes):
+            matrix[:, k, 1 + planes + i] = along[i] / EI(xi)
+    return matrix

@@ -4,26 +4,37 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from time import perf_counter
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import kind, one_of
-from beamdyn.common.results.result import Provenance
-from beamdyn.loads.load_lines import LoadLines, lines_of_response
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.mode_error import mode_error, with_neighbours
-from beamdyn.loads.section_points import QUANTITIES, SectionPoints, StationOutputs, sections_at
-from beamdyn.loads.span_loads import SpanLoads, placed, refuse_large_deflection, with_unit
-from beamdyn.loads.stations import Positions, SpanStations, stations_at
+from beamdyn.loads.span_loads import (
+    SPEEDS,
+    AskedLoads,
+    Case,
+    SpanLoads,
+    refuse_large_deflection,
+    with_unit,
+)
+from beamdyn.loads.stations import UNITS, Positions, SectionPoints, SpanStations, StationOutputs
 from beamdyn.scene.motion import Line
-from beamdyn.scene.validity import warn_of_elastic_limit
-from beamdyn.steady.excitation_phases import check_steady_state, name_line
+from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities, name_line
+from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
+from beamdyn.steady.largest_over_phases import largest_over_phases
+from beamdyn.steady.periodic_system import Pair, generate_harmonics, list_harmonics
 from beamdyn.steady.response import SteadyResponse
+from beamdyn.steady.tip_lines import combine_pairs
+from beamdyn.steady.vibration import vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_BATCH = 2000  # sums of lines whose largest values are sought at once
+_NEGLIGIBLE = 1e-12  # size of a line of the tip, over the sum of all, below which it is left out
 
 
 @dataclass(frozen=True)
@@ -58,19 +69,14 @@ class SteadyLoads(SpanLoads):
     response: SteadyResponse = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[tuple[str, str]] = ("speed", "rad/s")
-
-    @property
-    def cases(self) -> np.ndarray:
-        """The speeds [rad/s]."""
-        return self.speeds
+    case: ClassVar[Case] = SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
         """Complex amplitude a of each line of a quantity: shape (C, S, k, l).
 
         The quantity is the sum of Re(a exp(i (j theta + k chi))), as in `SteadyResponse`.
         """
-        one_of("quantity", quantity, QUANTITIES)
+        one_of("quantity", quantity, (*UNITS,))
         return self._amplitudes[:, :, self.outputs.places[quantity]]
 
     def mean(self, quantity: str) -> np.ndarray:
@@ -88,15 +94,15 @@ class SteadyLoads(SpanLoads):
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
         """Draw the largest magnitude of a quantity over all speeds along the span."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
 
-        self.check_known(quantity)
-        largest = np.nanmax(self.values(quantity), axis=0, keepdims=True)
-        label = f"largest {with_unit(quantity)}, of all speeds"
-        return plot_along_span(self.x, largest, self.components(quantity), label, ax, self.display_units)
+        def largest(name: str) -> np.ndarray:
+            return np.nanmax(self.values(name), axis=0, keepdims=True)
+
+        return self.draw(ax, quantity, largest, f"largest {with_unit(quantity)}, of all speeds")
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
+        """Amplitudes (C, S, K, l) of all outputs."""
         stations = SpanStations(self.x / self.scene.beam.length, self.inboard)
         return lines_of_response(self.response, stations, self.outputs).amplitude
 
@@ -139,47 +145,162 @@ def steady_loads(
     >>> bd.steady_loads(response, at=[0.0]).x
     array([0.])
     """
-    start = perf_counter()
     kind("response", response, SteadyResponse, "steady_response makes one")
-    scene = response.scene
+    scene, refined = response.scene, response.refined
     refuse_large_deflection(scene)
-    stations = stations_at(scene.modelled_beam, at)
-    sections = sections_at(scene, stations, points, youngs_modulus)
-    outputs = StationOutputs.of_sections(sections)
-    lines = lines_of_response(response, stations, outputs)
-    motion = check_steady_state(scene.motion)
+    asked = AskedLoads.of(scene, at, points, youngs_modulus)
+    lines = lines_of_response(response, asked.stations, asked.outputs)
+    error = np.full(lines.largest.shape, np.inf)
+    if refined is not None:
+        everywhere = with_neighbours(asked.stations)
+        rough, fine = (lines_of_response(each, everywhere) for each in (response, refined))
+        along_span = np.abs(rough.amplitude).sum(axis=-1).max(axis=1)
+        where = asked.stations, asked.outputs, response.request.basis, scene.beam.length
+        error = mode_error(rough.distance_from(fine), along_span, *where) + lines.of_harmonics
+    motion, method = check_steady_state(scene.motion), response.provenance.method
+    compared_with = "" if refined is None else refined.provenance.method
     return SteadyLoads(
-        **placed(scene, stations, sections),
-        **outputs.split(lines.largest),
-        **outputs.split(_error(response, lines, stations, outputs), "_error"),
-        warnings=(
-            *sections.notes,
-            *response.warnings,
-            *warn_of_elastic_limit(outputs.split(lines.largest)["strain"]),
-        ),
-        provenance=Provenance(
-            __version__,
-            response.provenance.method,
-            "" if response.refined is None else response.refined.provenance.method,
-            perf_counter() - start,
-        ),
+        **asked.result(lines.largest, error, response.warnings, method, compared_with),
         speeds=response.speeds,
         harmonics=lines.harmonics,
         lines=tuple(name_line(motion, (int(j), int(k))) for j, k in lines.harmonics),
         response=response,
-        outputs=outputs,
+        outputs=asked.outputs,
     )
 
 
-def _error(
-    response: SteadyResponse, lines: LoadLines, stations: SpanStations, outputs: StationOutputs
+# Lines of the loads -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class LoadLines:
+    """Outputs at stations as sums of lines Re(a exp(i (j theta + k chi))).
+
+    Parameters
+    ----------
+    harmonics : ndarray of int, shape (l, 2)
+        j and k of each line; of a harmonic and its opposite, the one of positive frequency.
+    amplitude : ndarray of complex, shape (C, S, K, l)
+        Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
+    of_harmonics : ndarray, shape (C, S, K)
+        Estimated error by the harmonics left out.
+    """
+
+    harmonics: np.ndarray
+    amplitude: np.ndarray
+    of_harmonics: np.ndarray
+
+    @cached_property
+    def largest(self) -> np.ndarray:
+        """Largest magnitudes over both phases: shape (C, S, K)."""
+        flat = self.amplitude.reshape(-1, 1, len(self.harmonics))
+        found, known = np.full(len(flat), np.nan), np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
+        for some in np.array_split(known, 1 + len(known) // _BATCH):
+            found[some] = largest_over_phases(flat[some], self.harmonics)
+        return found.reshape(self.amplitude.shape[:-1])
+
+    def distance_from(self, other: LoadLines) -> np.ndarray:
+        """Sum over the lines of the distances of the amplitudes from those of another solution (C, S, K).
+
+        Infinite where one of the two alone has a steady response.
+        """
+        names = [*dict.fromkeys([*map(tuple, self.harmonics), *map(tuple, other.harmonics)])]
+        difference = np.abs(self._over(names) - other._over(names)).sum(axis=-1)
+        known = [np.isfinite(each.amplitude).all(axis=-1) for each in (self, other)]
+        return np.where(known[0] ^ known[1], np.inf, difference)
+
+    def _over(self, names: list[tuple[int, ...]]) -> np.ndarray:
+        """Amplitudes over the lines of these names, 0 for those that are missing."""
+        found = np.zeros((*self.amplitude.shape[:-1], len(names)), dtype=complex)
+        found[..., [names.index(tuple(h)) for h in self.harmonics]] = self.amplitude
+        return found
+
+
+def lines_of_response(
+    response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
+) -> LoadLines:
+    """Find the lines of loads in a steady response.
+
+    Parameters
+    ----------
+    response : SteadyResponse
+        The response at C speeds, of a straight beam.
+    stations : SpanStations
+        The S stations.
+    outputs : StationOutputs, optional
+        The K outputs at each station; forces and moments if not given.
+
+    Returns
+    -------
+    LoadLines
+    """
+    request, speeds = response.request, response.speeds
+    model, motion = request.model, check_steady_state(request.scene.motion)
+    equations = model.modal_equations(request.basis)
+    rows = span_rows(model.scene, model.discretization, equations, stations).in_motion(equations)
+    rows = rows if outputs is None else rows.through(outputs.matrix)
+    pairs, q, truncated = _solve(response, equations)
+    rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
+    used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
+    spectra = expand_quantities(equations, used, motion, speeds)
+    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root, then those of their products
+    for quantity in rows.load:
+        reached |= list_harmonics(spectra[quantity])
+    for quantity in (*rows.position, *rows.velocity):
+        reached |= {(a + j, b + k) for a, b in list_harmonics(spectra[quantity]) for j, k in pairs}
+    union = sorted(reached)
+    fine, rough = (_expand(rows, spectra, union, pairs, rates, each) for each in (q, truncated))
+    fine[~response.stable] = np.nan
+    return LoadLines(*combine_pairs(fine, union, motion), np.abs(fine - rough).sum(axis=-1))
+
+
+def _solve(response: SteadyResponse, equations: Equations) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+    """Solve for the coordinates with the harmonics of one interaction more than in the response.
+
+    Lines of the tip within rounding error at all speeds are left out.
+
+    Returns
+    -------
+    harmonics : list of pair, length H
+    coordinates, truncated : ndarray of complex, shape (C, H, n)
+        With all harmonics, and without those of the further interaction, to estimate the error.
+    """
+    request = response.request
+    vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)
+    size = np.abs(response.line_amplitude) + np.abs(response.line_amplitude_across)
+    matter = (np.nan_to_num(size) > _NEGLIGIBLE * np.nan_to_num(response.bound)[:, None]).any(axis=0)
+    both = ((sign * int(j), sign * int(k)) for j, k in response.harmonics[matter] for sign in (1, -1))
+    coupling = set().union(*(system.coupling for system, _ in vibration.parts))
+    levels = generate_harmonics(dict.fromkeys(both), coupling, 1)
+    pairs = [h for level in levels for h in level]
+    fewer = pairs if len(levels) == 1 else [h for level in levels[:-1] for h in level]
+    q = np.zeros((2, len(response.speeds), len(pairs), equations.size), dtype=complex)
+    stable = np.flatnonzero(response.stable)
+    for system, places in vibration.parts if pairs else ():
+        for each, kept in zip(q, (pairs, fewer), strict=True):
+            of_part = np.ix_(stable, np.arange(len(kept)), places)
+            each[of_part] = solve_harmonic_balance(system[stable], kept)
+    return pairs, q[0], q[1]
+
+
+def _expand(
+    rows: LoadRows,
+    spectra: dict[str, np.ndarray],
+    union: list[Pair],
+    pairs: list[Pair],
+    rates: np.ndarray,
+    q: np.ndarray,
 ) -> np.ndarray:
-    """Estimated errors (C, S, K): of the modes left out, and of the harmonics left out."""
-    if response.refined is None:
-        return np.full(lines.largest.shape, np.inf)
-    everywhere = with_neighbours(stations)
-    rough, fine = (lines_of_response(each, everywhere) for each in (response, response.refined))
-    along_span = np.abs(rough.amplitude).sum(axis=-1).max(axis=1)
-    basis = response.request.basis
-    distance, length = rough.distance_from(fine), response.scene.beam.length
-    return mode_error(distance, along_span, stations, outputs, basis, length) + lines.of_harmonics
+    """Complex harmonics (C, S, K, U) of the outputs; the U harmonics include those of the coordinates."""
+    everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
+    everywhere[:, [union.index(h) for h in pairs]] = q
+    velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere
+    total = np.zeros((len(rates), *rows.shape, len(union)), dtype=complex)
+    static = union.index((0, 0))
+    for quantity, load in rows.load.items():
+        total += np.einsum("cu,sk->csku", convolution_matrix(spectra[quantity], union)[:, :, static], load)
+    for by_quantity, state in ((rows.position, everywhere), (rows.velocity, velocity)):
+        for quantity, row in by_quantity.items():
+            product = convolution_matrix(spectra[quantity], union) @ state
+            total += np.einsum("cun,skn->csku", product, row, optimize=True)
+    return total

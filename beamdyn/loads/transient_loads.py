@@ -4,33 +4,62 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from time import perf_counter
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
-from beamdyn.common.results.result import Provenance
-from beamdyn.loads.equivalent_ranges import EquivalentRange
 from beamdyn.loads.load_path import LoadPath
-from beamdyn.loads.section_points import SectionPoints, StationOutputs, sections_at
 from beamdyn.loads.span_loads import (
-    UNITS,
+    AskedLoads,
+    Case,
     LargestLoad,
     SpanLoads,
-    placed,
     refuse_large_deflection,
     with_unit,
 )
-from beamdyn.loads.stations import Positions, stations_at
-from beamdyn.scene.validity import warn_of_elastic_limit
+from beamdyn.loads.stations import UNITS, Positions, SectionPoints
 from beamdyn.transient.simulate import Transient
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOST_TIMES = 2000  # of the result by default
+
+
+@dataclass(frozen=True)
+class EquivalentRange:
+    """The range of equal cycles that do the damage of those counted at one station, by Miner's rule.
+
+    Parameters
+    ----------
+    quantity : str
+        "force", "moment", "curvature", "strain" or "stress".
+    component : int
+        Index of its component.
+    x : float
+        Position along the beam [m].
+    start, end : float
+        The time window [s].
+    exponent : float
+        Exponent m of the Woehler curve.
+    cycles : float
+        Number of equal cycles.
+    range : float
+        Their range [unit of the quantity].
+    error : float
+        Its estimated absolute error [unit of the quantity].
+    """
+
+    quantity: str
+    component: int
+    x: float
+    start: float
+    end: float
+    exponent: float
+    cycles: float
+    range: float
+    error: float
 
 
 @dataclass(frozen=True)
@@ -65,12 +94,7 @@ class TransientLoads(SpanLoads):
     path: LoadPath = field(repr=False)
     equivalent_ranges: tuple[EquivalentRange, ...] = ()
 
-    case: ClassVar[tuple[str, str]] = ("time", "s")
-
-    @property
-    def cases(self) -> np.ndarray:
-        """The times [s]."""
-        return self.t
+    case: ClassVar[Case] = Case("time", "s", "t")
 
     @property
     def run(self) -> Transient:
@@ -132,13 +156,12 @@ class TransientLoads(SpanLoads):
         end: float | None = None,
     ) -> Axes:
         """Draw the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
 
-        self.check_known(quantity)
-        first, last = window_in(self.run, start, end)
-        values = self.values(quantity)[(self.t >= first) & (self.t <= last)]
-        labels = self.components(quantity)
-        return plot_along_span(self.x, values, labels, with_unit(quantity), ax, self.display_units)
+        def within(name: str) -> np.ndarray:
+            first, last = window_in(self.run, start, end)
+            return self.values(name)[(self.t >= first) & (self.t <= last)]
+
+        return self.draw(ax, quantity, within, with_unit(quantity))
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
@@ -193,28 +216,15 @@ def transient_loads(
     >>> loads.x
     array([0.   , 0.025])
     """
-    start = perf_counter()
     kind("run", run, Transient, "simulate makes one")
-    scene = run.scene
-    refuse_large_deflection(scene)
-    stations = stations_at(scene.modelled_beam, at)
-    sections = sections_at(scene, stations, points, youngs_modulus)
-    path = LoadPath(run, stations, StationOutputs.of_sections(sections))
+    refuse_large_deflection(run.scene)
+    asked = AskedLoads.of(run.scene, at, points, youngs_modulus)
+    path = LoadPath(run, asked.stations, asked.outputs)
     times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)
-    return TransientLoads(
-        **placed(scene, stations, sections),
-        **(values := path.outputs.split(path.at(times))),
-        **path.outputs.split(path.error, "_error"),
-        warnings=(*sections.notes, *run.warnings, *warn_of_elastic_limit(values["strain"])),
-        provenance=Provenance(
-            __version__,
-            run.provenance.method,
-            "" if run.refined is None else run.refined.provenance.method,
-            perf_counter() - start,
-        ),
-        t=times,
-        path=path,
-    )
+    values, error = path.at(times), path.error
+    compared_with = "" if run.refined is None else run.refined.provenance.method
+    made = asked.result(values, error, run.warnings, run.provenance.method, compared_with)
+    return TransientLoads(**made, t=times, path=path)
 
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:

@@ -23,8 +23,8 @@ from beamdyn.modes.coupled_head import MOST_MOMENTS
 from beamdyn.modes.coupled_split import CoupledSplit
 from beamdyn.modes.flexibility import bound_flexibility
 from beamdyn.modes.head import basis, most_functions, segments_with_functions
-from beamdyn.modes.modal.choice import choose_model
-from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.modal.discretization_choice import choose_model
+from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.modes.planes import refuse_uncovered, separate_planes
 from beamdyn.modes.split import Enclosure, Split
 from beamdyn.scene.beam import Beam, PointMass, TipMass

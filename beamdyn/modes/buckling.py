@@ -56,10 +56,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.fields.transverse import plane_components
-from beamdyn.equations.mass import gram_by_mass, moments_about_root
+from beamdyn.equations.mass import axial_tension, gram_by_mass, moments_about_root
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.toppling import (
     least_toppling_speed,

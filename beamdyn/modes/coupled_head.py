@@ -19,9 +19,9 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
-from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
-from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.moment_functions import NODES, MomentSpaces, orthonormalize
+from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile

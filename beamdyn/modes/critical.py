@@ -21,16 +21,16 @@ from beamdyn.common.results.statements import INPUT, NO_ANSWER, OUTSIDE, TOLERAN
 from beamdyn.modes.bounds import bound_critical_speed
 from beamdyn.modes.buckling import Buckling, decide_buckling
 from beamdyn.modes.critical_physics import find_with_chosen_physics
-from beamdyn.modes.modal.choice import (
+from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
     TOLERANCES,
     DiscretizationChoice,
     check_discretization,
     least_target,
     list_models,
+    split_tip,
     warn_of_missed_tolerance,
 )
-from beamdyn.modes.modal.end_layers import split_tip
 from beamdyn.modes.modal.error_estimate import (
     UNRESOLVED,
     extrapolation_error,

@@ -13,8 +13,8 @@ from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends
-from beamdyn.modes.model_error.choice import PHYSICS_TOLERANCE, Judged, choose_by
-from beamdyn.modes.model_error.effects import list_effects
+from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
@@ -70,7 +70,7 @@ def find_with_chosen_physics(scene: Scene, find: Callable[[Scene], Found], toler
 def _choose(scene: Scene, find: Callable[[Scene], _CriticalAnswer], tolerance: float) -> Scene:
     """The scene with the effects that change the critical speed."""
 
-    def judge(candidate: Scene) -> Judged:
+    def judge(candidate: Scene) -> EffectSizes:
         known = find(candidate)
         additions, not_known, _ = list_effects(candidate)
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
@@ -78,7 +78,7 @@ def _choose(scene: Scene, find: Callable[[Scene], _CriticalAnswer], tolerance: f
         # Where rotation bends the beam from rest on, it does not buckle.
         sizes[LARGE_DEFLECTION.name] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
         unresolved = {name: _UNRESOLVED for name, size in sizes.items() if math.isnan(size)}
-        return Judged(sizes | dict.fromkeys(not_known, math.nan), unresolved | assumed | not_known)
+        return EffectSizes(sizes | dict.fromkeys(not_known, math.nan), unresolved | assumed | not_known)
 
     def count(candidate: Scene) -> int:
         found = find(candidate).model

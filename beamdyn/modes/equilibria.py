@@ -14,7 +14,6 @@ from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, w
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
-from beamdyn.modes.modal.choice import TOLERANCES, DiscretizationChoice, choose_model, solve_to_tolerance
 from beamdyn.modes.modal.continuation import (
     NotConverged,
     Point,
@@ -25,6 +24,12 @@ from beamdyn.modes.modal.continuation import (
     start_curve,
 )
 from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.modes.modal.discretization_choice import (
+    TOLERANCES,
+    DiscretizationChoice,
+    choose_model,
+    solve_to_tolerance,
+)
 from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene, check_scene

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
-from beamdyn.equations.centrifugal_tension import axial_tension
-from beamdyn.equations.mass import outboard_moments
+from beamdyn.equations.mass import axial_tension, outboard_moments
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile
 

@@ -17,10 +17,10 @@ from numpy.polynomial import legendre
 from scipy.linalg import qr, solve_triangular
 
 from beamdyn.common.legendre import gauss_rule, legendre_series
-from beamdyn.equations.arc_quadrature import ArcQuadrature, Cells
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import CLAMPED
+from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.moment_functions import NODES
+from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile

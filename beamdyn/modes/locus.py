@@ -15,16 +15,15 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.modes.modal.choice import (
+from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     solve_to_tolerance,
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.modes.modal.model import Model, plane_share
+from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.modal.static_load import static_load
-from beamdyn.modes.modal.tracking import track
-from beamdyn.modes.model_error.choice import choose_physics
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene

@@ -18,15 +18,14 @@ from beamdyn.common.results.one_line import error_at_most, listed, states, warne
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
 from beamdyn.equations.directions import first_drawn, name_directions
-from beamdyn.modes.modal.choice import (
+from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
     solve_to_tolerance,
     warn_of_missed_tolerance,
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.plane_share import plane_share
+from beamdyn.modes.modal.model import Model, plane_share
 from beamdyn.modes.modal.static_load import static_load, warn_of_straight
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
@@ -226,7 +225,7 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = check_tolerance(tolerance)
     if scene.chooses_physics:
-        from beamdyn.modes.model_error.choice import (
+        from beamdyn.modes.model_error.effect_choice import (
             choose_physics,  # here, for the time that it takes to import
         )
 

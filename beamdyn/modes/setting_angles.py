@@ -17,14 +17,14 @@ from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
 from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.modes.modal.choice import (
+from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     choose_model,
 )
 from beamdyn.modes.modal.eigen import Solver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import static_load
-from beamdyn.modes.model_error.choice import plain_physics, warn_of_plain
+from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 

@@ -36,8 +36,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.fields.transverse import plane_components
+from beamdyn.equations.mass import axial_tension
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene

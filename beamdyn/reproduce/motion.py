@@ -15,7 +15,7 @@ from beamdyn.common.results.comparison import Comparison
 from beamdyn.common.results.pictures import COLOURS
 from beamdyn.published import load
 from beamdyn.reproduce.common import BENDS, OWN, PAPER, TOP, decimals, rolling_scene
-from beamdyn.results.tables.results import sweep_peaks
+from beamdyn.results.of_motion import sweep_peaks
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings

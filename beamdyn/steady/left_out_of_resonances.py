@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.model_error.of_modes import left_out_of_modes, nothing_known

@@ -14,15 +14,14 @@ from beamdyn.common.inputs.checks import InvalidValue, count, positive
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
-from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigensolver import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.plane_share import plane_share
-from beamdyn.modes.modal.tracking import track
+from beamdyn.modes.modal.model import Model, plane_share
+from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.modal.uncoupled import UncoupledSolver
-from beamdyn.modes.model_error.choice import choose_physics
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection

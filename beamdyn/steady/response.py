@@ -19,11 +19,11 @@ from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modes.modal.choice import DiscretizationChoice, ensure_size
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
-from beamdyn.modes.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line

@@ -15,8 +15,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.modes.modal.choice import ensure_size
-from beamdyn.modes.modal.finite_amplitude import SMALL, FreeVibration
+from beamdyn.modes.backbone import SMALL, FreeVibration
+from beamdyn.modes.modal.discretization_choice import ensure_size
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving

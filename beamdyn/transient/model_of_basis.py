@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.modes.modal.choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene

@@ -4,7 +4,7 @@ Such a motion is smooth between samples only, and Gauss collocation needs coeffi
 step.  So each coefficient is replaced, over each step, by the polynomial of degree s - 1 nearest to it in the
 mean square, with s stages.  What this leaves out is orthogonal to all polynomials of that degree, and the
 response of a mode over a step is nearly one: at the ends of the steps its work all but vanishes.  Between
-them it shows in the deflection, where the error estimate sees it (`record_error`).
+them it shows in the deflection, where the error estimate sees it (`time_error`).
 """
 
 from __future__ import annotations

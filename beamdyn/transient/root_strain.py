@@ -10,9 +10,6 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene
-from beamdyn.transient.gauss import Segment
-from beamdyn.transient.record_error import estimate_record_error
-from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
@@ -64,11 +61,7 @@ class RootStrain:
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
         outputs = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
-        steps = [s for s in path.segments if isinstance(s, Segment)]
-        of_records = (s for s in path.segments if isinstance(s, RecordSegment))
-        errors = [estimate_time_error(self.system, steps, outputs)]
-        errors += [estimate_record_error(self.system, segment, outputs) for segment in of_records]
-        return sum(error.total for error in errors)
+        return estimate_time_error(self.system, path.segments, outputs).total
 
     def _largest_per_coordinate(self, t: np.ndarray) -> np.ndarray:
         """Strain per unit of each coordinate (1, n), at that of the times t [s] at which it is largest."""

@@ -13,7 +13,6 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.gauss import Segment, propagate
-from beamdyn.transient.record_error import estimate_record_error
 from beamdyn.transient.record_steps import (
     RecordSteps,
     is_record,
@@ -260,7 +259,7 @@ def _run_record(
     check_number_of_steps(len(steps), n, t_end)
     segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
     order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
-    return Trajectory((segment,)), estimate_record_error(system, segment, system.tips), order
+    return Trajectory((segment,)), estimate_time_error(system, (segment,), system.tips), order
 
 
 def _between_samples(

@@ -36,12 +36,12 @@ from beamdyn.common.results.one_line import counted, error_at_most, states, warn
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
 from beamdyn.equations.directions import modelled_directions
-from beamdyn.modes.modal.choice import DiscretizationChoice
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import (
     SPEED_SAMPLES,
     given_basis,
 )
-from beamdyn.modes.model_error.choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable

@@ -1,4 +1,7 @@
-"""Time-integration error, estimated by solving some steps of each segment again with two more stages."""
+"""Time-integration error, estimated by solving some steps again with two more stages.
+
+Of equal steps some in each segment are solved again; steps over many samples are solved again piece by piece.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from numpy.polynomial import Legendre
 
 from beamdyn.accuracy.margins import STEPS
 from beamdyn.transient.gauss import Segment, StepMaps, interpolate, solve_steps, tableau
+from beamdyn.transient.record_steps import RecordSegment, RecordSteps, maps_of_record
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
 
@@ -22,42 +26,11 @@ INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step wit
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
 _ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
 
-
-@dataclass(frozen=True)
-class CheckedSteps:
-    """The steps of a segment at which the local error is measured.
-
-    Parameters
-    ----------
-    starts : ndarray, shape (k,)
-        Times at which they begin [s].
-    h : float
-        Step size [s].
-    steps : int
-        Number of steps of the whole segment.
-    state : ndarray, shape (k, 2 n + 1)
-        Augmented states (1, q, v) at the beginnings of the checked steps.
-    end_state : ndarray, shape (k, 2 n)
-        Computed coordinates and velocities at their ends.
-    acceleration : ndarray, shape (k, s, n)
-        Computed accelerations at their nodes.
-    """
-
-    starts: np.ndarray
-    h: float
-    steps: int
-    state: np.ndarray
-    end_state: np.ndarray
-    acceleration: np.ndarray
-
-    @classmethod
-    def of_segment(cls, segment: Segment) -> CheckedSteps:
-        """Select the checked steps of a segment."""
-        steps = len(segment.acceleration)
-        chosen = np.union1d(choose_checked_steps(steps), _find_roughest(segment.acceleration))
-        starts = segment.start + segment.h * chosen
-        ends = segment.state[chosen + 1, 1:]
-        return cls(starts, segment.h, steps, segment.state[chosen], ends, segment.acceleration[chosen])
+_PIECES_CHECKED = 128  # in the steps over samples that are checked, if these are not too few
+_FEWEST_CHECKED = 48
+_POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
+_MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides those spread over the run
+_BATCH = 256  # pieces that are solved at once
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
@@ -65,17 +38,6 @@ def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
     if steps <= most:
         return np.arange(steps)
     return np.unique((steps * (_GOLDEN * np.arange(most) % 1)).astype(int))
-
-
-def _find_roughest(acceleration: np.ndarray) -> np.ndarray:
-    """Indices of the steps in which the polynomial through the accelerations (k, s, n) converges worst.
-
-    The last coefficient of its Legendre series is in proportion to the interpolation error.
-    """
-    stages = acceleration.shape[1]
-    c, b = tableau(stages).c, tableau(stages).b
-    last = np.abs(np.einsum("s,ksn->kn", b * Legendre.basis(stages - 1)(2 * c - 1), acceleration))
-    return np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
 
 
 @dataclass(frozen=True)
@@ -142,14 +104,16 @@ class TimeError:
         return STEPS.factor * (float(self.modes.sum()) + self.interpolation)
 
 
-def estimate_time_error(system: ModalSystem, segments: Sequence[Segment], outputs: np.ndarray) -> TimeError:
+def estimate_time_error(
+    system: ModalSystem, segments: Sequence[Segment | RecordSegment], outputs: np.ndarray
+) -> TimeError:
     """Estimate the time-integration error of a quantity from the errors of all segments.
 
     Parameters
     ----------
     system : ModalSystem
         The equations.
-    segments : sequence of Segment
+    segments : sequence of Segment, or of one RecordSegment
         The segments of a trajectory.
     outputs : ndarray, shape (d, n)
         The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
@@ -159,10 +123,13 @@ def estimate_time_error(system: ModalSystem, segments: Sequence[Segment], output
     -------
     TimeError
     """
+    if len(segments) == 1 and isinstance(record := segments[0], RecordSegment):
+        return _error_of_record(system, record, outputs)
     frequencies = vibration_frequencies(system, sum(s.end - s.start for s in segments))
     errors = [
         s.error if isinstance(s, SegmentWithError) else _error_of_steps(system, s, frequencies)
         for s in segments
+        if isinstance(s, Segment)
     ]
     zero = np.zeros(system.size)
     modes = sum((e.coordinates for e in errors), zero) * size_per_coordinate(outputs)
@@ -172,37 +139,33 @@ def estimate_time_error(system: ModalSystem, segments: Sequence[Segment], output
 
 
 def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarray) -> SegmentError:
-    """Error of a segment by the local errors of some steps.
+    """Error of a segment by the local errors of some steps: spread over it, and the roughest.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
     of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.  What the
     stiffness varies within a step, such as on a wavy road, turns the error of one mode into that of another.
     """
-    check = CheckedSteps.of_segment(segment)
-    maps, finer, K = _maps_of(system, check)
-    local = local_errors(maps.step, finer.step, check.state, check.end_state, frequencies)
+    h, steps, own, more = segment.h, len(segment.acceleration), tableau(STAGES), tableau(STAGES + 2)
+    series = own.b * Legendre.basis(STAGES - 1)(2 * own.c - 1)  # its last term: as the interpolation errs
+    last = np.abs(np.einsum("s,ksn->kn", series, segment.acceleration))
+    roughest = np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
+    chosen = np.union1d(choose_checked_steps(steps), roughest)
+    state, starts = segment.state[chosen], segment.start + h * chosen
+    C, K, f = system.coefficients(starts[:, None] + h * np.concatenate([own.c, more.c]))
+    maps, finer = (
+        solve_steps(None if C is None else C[:, part], K[:, part], f[:, part], h, table)
+        for part, table in ((slice(None, STAGES), own), (slice(STAGES, None), more))
+    )
+    local = local_errors(maps.step, finer.step, state, segment.state[chosen + 1, 1:], frequencies)
     delta = phase_errors(finer.step - maps.step, frequencies)
-    accelerations = check.acceleration, (finer.acceleration @ check.state[:, None, :, None])[..., 0]
-    q = [interpolate(check.h, check.state, a, INTERPOLATION_POINTS)[0] for a in accelerations]
-    total = total_of_local_errors(local, delta, check.steps)
+    accelerations = segment.acceleration[chosen], (finer.acceleration @ state[:, None, :, None])[..., 0]
+    q = [interpolate(h, state, a, INTERPOLATION_POINTS)[0] for a in accelerations]
+    total = _total_of_local_errors(local, delta, steps)
     coupling = np.ptp(K, axis=1).max(axis=0) / 2
     np.fill_diagonal(coupling, 0.0)
     total = total + coupling @ total / frequencies**2
     return SegmentError(total, (q[0] - q[1]).reshape(-1, system.size), delta > UNRESOLVED_PHASE)
-
-
-def _maps_of(system: ModalSystem, check: CheckedSteps) -> tuple[StepMaps, StepMaps, np.ndarray]:
-    """Maps of the checked steps, those of two more stages, and stiffness (k, nodes, n, n) at all nodes."""
-    tables = tableau(STAGES), tableau(STAGES + 2)
-    nodes = np.concatenate([table.c for table in tables])
-    C, K, f = system.coefficients(check.starts[:, None] + check.h * nodes)
-    own, more = slice(None, STAGES), slice(STAGES, None)
-    found = (
-        solve_steps(None if C is None else C[:, part], K[:, part], f[:, part], check.h, table)
-        for part, table in zip((own, more), tables, strict=True)
-    )
-    return next(found), next(found), K
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
@@ -210,7 +173,7 @@ def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
     return np.hypot.reduce(np.abs(outputs))
 
 
-def total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
+def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
     """Error of each coordinate after some steps, from local errors (k, n) and the largest phase error (n,).
 
     It is at most the sum of all local errors, and at most what the largest add up to until the phase is lost.
@@ -263,3 +226,74 @@ def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
     _, K, _ = system.coefficients(np.zeros(()))
     slowest = 1 / duration if system.equations.shift else 0.0
     return np.maximum(np.sqrt(np.abs(np.diag(K))), slowest)
+
+
+# Steps over many samples --------------------------------------------------------------------------
+
+
+def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.ndarray) -> TimeError:
+    """Error of a quantity: the checked steps are solved again from sample to sample.
+
+    They have two more stages, or where a step has many samples as many as these need.  Some are spread over
+    the run and stand for all; the others are the longest, and those in which the load is roughest.
+    """
+    steps, count, total, interpolation = segment.steps, len(segment.steps), np.zeros(system.size), 0.0
+    unresolved, across = np.zeros(system.size, dtype=bool), count < len(steps.piece_start)
+    most = max(_FEWEST_CHECKED, _PIECES_CHECKED // int(steps.counts.mean()))
+    middle = steps.piece_start + steps.piece_width / 2
+    slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
+    bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
+    kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)  # as the bends change displacements
+    worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
+    spread = choose_checked_steps(count, most)
+    for chosen, represented in ((spread, count), (worst, len(worst))):
+        local, delta, between = _check(system, segment, chosen, outputs)
+        added = _total_of_local_errors(local, delta, represented)
+        if across:  # what samples inside a step change in its load adds up by chance
+            added = np.maximum(added, np.sqrt(represented) * local.mean(axis=0))
+        total += added
+        unresolved |= delta > UNRESOLVED_PHASE
+        interpolation = max(interpolation, between)
+    modes = total * size_per_coordinate(outputs)
+    return TimeError.of_coordinates(system, modes, interpolation, unresolved)
+
+
+def _check(
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Local errors and largest phase error of each coordinate, and largest error of the quantity."""
+    batches = np.array_split(chosen, -(-int(segment.steps.counts[chosen].sum()) // _BATCH))
+    local, delta, between = zip(
+        *(_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)), strict=True
+    )
+    return np.concatenate(local), np.max(delta, axis=0), max(between)
+
+
+def _check_batch(
+    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Local error of each chosen step, largest phase error and error between ends, against their pieces."""
+    steps, state = segment.steps.select(chosen), segment.state[chosen]
+    step = maps_of_record(system, steps, STAGES).step
+    pieces = maps_of_record(system, steps.pieces(), steps.nodes_in_piece(STAGES + 2))
+    fine, at_pieces = _compose(steps, pieces, state)
+    a = (pieces.acceleration @ at_pieces[:, None, :, None])[..., 0]
+    q, _ = interpolate(steps.piece_width[:, None, None], at_pieces, a, _POINTS)
+    t = steps.piece_start[:, None] + steps.piece_width[:, None] * _POINTS
+    between = magnitude(segment.at(t.ravel())[0] - q.reshape(t.size, -1), outputs).max()
+    frequencies = vibration_frequencies(system, segment.end - segment.start)
+    local = local_errors(step, fine, state, segment.state[chosen + 1, 1:], frequencies)
+    return local, phase_errors(fine - step, frequencies), float(between)
+
+
+def _compose(steps: RecordSteps, pieces: StepMaps, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Compose the maps of pieces to those of their steps, and find the states where the pieces begin."""
+    size = state.shape[1]
+    total = np.tile(np.eye(size), (len(steps), 1, 1))
+    at_pieces = np.empty((len(steps.piece_start), size))
+    for k in range(steps.counts.max()):
+        longer = np.flatnonzero(steps.counts > k)
+        here = steps.first[longer] + k
+        at_pieces[here] = (total[longer] @ state[longer, :, None])[..., 0]
+        total[longer, 1:] = pieces.step[here] @ total[longer]
+    return total[:, 1:], at_pieces

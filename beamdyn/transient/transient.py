@@ -20,10 +20,10 @@ from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Statement
 from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modes.modal.choice import DiscretizationChoice, ensure_size
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.choice import warn_of_peak
+from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene

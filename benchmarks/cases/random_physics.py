@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import axial_tension
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.profile import Profile, to_profile
 from benchmarks.cases.scenes import time_unit

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import axial_tension
 from benchmarks.cases.scenes import time_unit
 
 _MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from beamdyn.equations.arc_quadrature import Cells
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED
+from beamdyn.equations.quadrature import Cells
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
 STRETCH = (1, 2)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.loads.random_loads import expected_factor, safe_factor
+from beamdyn.loads.load_statistics import expected_factor, safe_factor
 
 LENGTH, WIDTH, THICK, E, RHO = 0.1, 0.01, 0.001, 70e9, 2700.0
 MASS, EI = RHO * WIDTH * THICK, E * WIDTH * THICK**3 / 12

@@ -20,7 +20,7 @@ from beamdyn import load_scene
 from beamdyn.analyses.transients import _how_to_resume
 from beamdyn.analyses.values import parse_window
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
-from beamdyn.results.tables.results import peaks
+from beamdyn.results.of_motion import peaks
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "rolling_harvester.toml")

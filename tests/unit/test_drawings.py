@@ -23,7 +23,7 @@ from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.results.tables.rotor import rotor_csv
+from beamdyn.results.of_modes import rotor_csv
 from brakes import calipers
 from brakes.app.program import BRAKES
 from brakes.drawings.caliper import caliper_drawing

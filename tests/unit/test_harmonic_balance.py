@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.harmonic_balance import solve_at_once, solve_harmonic_balance
 from beamdyn.steady.interaction_series import sum_interactions

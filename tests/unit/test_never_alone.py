@@ -15,7 +15,7 @@ from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.results.cautions import critical_label, labels_of, notes_of, warnings_of
-from beamdyn.results.tables.rows import modes_csv
+from beamdyn.results.of_modes import modes_csv
 from beamdyn.scene.validity import warn_of_static_deflection
 from beamdyn.studies.tradeoffs import Diagram, tradeoff
 

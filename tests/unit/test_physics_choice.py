@@ -15,8 +15,8 @@ import beamdyn as bd
 from beamdyn.cli.program import main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.files.scenes import parse_scene
-from beamdyn.modes.model_error.choice import Judged, choose_by
-from beamdyn.scene.physics_choice import PhysicsChoice
+from beamdyn.modes.model_error.effect_choice import EffectSizes, choose_by
+from beamdyn.scene.physics import PhysicsChoice
 
 LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"
 SECOND, STRETCH = "second plane of bending", "stretch"
@@ -174,8 +174,8 @@ def test_the_rule(sizes: dict[str, float], included: tuple[str, ...]) -> None:
     """The largest first, until those that are left are worth half of 1e-3, and none below 1e-4."""
     every = {SHEAR: 0.0, ROTARY: 0.0, STRETCH: 0.0, SECOND: 0.0, LARGE: 0.0} | sizes
 
-    def judge(scene: bd.Scene) -> Judged:
-        return Judged(dict(every), {})
+    def judge(scene: bd.Scene) -> EffectSizes:
+        return EffectSizes(dict(every), {})
 
     scene = bd.Scene(STRIP, physics="auto")
     chosen = choose_by(scene, judge, lambda _: 1, 1e-3, np.array([1.0]))
@@ -187,8 +187,8 @@ def test_a_size_that_is_not_known_adds_nothing(unknown: str) -> None:
     """Wherever it stands among the others, which are added by their own."""
     every = {SECOND: 0.0, ROTARY: 0.2, SHEAR: 0.0, STRETCH: 0.0, LARGE: 0.0} | {unknown: math.nan}
 
-    def judge(scene: bd.Scene) -> Judged:
-        return Judged(dict(every), {unknown: "not resolved"})
+    def judge(scene: bd.Scene) -> EffectSizes:
+        return EffectSizes(dict(every), {unknown: "not resolved"})
 
     chosen = choose_by(bd.Scene(STRIP, physics="auto"), judge, lambda _: 1, 1e-3, np.array([1.0]))
     assert choice_of(chosen).included == (ROTARY,)
@@ -197,9 +197,9 @@ def test_a_size_that_is_not_known_adds_nothing(unknown: str) -> None:
 def test_what_an_effect_brings_up_is_added_after_it() -> None:
     """With the second plane come modes in which shear matters."""
 
-    def judge(scene: bd.Scene) -> Judged:
+    def judge(scene: bd.Scene) -> EffectSizes:
         shear = 0.1 if scene.physics.planes == 2 else 0.0
-        return Judged({SECOND: 0.2, SHEAR: shear, LARGE: 0.0}, {})
+        return EffectSizes({SECOND: 0.2, SHEAR: shear, LARGE: 0.0}, {})
 
     chosen = choose_by(bd.Scene(STRIP, physics="auto"), judge, lambda _: 1, 1e-3, np.array([1.0]))
     assert chosen.physics == bd.Physics(planes=2, shear=True)

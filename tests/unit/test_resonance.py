@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.line_roots import bracket
 from beamdyn.scene.motion import Motion, MotionSample
 from benchmarks.cases.scenes import HARVESTER

@@ -11,11 +11,10 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.loads.load_path import largest_per_coordinate
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.load_time_error import largest_per_coordinate
 from beamdyn.loads.mode_error import mode_error
-from beamdyn.loads.section_points import StationOutputs, sections_at
-from beamdyn.loads.stations import stations_at
+from beamdyn.loads.stations import sections_at, stations_at
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from benchmarks import loads as loads_measured
 
@@ -353,7 +352,7 @@ def test_a_load_that_is_rounding_has_a_finite_error():
     """A moment of 1e-20 beside a force of 1 N: how far two models differ there says nothing."""
     scene = bd.Scene(BEAM, OUTWARD)
     stations = stations_at(BEAM, [0.0, 0.25])
-    outputs = StationOutputs.of_sections(sections_at(scene, stations, None, None))
+    outputs = sections_at(scene, stations).outputs
     distance = np.tile([1e-9, 1e-20, 1e-20], (23, 1))
     error = mode_error(
         distance, np.array([1.0, 1e-20, 1e-20]), stations, outputs, ModalBasis(3, (0.0,)), LENGTH

@@ -17,8 +17,7 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.results.tables.results import locus_table, modes_table
-from beamdyn.results.tables.rows import locus_csv, modes_csv
+from beamdyn.results.of_modes import locus_csv, locus_table, modes_csv, modes_table
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(

@@ -19,10 +19,17 @@ from scipy.optimize import brentq
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.choice import choose_model
+from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
-from beamdyn.results.tables.results import crossings_table, steady_table, sweep_table
-from beamdyn.results.tables.rows import crossings_csv, steady_csv, sweep_csv, transient_csv
+from beamdyn.results.of_motion import (
+    crossings_csv,
+    crossings_table,
+    steady_csv,
+    steady_table,
+    sweep_csv,
+    sweep_table,
+    transient_csv,
+)
 from beamdyn.scene.motion import Motion
 from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.largest_over_phases import largest_over_phases

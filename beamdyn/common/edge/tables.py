@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from io import TextIOWrapper
 from typing import Any
 from unicodedata import normalize
@@ -147,6 +147,12 @@ def table(
         else:
             made.add_section()
     return Group(Text(title, style="bold"), made)
+
+
+def table_of(title: str, columns: Mapping[str, Sequence[str | Text]], words: Collection[str] = ()) -> Group:
+    """A table of columns by their heads; those in `words` stand at the left, all others are numbers."""
+    left = [i for i, head in enumerate(columns) if head in words]
+    return table(title, [*columns], zip(*columns.values(), strict=True), left)
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:

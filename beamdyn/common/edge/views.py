@@ -22,12 +22,12 @@ from beamdyn.common.results.columns import in_display_units
 from beamdyn.common.results.one_line import brief, spanned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result, plain
+from beamdyn.common.results.shown_by import SHOWN_BY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-_PLACES = {"beamdyn": "beamdyn.results.views", "brakes": "brakes.views"}  # modules of `VIEWS`, by package
 _MOST_ROWS = 30  # rows of a table in a notebook
 _WIDTH = 120  # characters of a table as text
 _NOT_SHOWN = ("provenance", "warnings")
@@ -61,7 +61,8 @@ class View:
 def view_of(result: Result) -> View:
     """The view of a result's class, or of the nearest class that it derives from."""
     for kind in type(result).__mro__:
-        place = _PLACES.get(kind.__module__.partition(".")[0])
+        package, room, *_ = f"{kind.__module__}.".split(".")
+        place = SHOWN_BY.get(f"{package}.{room}", SHOWN_BY.get(package))
         found = import_module(place).VIEWS.get(kind.__name__) if place else None
         if found is not None:
             return found

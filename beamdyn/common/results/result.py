@@ -43,7 +43,7 @@ class Result(Shown, Saved, ReadOnlyArrays):
 
     A result is one line in a console, a table with a picture in a notebook, and a data frame for whoever asks
     for one.  A subclass gives its `headline`, its `plot` if it has a picture, and an entry in the views of
-    its package (`results.views`, `views`) with the functions that make its table and the rows of its
+    its package (see `common.results.shown_by`) with the functions that make its table and the rows of its
     CSV file.  What it does not give is made from its fields, whose units it may state.
 
     Attributes

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from beamdyn.common.results.display_units import DisplayUnits, InDisplayUnits
 from beamdyn.common.results.one_line import OneLine, brief, shortened, warned
 from beamdyn.common.results.pictures import labelled
+from beamdyn.common.results.shown_by import MEDIA
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -75,8 +76,8 @@ class Shown(OneLine, InDisplayUnits):
 
 
 def _views() -> Any:
-    """How results are shown: the edge, which the core does not import but finds when it is needed."""
-    return import_module("beamdyn.common.edge.views")
+    """How results are shown: what the package has named, found when it is needed."""
+    return import_module(MEDIA[-1])
 
 
 def _shown_in(result: Shown, units: Units) -> Shown:

@@ -37,11 +37,11 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.equations import explanations as why
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
+from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin

@@ -11,8 +11,8 @@ import numpy as np
 from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import FIXED, Spaces
 from beamdyn.equations.explanations import Explanation
+from beamdyn.equations.fields.bending_and_shear import SecondShear
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
-from beamdyn.equations.fields.shear import SecondShear
 from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
 from beamdyn.equations.mass import first_moment_by_mass, gram_by_mass, load_by_mass, product_by_mass
 from beamdyn.scene.beam import TipMass

@@ -30,11 +30,10 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn.equations import explanations as why
-from beamdyn.equations.centrifugal_tension import axial_tension
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
-from beamdyn.equations.mass import first_moment_by_mass, load_by_mass, product_at_lumps
+from beamdyn.equations.mass import axial_tension, first_moment_by_mass, load_by_mass, product_at_lumps
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin

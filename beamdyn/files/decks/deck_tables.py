@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rich.console import RenderableType
+from rich.console import Group, RenderableType
 
 from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.views import View
 
 if TYPE_CHECKING:
     from beamdyn.files.decks.audit import DeckAudit
@@ -58,3 +59,9 @@ def _shape_table(audit: DeckAudit) -> RenderableType:
     ]
     title = f"Mode shapes of the deck beside those of its stations, without twist, {speed}; tip deflection 1"
     return table(title, heads, rows)
+
+
+VIEWS = {
+    "Deck": View(lambda deck: Group(*deck_tables(deck))),
+    "DeckAudit": View(lambda audit: Group(*audit_tables(audit))),
+}

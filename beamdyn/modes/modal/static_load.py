@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.results.statements import OUTSIDE, Statement
-from beamdyn.equations.centrifugal_tension import axial_tension
+from beamdyn.equations.mass import axial_tension
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
 from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain

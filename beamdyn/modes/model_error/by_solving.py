@@ -9,11 +9,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.equations.left_out import list_left_out
-from beamdyn.modes.model_error.effects import list_effects
-from beamdyn.modes.model_error.large_deflection import REFUSED, TWO_PLANES, comparable
+from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
+from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.model_error.of_modes import REFUSED, TWO_PLANES, comparable
 from beamdyn.scene.scene import Scene
 
 STRAIGHT = "as of the straight beam"

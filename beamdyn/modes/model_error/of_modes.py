@@ -1,25 +1,126 @@
-"""What the effects that a model leaves out would change in its frequencies and its critical speed."""
+"""What the effects that a model leaves out would change in its frequencies and its critical speed.
+
+Large deflection is solved, the others are estimated.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.equations.effects import LARGE_DEFLECTION
+from beamdyn.common.assignment import assign
+from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.left_out import list_left_out
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends
-from beamdyn.modes.model_error.effects import Addition, list_effects
-from beamdyn.modes.model_error.known_modes import Simple, find_alike
-from beamdyn.modes.model_error.large_deflection import NO_CRITICAL_SPEED, large_deflection_change
+from beamdyn.modes.model_error.additions import Addition, list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.pencils import buckling_mode, shift_critical_speed, shift_eigenvalues
+from beamdyn.modes.model_error.reference_modes import (
+    BaseEquations,
+    buckling_mode,
+    match_modes,
+    shift_critical_speed,
+    shift_eigenvalues,
+)
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+
+NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
+_BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
+TWO_PLANES = "it is solved in one plane of bending"
+HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
+OBLIQUE = "it is solved where the bending angle is a multiple of 90 deg"
+PRECONED = "it is solved without precone"
+REFUSED = {"mount.bending_angle": OBLIQUE, "mount.precone": PRECONED}
+EXCLUDED = TWO_PLANES, HINGED, OBLIQUE, PRECONED  # why it cannot be added
+_NOT_FOUND = "the equilibrium was not found"
+_EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
+
+
+def large_deflection_change(
+    model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
+) -> tuple[np.ndarray, str]:
+    """Find what large deflection changes in the frequencies at some speeds.
+
+    What it cannot be combined with is left out of both beams that are compared: the change is then to first
+    order.  Modes of a beam in one plane keep their order.
+
+    Parameters
+    ----------
+    model : Model
+        The linear model.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    eigenvalue : ndarray of complex, shape (S, m)
+        Its eigenvalues [1/s].
+
+    Returns
+    -------
+    change : ndarray, shape (S, m)
+        Relative change of each frequency: 0 if the straight beam is in equilibrium, nan if it is not known.
+    reason : str
+        Why it is not known; empty if it is.
+    """
+    if not bends(model):
+        unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
+        change = np.where(unstable, np.nan, np.zeros(eigenvalue.shape))
+        return change, _BUCKLED if unstable.any() else ""
+    if model.scene.physics.planes == 2:
+        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), TWO_PLANES
+    try:
+        straight, bent = (Model(scene, model.discretization) for scene in comparable(model.scene))
+    except InvalidValue as refusal:
+        reason = REFUSED.get(refusal.field, HINGED)
+        return np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan)), reason
+    _follow_branch(bent, speeds)
+    each = [_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+    reasons = dict.fromkeys(reason for _, reason in each if reason)
+    return np.array([change for change, _ in each]), next(iter(reasons), "")
+
+
+def _transverse(model: Model) -> np.ndarray:
+    """Coordinates of the fields that deflect the beam transversely."""
+    return model.equations.places(model.equations.deflections)
+
+
+def comparable(scene: Scene) -> tuple[Scene, Scene]:
+    """The scene without and with large deflection, both without what that cannot be combined with."""
+    kept = Physics(rotary_inertia=scene.physics.rotary_inertia)
+    straight = replace(scene, physics=kept)
+    return straight, replace(straight, physics=replace(kept, large_deflection=True))
+
+
+def _follow_branch(bent: Model, speeds: np.ndarray) -> None:
+    """Have the solver find the equilibria at all speeds along one branch; it keeps them.
+
+    Where the branch does not reach all speeds, none is kept, and each is sought by itself.
+    """
+    with suppress(ArithmeticError, np.linalg.LinAlgError):
+        bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
+
+
+def _change_at(straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, str]:
+    """Relative changes (m,) at one speed, and why they are not known."""
+    if not speed:
+        return np.zeros(len(eigenvalue)), ""
+    count, speeds = min(len(eigenvalue) + _EXTRA_MODES, straight.solver.size), np.array([speed])
+    without = straight.solver.solve(speeds, count).eigenvalue[0]
+    order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
+    try:
+        within = bent.solver.solve(speeds, count).eigenvalue[0]
+    except ArithmeticError as error:
+        return np.full(len(eigenvalue), np.nan), reason_of(error)
+    except np.linalg.LinAlgError:  # a hinge, on which the beam has no single equilibrium at rest
+        return np.full(len(eigenvalue), np.nan), _NOT_FOUND
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = np.imag(within[order]) / np.imag(without[order]) - 1
+    return np.where(np.imag(within[order]) > 0, change, np.nan), ""
+
 
 _LOST = "it turns a mode into others"
 _UNSTABLE = "it is judged on the straight beam, which is unstable"
@@ -49,7 +150,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
         with it.
     """
-    simple = Simple.of(without_large_deflection(model), eigenvalue.shape[1])
+    simple = BaseEquations.of(without_large_deflection(model), eigenvalue.shape[1])
     found_modes = [simple.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
     def change(equations: Equations, embed: Embedding) -> np.ndarray:
@@ -88,7 +189,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     LeftOutEffects
         Relative changes, of shape ().
     """
-    simple = Simple.of(without_large_deflection(model), 1)
+    simple = BaseEquations.of(without_large_deflection(model), 1)
     pencil = simple.pencil()
     v = buckling_mode(pencil, critical)
     known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
@@ -113,7 +214,7 @@ def nothing_known(scene: Scene) -> LeftOutEffects:
 
 def _gather(
     scene: Scene,
-    simple: Simple,
+    simple: BaseEquations,
     change: Change,
     bent: Callable[[], tuple[np.ndarray, str]] | None,
     shape: tuple[int, ...] = (),
@@ -143,7 +244,7 @@ def _straight(physics: Physics) -> Physics:
     return replace(physics, large_deflection=False, branch="straight")
 
 
-def _change_by(simple: Simple, addition: Addition, change: Change) -> np.ndarray:
+def _change_by(simple: BaseEquations, addition: Addition, change: Change) -> np.ndarray:
     equations = simple.extend(addition.scene)
     return change(equations, lambda v: simple.embed(equations, v))
 
@@ -160,7 +261,7 @@ def _change_of_frequencies(equations: Equations, speed: float, s: np.ndarray, v:
     shifted[known] = shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
     if lost.any():  # a step of inverse iteration may lead to a neighbour
-        shifted[lost] = find_alike(equations, speed, v[:, lost], _AMONG * len(s))
+        shifted[lost] = match_modes(equations, speed, v[:, lost], _AMONG * len(s))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
 

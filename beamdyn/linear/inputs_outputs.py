@@ -1,0 +1,351 @@
+"""Where a beam is excited and what of it is observed, at a steady speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, not_negative, one_of, positive, refuse, set_fields
+from beamdyn.equations.root_motion import Quantity, root_motion
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.points import ACROSS, ALONG_BENDING, Direction, direction_of
+
+BaseDirection = Literal["bending", "across", "n1", "n2", "n3"]
+_FIXED: tuple[str, ...] = ("n1", "n2", "n3")
+_ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_across"}
+_ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
+_NEGLIGIBLE = 1e-15  # component of a unit acceleration that rounding makes of 0
+
+Accelerations: TypeAlias = "dict[Quantity, complex]"  # of the root, per unit of the input
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """Acceleration of the carrier's centre [m/s2], which the root follows.
+
+    Parameters
+    ----------
+    direction : {"bending", "across", "n1", "n2", "n3"}
+        Direction of the bending angle, or across it, both of which turn with the beam; or a fixed direction:
+        n1 and n2 in the plane of rotation, n3 along its axis.  As the beam turns, an acceleration of the
+        frequency f along n1 or n2 excites it at f + n and f - n, with n turns per second.
+
+    Raises
+    ------
+    ValueError
+        If the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], input=bd.BaseMotion("n2")).input
+    'base acceleration, n2 [m/s2]'
+    """
+
+    direction: BaseDirection = "bending"
+
+    def __post_init__(self) -> None:
+        one_of("direction", self.direction, get_args(BaseDirection))
+
+    @property
+    def unit(self) -> str:
+        """Unit of the input."""
+        return "m/s2"
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return f"base acceleration, {self.direction}"
+
+    def accelerations(self, mount: Mount, speed: float) -> dict[int, Accelerations]:
+        """Accelerations of the root in its own axes per unit of the input, by harmonic of the rotation.
+
+        A harmonic h is at the frequency of the input plus h times the speed; the angle of rotation is 0 at
+        time 0.
+        """
+        if self.direction not in _FIXED:
+            return {0: {_ROTATING[self.direction]: 1.0}}
+        at_start, after_quarter = (_of_unit(mount, angle, self.direction) for angle in (0.0, np.pi / 2))
+        if speed == 0 or self.direction == "n3":
+            return {0: _without_zeros(at_start)}
+        # x(theta) = x(0) cos(theta) + x(pi/2) sin(theta)
+        return {
+            h: _without_zeros({k: (at_start[k] - 1j * h * after_quarter[k]) / 2 for k in _ACCELERATIONS})
+            for h in (-1, 1)
+        }
+
+    def force(self, beam: Beam) -> tuple[float, int] | None:
+        """None: it is no force."""
+        return None
+
+
+def _of_unit(mount: Mount, angle: float, direction: str) -> Accelerations:
+    """Accelerations of the root by a unit acceleration of the carrier in a fixed direction, at an angle."""
+    unit, zero = np.zeros(3), np.zeros(())
+    unit[_FIXED.index(direction)] = 1.0
+    root = root_motion(mount, MotionSample(np.array(angle), zero, zero, unit))
+    return {name: float(getattr(root, name)) for name in _ACCELERATIONS}
+
+
+def _without_zeros(values: Accelerations) -> Accelerations:
+    return {name: value for name, value in values.items() if abs(value) > _NEGLIGIBLE}
+
+
+@dataclass(frozen=True)
+class PointForce:
+    """Force on a point of the beam [N], which turns with it.
+
+    Parameters
+    ----------
+    position : float, optional
+        Distance from the root along the beam [m]; the tip if not given.
+    direction : {"bending", "across"}
+        Direction of the bending angle, or across it.
+
+    Raises
+    ------
+    ValueError
+        If the position is not positive, or the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> found = bd.frequency_response(scene, 0.0, [1e-3], input=bd.PointForce(), output="tip")
+    >>> by_hand = scene.beam.length**3 / (3 * scene.beam.bending_stiffness(0))
+    >>> round(float(abs(found.response[0, 0]) / by_hand), 4)  # L^3/(3 EI)
+    1.0
+    """
+
+    position: float | None = None
+    direction: Direction = ALONG_BENDING
+
+    def __post_init__(self) -> None:
+        one_of("direction", self.direction, get_args(Direction))
+        if self.position is not None:
+            remedy = "a force at the root, 0, moves nothing"
+            set_fields(self, position=positive("position", self.position, "m", remedy))
+
+    @property
+    def unit(self) -> str:
+        """Unit of the input."""
+        return "N"
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return f"force {place_in_words(self.position, self.direction)}"
+
+    def accelerations(self, mount: Mount, speed: float) -> dict[int, Accelerations]:
+        """The root does not move."""
+        return {0: {}}
+
+    def force(self, beam: Beam) -> tuple[float, int]:
+        """Position x/L and direction, 0 or 1, of a unit force."""
+        return fraction_of(self.position, beam), direction_of(self.direction)
+
+
+Excitation: TypeAlias = BaseMotion | PointForce
+
+_EXCITATIONS: dict[str, Excitation] = {
+    **{name: BaseMotion(name) for name in get_args(BaseDirection)},
+    "tip force": PointForce(),
+    "tip force across": PointForce(direction=ACROSS),
+}
+
+
+def as_excitation(name: str, given: Any) -> Excitation:
+    """An excitation, which a word may stand for.
+
+    Raises
+    ------
+    InvalidValue
+        If it is neither, with the words.
+    """
+    if isinstance(given, str) and given in _EXCITATIONS:
+        return _EXCITATIONS[given]
+    if not isinstance(given, BaseMotion | PointForce):
+        words = ", ".join(map(repr, _EXCITATIONS))
+        raise InvalidValue(name, given, f"give {words}, a BaseMotion(direction) or a PointForce(position)")
+    return given
+
+
+def place_in_words(position: float | None, direction: str) -> str:
+    """A point of the beam and a direction, such as "at 0.03 m, across"."""
+    place = "at the tip" if position is None else f"at {position:.6g} m"
+    return f"{place}, {direction}" if direction == ACROSS else place
+
+
+def fraction_of(position: float | None, beam: Beam) -> float:
+    """Fraction x/L of a position; an InvalidValue beyond the tip."""
+    if position is None:
+        return 1.0
+    bound, remedy = "it must be at most {limit}, the length", "the tip is where no position is given"
+    beyond = position > beam.length * (1 + 1e-12)
+    refuse(beyond, "position", position, "m", bound, remedy, limit=beam.length)
+    return min(position / beam.length, 1.0)
+
+
+# What is observed of a beam at steady speed -------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class DeflectionAt:
+    """Deflection of a point of the beam [m], relative to axes that turn with the carrier.
+
+    Parameters
+    ----------
+    position : float, optional
+        Distance from the root along the beam [m]; the tip if not given.
+    direction : {"bending", "across"}
+        Direction of the bending angle, or across it.
+
+    Raises
+    ------
+    ValueError
+        If the position is negative, or the direction is unknown.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> where = bd.DeflectionAt(position=scene.beam.length / 2)
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=where).unit
+    'm per m/s2'
+    """
+
+    position: float | None = None
+    direction: Direction = ALONG_BENDING
+
+    def __post_init__(self) -> None:
+        one_of("direction", self.direction, get_args(Direction))
+        if self.position is not None:
+            set_fields(self, position=not_negative("position", self.position, "m"))
+
+    @property
+    def unit(self) -> str:
+        """Unit of the output."""
+        return "m"
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return f"deflection {place_in_words(self.position, self.direction)}"
+
+    def place(self, beam: Beam) -> tuple[float, int]:
+        """Position x/L, and direction 0 or 1."""
+        return fraction_of(self.position, beam), direction_of(self.direction)
+
+
+@dataclass(frozen=True)
+class AccelerationAt(DeflectionAt):
+    """Acceleration of a point of the beam in space [m/s2], along a direction that turns with the carrier.
+
+    It contains that of the root, and what rotation adds to a deflection; the constant acceleration towards
+    the axis of rotation is left out, so that it is what an accelerometer without constant part measures.
+    Over the acceleration of the base it is the transmissibility.
+
+    Parameters
+    ----------
+    position, direction
+        As for `DeflectionAt`.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.AccelerationAt()).unit
+    'm/s2 per m/s2'
+    """
+
+    @property
+    def unit(self) -> str:
+        """Unit of the output."""
+        return "m/s2"
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return f"acceleration {place_in_words(self.position, self.direction)}"
+
+
+@dataclass(frozen=True)
+class MomentAtRoot:
+    """Bending moment at the root [N m], about the axis of bending of the section there.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.MomentAtRoot()).unit
+    'N m per m/s2'
+    """
+
+    @property
+    def unit(self) -> str:
+        """Unit of the output."""
+        return "N m"
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return "bending moment at the root"
+
+
+@dataclass(frozen=True)
+class StrainAtRoot:
+    """Bending strain of the outer fibre at the root, in the section's first direction.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/rough_road.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.StrainAtRoot()).unit
+    '1 per m/s2'
+    """
+
+    @property
+    def unit(self) -> str:
+        """Unit of the output."""
+        return ""
+
+    @property
+    def label(self) -> str:
+        """For tables and pictures."""
+        return "strain at the root"
+
+    @staticmethod
+    def per_moment(beam: Beam) -> float:
+        """Strain per bending moment [1/(N m)]; a ValueError where the beam has no outer fibre."""
+        root = np.zeros(1)
+        if beam.outer_fibre is None:
+            bound, remedy = "the strain needs beam.outer_fibre", "give it to Beam.from_stiffness"
+            raise InvalidValue("output", "root strain", bound, remedy)
+        return float(beam.outer_fibre(root)[0] / beam.bending_stiffness(root)[0])
+
+
+Observation: TypeAlias = DeflectionAt | AccelerationAt | MomentAtRoot | StrainAtRoot
+
+_OBSERVATIONS: dict[str, Observation] = {
+    "tip": DeflectionAt(),
+    "tip across": DeflectionAt(direction=ACROSS),
+    "tip acceleration": AccelerationAt(),
+    "root moment": MomentAtRoot(),
+    "root strain": StrainAtRoot(),
+}
+
+
+def as_observation(name: str, given: Any) -> Observation:
+    """An observation, which a word may stand for.
+
+    Raises
+    ------
+    InvalidValue
+        If it is neither, with the words.
+    """
+    if isinstance(given, str) and given in _OBSERVATIONS:
+        return _OBSERVATIONS[given]
+    if not isinstance(given, DeflectionAt | MomentAtRoot | StrainAtRoot):
+        words = ", ".join(map(repr, _OBSERVATIONS))
+        objects = "a DeflectionAt(position) or an AccelerationAt(position)"
+        raise InvalidValue(name, given, f"give {words}, {objects}")
+    return given

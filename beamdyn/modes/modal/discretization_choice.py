@@ -1,0 +1,369 @@
+"""Choice of the smallest discretization that meets a given accuracy."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache, partial
+from typing import TypeAlias
+
+import numpy as np
+
+from beamdyn.accuracy.refinement import refine
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.statements import TOLERANCE, Statement
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.equations.root_motion import root_motion
+from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
+from beamdyn.modes.modal.model import Model
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import Mount
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import section_tensor
+
+DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
+TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
+MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
+_FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+_MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
+_MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
+_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more functions, and lose digits
+# Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
+# sections bend under the forces in both directions.
+_IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
+_ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of half as many resolves it, too
+_OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
+_MANY = 10_000  # modes, more than any discretization gives
+_FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
+
+DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
+
+
+def solve_to_tolerance(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    speeds: np.ndarray,
+    modes: int,
+    tolerance: float | None = None,
+    extra: int = 0,
+) -> EstimatedModes:
+    """Solve the smallest model whose modes meet the tolerance at every speed.
+
+    Without a tolerance, `choose_model` aims at `DEFAULT_TARGET`.  The other parameters are those of
+    `choose_model` and `solve_with_error`.
+    """
+    target = DEFAULT_TARGET if tolerance is None else tolerance
+    model, at_ends = _choose(scene, discretization, speeds, modes, target, tolerance is not None)
+    if at_ends is not None and len(speeds) == 1 and not extra:
+        result = at_ends
+    else:
+        result = solve_with_error(model, speeds, modes, extra)
+    if tolerance is None or not isinstance(discretization, str):
+        return result
+    finer = partial(_solve_finer, speeds=speeds, modes=modes, extra=extra)
+    return refine(result, finer, lambda found: found.meet(tolerance))
+
+
+def _solve_finer(
+    found: EstimatedModes, speeds: np.ndarray, modes: int, extra: int = 0
+) -> EstimatedModes | None:
+    """The modes of the next finer model; None if there is none, or rounding of so many functions bars it."""
+    if (finer := _refine(found.model)) is None:
+        return None
+    try:
+        return solve_with_error(finer, speeds, modes, extra)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[Statement]:
+    """Yield a warning if the estimated error exceeds the tolerance."""
+    if error > tolerance:
+        yield Statement(
+            f"tolerance = {tolerance:g} is not reached: the estimated relative error is {error:.1g}, "
+            "and the model is the largest that helps",
+            kind=TOLERANCE,
+            quantity="estimated relative error",
+            value=error,
+            limit=tolerance,
+        )
+
+
+def choose_model(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    speeds: np.ndarray,
+    modes: int,
+    target: float = DEFAULT_TARGET,
+    cheapest: bool = False,
+) -> Model:
+    """Find the smallest model whose estimated error meets a target at the slowest and fastest speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    discretization : {"ritz", "fem"} or Discretization
+        Kind of discretization, or an instance, which is used as it is.
+    speeds : ndarray
+        Speeds at which the model will be used [rad/s].
+    modes : int
+        Number of modes.
+    target : float
+        Relative error of the eigenvalues to be met; at least 1e-7 for finite elements.
+    cheapest : bool
+        Begin with the smallest sensible model, instead of one that usually meets the default target.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    ValueError
+        If the discretization is unknown or has too few functions for the modes, or the beam has too many
+        segments.
+    """
+    return _choose(scene, discretization, speeds, modes, target, cheapest)[0]
+
+
+def _choose(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    speeds: np.ndarray,
+    modes: int,
+    target: float,
+    cheapest: bool,
+) -> tuple[Model, EstimatedModes | None]:
+    """Find the model of `choose_model`, and its modes at the slowest and fastest speed, if solved."""
+    check_discretization(discretization)
+    ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
+    target = max(target, least_target(discretization))
+    speed = float(np.abs(speeds).max(initial=0.0))
+    split = scene
+    if isinstance(discretization, str):
+        split = split_layers(scene, speed, target if discretization == "ritz" else _OF_ELEMENTS)
+    models = list_models(split, discretization, modes, target, cheapest, split is not scene)
+    if not isinstance(discretization, str):
+        return next(models), None
+    # Some functions of a model may depend on others.
+    first = next(m for m in models if m.solver.size >= modes or _refine(m) is None)
+    at_ends = refine(
+        solve_with_error(first, ends, modes),
+        partial(_solve_finer, speeds=ends, modes=modes),
+        lambda found: found.meet(within_reach(found.model.discretization, target)),
+    )
+    return at_ends.model, at_ends
+
+
+def within_reach(discretization: Discretization, target: float) -> float:
+    """A target of the error, or the least at which a basis aims: moment bases state too large errors."""
+    return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
+
+
+def least_target(discretization: DiscretizationChoice) -> float:
+    """Smallest target at which a discretization aims: 1e-7 for finite elements, else 0."""
+    return _FEM_TARGET if discretization == "fem" else 0.0
+
+
+def list_models(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    modes: int,
+    target: float,
+    cheapest: bool,
+    has_layers: bool = False,
+) -> Iterator[Model]:
+    """List the models to try, from the smallest sensible one to the finest; of an instance, that one.
+
+    `has_layers` says whether segments are those of `end_layers`, which need several elements.
+    The other parameters and what is raised are those of `choose_model`.
+    """
+    segments = _count_segments(scene)
+    if segments > _MOST_SEGMENTS:
+        raise ValueError(
+            f"the beam has {segments} segments between its stations and breakpoints: at most "
+            f"{_MOST_SEGMENTS}; give fewer stations, or its properties as polynomials or functions of x/L"
+        )
+    if isinstance(discretization, str):
+        first = _FIRST_CANDIDATE[discretization, has_layers](scene, modes, target, cheapest)
+        model = Model(scene, _enlarge(first, scene, modes))
+    else:
+        model = Model(scene, _check_size(discretization, modes, segments))
+    return _list_from(model, isinstance(discretization, str))
+
+
+def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
+    while model is not None:
+        yield model
+        model = _refine(model) if refining else None
+
+
+def _refine(model: Model) -> Model | None:
+    """The next finer model; None if there is none that is affordable."""
+    finer = model.discretization.finer()
+    if finer is None or _count_functions(finer, _count_segments(model.scene)) > _MOST_IN_ALL:
+        return None
+    refined = Model(model.scene, finer)
+    if refined.coarser.discretization == model.discretization:  # it is there already
+        refined.__dict__["coarser"] = model
+    return refined
+
+
+def _enlarge(first: Discretization, scene: Scene, modes: int) -> Discretization:
+    """The first discretization, or a finer one, that has functions enough for the modes."""
+    segments = _count_segments(scene)
+    while not _fits(first, modes, segments) and (finer := first.finer()) is not None:
+        first = finer
+    return _check_size(first, modes, segments)
+
+
+def _count_segments(scene: Scene) -> int:
+    """Number of segments of the beam between its stations and breakpoints."""
+    return len(scene.modelled_beam.breakpoints) - 1
+
+
+def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
+    """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    segments = _count_segments(scene)
+    if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
+        coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
+        least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
+        digits = -np.log10(max(target, MOMENTS_TARGET))
+        return Ritz(max(modes, int(least + modes + per_digit * digits)), "moments")
+    fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
+    total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
+    return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
+
+
+def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each: int = 2) -> Discretization:
+    from beamdyn.equations.fem import (
+        MOST_ELEMENTS,
+        MOST_REFINED,
+        Fem,
+    )  # here, because scikit-fem is slow to import
+
+    segments = _count_segments(scene)
+    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
+
+
+# First candidate of each kind, for beams without and with segments for layers at the ends: by scene, modes,
+# target and whether to begin with the smallest.
+_FIRST_CANDIDATE: dict[tuple[str, bool], Callable[[Scene, int, float, bool], Discretization]] = {
+    ("ritz", False): _first_ritz,
+    ("ritz", True): _first_ritz,
+    ("fem", False): _first_fem,
+    ("fem", True): partial(_first_fem, on_each=_ON_LAYERS),
+}
+_NAMES = tuple(dict.fromkeys(name for name, _ in _FIRST_CANDIDATE))
+
+
+def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
+    """Replace a discretization that has too few functions for the modes of a scene by "ritz"."""
+    segments = _count_segments(scene)
+    fits = isinstance(discretization, str) or _fits(discretization, modes, segments)
+    return discretization if fits else "ritz"
+
+
+def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -> int:
+    """A number of modes, or as many of them as the functions of a given discretization serve, at least 1."""
+    if isinstance(discretization, str):
+        return modes
+    check_discretization(discretization)
+    return max(1, _most_that_fit(discretization, modes, _count_segments(scene)))
+
+
+def _most_that_fit(discretization: Discretization, modes: int, segments: int) -> int:
+    """The most of some modes for which a discretization has functions enough."""
+    if _fits(discretization, modes, segments):
+        return modes
+    fewer = range(1, min(modes, _MANY))
+    return bisect_left(fewer, True, key=lambda n: not _fits(discretization, n, segments))
+
+
+def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
+    """Whether a beam of some segments has functions enough."""
+    on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
+    return discretization.fits(-(-modes // segments) if on_each else modes)
+
+
+def _count_functions(discretization: Discretization, segments: int) -> int:
+    """Number of assumed modes on all segments together; 0 of finite elements, which have their own limit."""
+    if not isinstance(discretization, Ritz):
+        return 0
+    return discretization.functions * (segments if discretization.on_each_segment else 1)
+
+
+def _check_size(discretization: Discretization, modes: int, segments: int) -> Discretization:
+    """Raise a ValueError that names the most modes, if there are too few functions for those asked for."""
+    most = _most_that_fit(discretization, modes, segments)
+    if most == modes:
+        return discretization
+    bound = f"{discretization} gives at most {most} modes with an estimate of their error"
+    raise InvalidValue("modes", modes, bound, "ask for fewer")
+
+
+def check_discretization(discretization: object) -> None:
+    """Refuse what is neither the name of a discretization nor one."""
+    named = isinstance(discretization, str) and discretization in _NAMES
+    if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
+        bound = f"give {', '.join(map(repr, _NAMES))}, a beamdyn.Ritz or a beamdyn.Fem"
+        raise InvalidValue("discretization", discretization, bound)
+
+
+_LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
+_SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
+_SHORTEST = 1e-4  # and the shortest
+_TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies
+
+
+def split_layers(scene: Scene, speed: float, target: float) -> Scene:
+    """Add breakpoints where the layers at a speed [rad/s] end; the scene itself where they are not short.
+
+    Beyond them a layer's share of an eigenvalue is below the target.
+    """
+    if not speed:
+        return scene
+    lengths = (_LENGTHS - math.log(target) / 2) / speed
+    root, tip = (lengths * unit for unit in _lengths_at_unit_speed(scene.modelled_beam, scene.mount))
+    places = [max(root, _SHORTEST)] if root < _SHORT_AT_ROOT else []
+    if scene.beam.tip is not None and tip < _SHORT_AT_TIP:
+        places.append(1 - max(tip, _SHORTEST))
+    return _split(scene, places) if places else scene
+
+
+@lru_cache(maxsize=64)
+def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
+    """Lengths (EI/N)^(1/2) over L at the root and at the tip, at 1 rad/s; inf where nothing pulls."""
+    ends = np.array([0.0, 1.0])
+    profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
+    stiffness = np.min([each(ends) for each in profiles if each is not None], axis=0)
+    with np.errstate(divide="ignore"):
+        root, tip = np.sqrt(stiffness / np.maximum(_tension(beam, mount, ends), 0.0)) / beam.length
+    return float(root), float(tip)
+
+
+def split_tip(scene: Scene) -> Scene:
+    """Add breakpoints that resolve a layer at the tip at any speed, where tension makes one."""
+    beam = scene.beam
+    has_layer = beam.tip is not None and _tension(beam, scene.mount, np.ones(1))[0] > 0
+    return _split(scene, _TOWARD_TIP) if has_layer else scene
+
+
+def _tension(beam: Beam, mount: Mount, xi: np.ndarray) -> np.ndarray:
+    """Axial force at x/L over the squared speed [kg m]; negative where the beam is pressed."""
+    n_a, n_b = axial_tension(beam)
+    return n_b(xi) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(xi)
+
+
+def _split(scene: Scene, places: Sequence[float]) -> Scene:
+    """The scene with breakpoints of its beam at x/L, too."""
+    mass = scene.beam.mass_per_length.split((0.0, *places, 1.0))
+    return replace(scene, beam=replace(scene.beam, mass_per_length=mass))

@@ -1,0 +1,389 @@
+"""Choice of the physics: the effects without which an answer would change by more than a tolerance.
+
+The sizes of the effects are estimated about the plain beam.  The largest is added, and the rest estimated
+again about the beam with it, until the sizes of those left out, summed at each value of the answer, are at
+most half the tolerance: an estimate may be low by a factor of two.  So nothing below a tenth of the tolerance
+is added.  Large deflection excludes shear, stretch and a second plane: where both sides are needed, the set
+that leaves less out is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence, Set
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn.accuracy.margins import EFFECTS
+from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
+from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
+from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
+from beamdyn.modes.modal.error_estimate import EstimatedModes
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.model_error.of_modes import EXCLUDED, left_out_of_modes, vibrate, without_large_deflection
+from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
+from beamdyn.scene.scene import Scene
+
+PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
+_SMALL = 0.1  # of the tolerance, below which no effect is added
+_SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
+_MODES = 3  # of which a motion consists
+_SHORT = 0.2  # time [s] below which the shorter of two runs counts
+_ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
+_BENDING = LARGE_DEFLECTION.name
+_NOTHING = "no mode vibrates and is stable"
+
+
+@dataclass(frozen=True)
+class EffectSizes:
+    """Sizes of the effects that a scene leaves out, for one answer.
+
+    Parameters
+    ----------
+    sizes : dict of str to float
+        Largest relative change by each effect; inf where it turns modes into others, nan where it is not
+        known.
+    reasons : dict of str to str
+        Why an effect cannot be added, or its size is not known.
+    """
+
+    sizes: dict[str, float]
+    reasons: dict[str, str]
+
+
+Judge = Callable[[Scene], EffectSizes]
+Solve = Callable[[Scene], int]  # solves the answer, and counts its coordinates
+
+
+# Choices for answers ------------------------------------------------------------------------------
+
+
+def choose_physics(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    modes: int,
+    tolerance: float | None = None,
+    straight: str = "",
+) -> Scene:
+    """Choose the physics of a scene where it is "auto", by the frequencies at some speeds.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; one with given physics is returned as it is.
+    speeds : sequence of float
+        Speeds [rad/s]; the effects are judged at the slowest, the fastest and the middle one.
+    modes : int
+        Number of modes.
+    tolerance : float, optional
+        Relative change of a frequency that may be left out; 1e-3 if not given.
+    straight : str
+        Why the analysis cannot do with large deflection; empty if it can.
+
+    Returns
+    -------
+    Scene
+        The scene with the physics, and how it was chosen.
+    """
+    if not scene.chooses_physics:
+        return scene
+    tolerance = PHYSICS_TOLERANCE if tolerance is None else tolerance
+    some = np.unique(np.quantile(np.abs(speeds), [0.0, 0.5, 1.0]))
+
+    def solve(candidate: Scene) -> EstimatedModes:
+        target = min(max(_SOLVED * tolerance, TOLERANCES[0]), TOLERANCES[1])
+        return solve_to_tolerance(candidate, "ritz", some, modes, target)
+
+    def judge(candidate: Scene) -> EffectSizes:
+        found = solve(candidate)
+        s = found.eigen.eigenvalue[:, :modes]
+        effects = left_out_of_modes(found.model, some, s)
+        counts = vibrate(s)
+        if (
+            candidate.physics.large_deflection
+        ):  # then others are judged on the straight beam, where it is stable
+            counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
+        return judged_by(candidate, effects, counts, _rough_size(found.model, some))
+
+    def count(candidate: Scene) -> int:
+        return solve(candidate).model.solver.size
+
+    undamped = scene.undamped  # damped modes take long to find, and change alike
+    chosen = choose_by(undamped, judge, count, tolerance, some, straight)
+    return replace(chosen, damping_ratio=scene.damping_ratio, damping=scene.damping)
+
+
+def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, tolerance: float) -> Scene:
+    """Choose the physics of a scene where it is "auto", for its motion over a range of speeds.
+
+    The frequencies decide: of the modes that are asked for, or of the lowest three.  The tolerance is that of
+    the analysis, but at least 1e-3: the default tolerances of motions are for the numerical errors.  The
+    other parameters and what is returned are those of `choose_physics`.
+    """
+    return choose_physics(scene, speeds, modes or _MODES, max(tolerance, PHYSICS_TOLERANCE))
+
+
+def plain_physics(scene: Scene) -> Scene:
+    """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone."""
+    return replace(scene, physics=Physics()) if scene.chooses_physics else scene
+
+
+def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
+    """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
+
+    An effect that turns modes into others can be added: that its size is not known is no reason against it.
+    """
+    sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
+    sizes |= {name: math.nan for name in effects.not_known if name not in sizes}
+    if _BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[_BENDING])):
+        sizes[_BENDING] = rough
+    additions, _, _ = list_effects(scene)
+    assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
+    addable = {a.name for a in additions} - assumed.keys()
+    if effects.not_known.get(_BENDING) not in EXCLUDED:
+        addable.add(_BENDING)
+    refused = {name: why for name, why in effects.not_known.items() if name not in addable}
+    nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
+    return EffectSizes(sizes, nothing | assumed | refused)
+
+
+def _size(change: np.ndarray, counts: np.ndarray) -> float:
+    """Largest change of the values that count; inf if one is not known, nan if none counts."""
+    counted = np.abs(change[np.broadcast_to(counts, change.shape)])
+    return float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
+
+
+def _rough_size(model: Model, speeds: np.ndarray) -> float:
+    """A generous size of large deflection, by the static deflection; nan if the beam stays straight.
+
+    Where the straight beam is unstable, though rotation bends it before, nothing of it is right: inf.
+    """
+    if model.scene.physics.large_deflection or not bends(model):
+        return math.nan
+    ratio = np.linalg.norm(model.static_tips(speeds), axis=1) / model.scene.beam.length
+    return math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
+
+
+def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
+    """Yield a warning if large deflection, left out of chosen physics, matters at a deflection found [m]."""
+    choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
+    if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
+        yield Statement(
+            f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
+            f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2",
+            kind=TOLERANCE,
+            quantity="relative change by large deflection",
+            value=size,
+            limit=choice.tolerance,
+        )
+
+
+def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
+    """Add large deflection to chosen physics if it matters at a deflection that was found [m].
+
+    It takes the place of the effects that it excludes, if these are worth less.  None if it is not added.
+    """
+    choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
+    if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
+        return None
+    sizes = {effect.name: effect.size for effect in choice.effects} | {_BENDING: size}
+    kept = (_BENDING, *(name for name in choice.included if NAMED[name].bends))
+    lost = sum(sizes[name] for name in choice.included if name not in kept)
+    try:
+        bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
+    except InvalidValue:  # an oblique direction
+        return None
+    if lost >= size:
+        return None
+    effects = [replace(e, size=sizes[e.name], included=e.name in kept) for e in choice.effects]
+    effects = [
+        replace(e, reason=EXCLUSIVE) if e.name in choice.included and not e.included else e for e in effects
+    ]
+    left_out = sum(e.size for e in effects if not e.included and not math.isnan(e.size))
+    chosen = replace(
+        choice, physics=bent.physics, effects=tuple(sorted(effects, key=lambda e: not e.included)),
+        model_error=left_out, time=math.nan, coordinates=math.nan,
+    )  # fmt: skip
+    return replace(bent, physics_choice=chosen)
+
+
+def warn_of_plain(scene: Scene) -> Iterator[Statement]:
+    """Yield a warning if the physics was to be chosen by an analysis that knows the plain beam alone."""
+    if scene.chooses_physics:
+        said = "physics = auto: nothing is added here, the answer is that of the plain beam"
+        yield Statement(said, kind=INPUT, quantity="physics")
+
+
+# The choice ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A scene with some effects, and what is known of the others.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene with the effects.
+    included : dict of str to float
+        The effects and their sizes, as when they were added.
+    left_out : dict of str to float
+        Sizes of the other effects.
+    reasons : dict of str to str
+        Why an effect cannot be added, or its size is not known.
+    """
+
+    scene: Scene
+    included: dict[str, float]
+    left_out: dict[str, float]
+    reasons: dict[str, str]
+
+    @property
+    def model_error(self) -> float:
+        """Sum of the known sizes of the effects left out."""
+        return sum(size for size in self.left_out.values() if not math.isnan(size))
+
+    def addable(self) -> dict[str, float]:
+        """Sizes of the effects that can be added."""
+        known = {name: size for name, size in self.left_out.items() if not math.isnan(size)}
+        return {name: size for name, size in known.items() if name not in self.reasons}
+
+    def without(self, name: str, reason: str) -> _Candidate:
+        """The same, with a reason why an effect cannot be added."""
+        return replace(self, reasons={name: reason} | self.reasons)
+
+    def add(self, name: str, judge: Judge) -> _Candidate:
+        """The scene with one more effect, about which the others are judged again.
+
+        Raises
+        ------
+        InvalidValue
+            If the beam lacks data for it in combination.
+        ArithmeticError
+            If it leaves no answer.
+        """
+        scene = add_effects(self.scene, [NAMED[name]])
+        judged, included = judge(scene), self.included | {name: self.left_out[name]}
+        left_out = {o: self._judged_again(o, judged) for o in self.left_out if o not in included}
+        return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
+
+    def _judged_again(self, name: str, judged: EffectSizes) -> float:
+        """Size of an effect, as before where it is not known any more."""
+        size = judged.sizes.get(name, math.nan)
+        rough = name == _BENDING and name in judged.reasons
+        return self.left_out[name] if rough or math.isnan(size) else size
+
+
+def choose_by(
+    scene: Scene, judge: Judge, solve: Solve, tolerance: float, speeds: np.ndarray, straight: str = ""
+) -> Scene:
+    """Choose the physics by any answer.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    judge : callable
+        Sizes of what a scene leaves out.
+    solve : callable
+        Solves the answer for a scene, and counts the coordinates: it is timed.
+    tolerance : float
+        Relative change that may be left out.
+    speeds : ndarray
+        Speeds [rad/s] at which the effects are judged.
+    straight : str
+        Why the analysis cannot do with large deflection; empty if it can.
+
+    Returns
+    -------
+    Scene
+        The scene with the physics, and how it was chosen.
+    """
+    plain = plain_physics(scene)
+    judged = judge(plain)
+    start = _Candidate(plain, {}, judged.sizes, judged.reasons)
+    if straight:
+        start = start.without(_BENDING, straight)
+    best = _grow(start, judge, tolerance, {_BENDING})
+    needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
+    if needed and best.model_error > EFFECTS.factor * tolerance:
+        try:
+            best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
+        except (InvalidValue, ArithmeticError) as error:
+            best = best.without(_BENDING, reason_of(error))
+    return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
+
+
+def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
+    """Add effects, but for the barred, until those that can be added are worth half the tolerance."""
+    while True:
+        sizes = {name: size for name, size in candidate.addable().items() if name not in barred}
+        largest = max(sizes, key=sizes.__getitem__, default="")
+        if sum(sizes.values()) <= EFFECTS.factor * tolerance or sizes[largest] <= _SMALL * tolerance:
+            return candidate
+        try:
+            candidate = candidate.add(largest, judge)
+        except (InvalidValue, ArithmeticError) as error:
+            candidate = candidate.without(largest, reason_of(error))
+
+
+def _bent(start: _Candidate, judge: Judge, tolerance: float) -> _Candidate:
+    """The scene with large deflection and what that is combined with; raises what `add` does."""
+    bent = start.add(_BENDING, judge)
+    return _grow(bent, judge, tolerance, {name for name in bent.left_out if not NAMED[name].bends})
+
+
+def _describe(
+    best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
+) -> PhysicsChoice:
+    """What was chosen, in numbers: each effect by its size, and what the choice costs."""
+    without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
+    for name in best.included:
+        costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without
+    together = _cost(best.scene, solve) / without if len(costs) > 1 else [*costs.values(), np.ones(2)][0]
+    included = [JudgedEffect(n, size, True, "", *costs[n].tolist()) for n, size in best.included.items()]
+    left_out = [JudgedEffect(n, s, False, _why(n, best, tolerance)) for n, s in best.left_out.items()]
+    return PhysicsChoice(
+        physics=best.scene.physics,
+        tolerance=tolerance,
+        speeds=tuple(speeds.tolist()),
+        effects=(*_by_size(included), *_by_size(left_out)),
+        model_error=best.model_error,
+        time=float(together[0]),
+        coordinates=float(together[1]),
+        not_modelled=list_effects(plain)[2],
+    )
+
+
+def _by_size(effects: list[JudgedEffect]) -> list[JudgedEffect]:
+    """The largest first, those of unknown size last."""
+    return sorted(effects, key=lambda effect: (math.isnan(effect.size), -effect.size))
+
+
+def _why(name: str, best: _Candidate, tolerance: float) -> str:
+    """Why an effect is left out: empty if its size decides, or it can be added."""
+    if best.left_out[name] <= _SMALL * tolerance:
+        return ""
+    if name in best.reasons:
+        return best.reasons[name]
+    if _BENDING in best.included and not NAMED[name].bends:
+        return EXCLUSIVE
+    others = ", ".join(n for n in best.included if not NAMED[n].bends)
+    return f"it cannot be combined with {others}" if name == _BENDING and others else ""
+
+
+def _cost(scene: Scene, solve: Solve) -> np.ndarray:
+    """Time [s] and number of coordinates of the answer for a scene."""
+    start = perf_counter()
+    size = solve(scene)
+    time = perf_counter() - start
+    if time < _SHORT:  # what else the machine did counts
+        solve(scene)
+        time = min(time, perf_counter() - start - time)
+    return np.array([time, size])

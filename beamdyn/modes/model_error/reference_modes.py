@@ -1,0 +1,231 @@
+"""Reference modes of a model, and the change of their eigenvalues by an effect that the model leaves out.
+
+The modes are sought over function spaces in which every effect can be added.  The equations with the effect,
+at the eigenvalue s and mode v of those without it, give a step of inverse iteration, z = D(s)^-1 D'(s) v with
+D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root of y^T D(s) z = 0 next to s, with y
+from the transposed equations.  The error of the vectors enters squared: no new eigenproblem is solved, and no
+modes are matched.  Further steps serve large effects and close modes.
+"""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+from scipy.linalg.lapack import zgetrf, zgetrs
+
+from beamdyn.common.assignment import assign
+from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
+from beamdyn.modes.modal.eigen import Eigen
+from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.scene.scene import Scene
+
+_MOST = 160  # coordinates of a model: an estimate of a change needs no more
+_EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
+
+
+@dataclass(frozen=True)
+class BaseEquations:
+    """The equations of a scene, without the effects, over spaces that suit those with each effect.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spaces : Spaces
+        Function spaces with a breakpoint wherever the beam has one.
+    equations : Equations
+        The equations of motion.
+    """
+
+    scene: Scene
+    spaces: Spaces
+    equations: Equations
+
+    @classmethod
+    def of(cls, model: Model, modes: int) -> BaseEquations:
+        """Equations over the spaces of a model, or of a coarser one that suffices for so many modes."""
+        discretization, segments = model.discretization, len(model.scene.beam.breakpoints) - 1
+        while model.equations.modes > _MOST and discretization.coarser() != discretization:
+            if not discretization.coarser().fits(max(2, -(-modes // segments))):
+                break
+            discretization = discretization.coarser()
+            model = Model(model.scene, discretization)
+        spaces = discretization.spaces(model.scene.beam)
+        if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
+            return cls(model.scene, spaces, model.equations)
+        return cls(model.scene, spaces, assemble_over(model.scene, spaces))
+
+    def pencil(self) -> SteadyPencil:
+        """The equations at steady speed."""
+        return self.equations.steady()
+
+    def extend(self, scene: Scene) -> Equations:
+        """The equations of the scene with an effect, over the same spaces."""
+        return assemble_over(scene, self.spaces)
+
+    def embed(self, equations: Equations, vectors: np.ndarray) -> np.ndarray:
+        """Coordinates (N, ...) of extended equations for vectors (n, ...) of these: 0 in further fields."""
+        embedded = np.zeros((equations.size, *vectors.shape[1:]), dtype=vectors.dtype)
+        for name, place in self.equations.blocks.items():
+            embedded[equations.blocks[name]] = vectors[place]
+        return embedded
+
+    @cached_property
+    def _solver(self) -> Eigensolver:
+        return solver_of(self.equations)
+
+    def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Eigenvalues (m,) and modes (n, m) of these equations, each the nearest to one that is given."""
+        count = min(len(eigenvalue) + _EXTRA_MODES, self._solver.size)
+        found: Eigen = self._solver.solve(np.array([speed]), count)
+        s, v = found.eigenvalue[0], found.vector[0]
+        order = assign(np.abs(eigenvalue[:, None] - s[None, :]))
+        return s[order], v[:, order]
+
+
+def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: int) -> np.ndarray:
+    """Find the modes of equations that are mostly the given ones, by solving.
+
+    Parameters
+    ----------
+    equations : Equations
+        Equations of motion.
+    speed : float
+        Speed [rad/s].
+    vectors : ndarray, shape (n, m)
+        Modes of other equations in these coordinates.
+    count : int
+        Number of modes that are solved for.
+
+    Returns
+    -------
+    ndarray of complex, shape (m,)
+        Eigenvalues [1/s]; nan where no mode has more than half of the given one.
+    """
+    M, solver = equations.steady().M, solver_of(equations)
+    found: Eigen = solver.solve(np.array([speed]), min(count, solver.size))
+    s, within = found.eigenvalue[0], found.vector[0]
+    product = np.abs(vectors.conj().T @ M @ within) ** 2
+    kept = product / np.outer(_squares(M, vectors), _squares(M, within))
+    return np.where(kept.max(axis=1) > KEPT, s[kept.argmax(axis=1)], np.nan)
+
+
+def _squares(M: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Squared sizes (m,) of modes (n, m) by mass."""
+    return np.einsum("nm,nm->m", vectors.conj(), M @ vectors).real
+
+
+_APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
+_STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
+_CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
+KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
+
+
+def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Estimate the eigenvalues of a pencil next to some of simpler equations.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        The equations with the effect.
+    speed : float
+        Speed [rad/s].
+    s : ndarray of complex, shape (m,)
+        Eigenvalues without the effect [1/s], not 0.
+    v : ndarray, shape (n, m)
+        Their modes, 0 in the coordinates that the effect adds.
+
+    Returns
+    -------
+    ndarray of complex, shape (m,)
+        The eigenvalues [1/s]; nan where the equations give none.
+    """
+    M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
+    scale = _scale(M, K)  # functions of high order have large entries
+    M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
+    modes = (v / scale[:, None]).T
+    with np.errstate(divide="ignore", invalid="ignore"):  # of singular equations, which give none
+        each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
+    return np.array(each, dtype=complex)
+
+
+def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarray) -> complex:
+    """The eigenvalue next to s, of mode x without the effect."""
+    y, z, at = x.conj(), x, s
+    for _ in range(_STEPS):
+        y, z = _improve(M, C, K, at * (1 + _APART), y, z)
+        before, at = at, _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
+        if abs(at - before) <= _CONVERGED * abs(at - s) + _ROUNDING * abs(s):
+            break
+        if not cmath.isfinite(at):
+            return complex(np.nan)
+    kept = abs(x.conj() @ M @ z) ** 2 / abs((x.conj() @ M @ x) * (z.conj() @ M @ z))
+    return at if kept > KEPT else complex(np.nan)
+
+
+def _improve(
+    M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, y: np.ndarray, z: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """One step of inverse iteration of the left and the right vector at s; not finite where D is singular."""
+    derivative = 2 * s * M + C
+    factors, pivots, _ = zgetrf(s * s * M + s * C + K, overwrite_a=True)
+    z, _ = zgetrs(factors, pivots, derivative @ z)
+    y, _ = zgetrs(factors, pivots, derivative.T @ y, trans=1)
+    return y / np.linalg.norm(y), z / np.linalg.norm(z)
+
+
+def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
+    """Factors (n,) that make the diagonal of the stiffness 1, or of the mass where there is no stiffness."""
+    size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
+    return 1 / np.sqrt(np.where(size > 0, size, 1.0))
+
+
+def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
+    """The root of a r^2 + b r + c nearest to s; nan if there is none."""
+    if not (cmath.isfinite(a) and cmath.isfinite(b) and cmath.isfinite(c)) or a == 0:
+        return complex(np.nan)
+    root = cmath.sqrt(b * b - 4 * a * c)
+    return min((-b + root) / (2 * a), (-b - root) / (2 * a), key=lambda r: abs(r - s))
+
+
+def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -> float:
+    """Estimate the speed at which the stiffness is singular, next to that of simpler equations.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        The equations with the effect.
+    critical : float
+        Critical speed without the effect [rad/s].
+    v : ndarray, shape (n,)
+        Its buckling mode, 0 in the coordinates that the effect adds.
+
+    Returns
+    -------
+    float
+        The critical speed [rad/s]; nan if the equations give none.
+    """
+    scale = _scale(pencil.M, pencil.K0)
+    K0, K2 = (scale[:, None] * A * scale for A in (pencil.K0, pencil.K2))
+    try:
+        z = scipy.linalg.solve(K0 + (critical * (1 + _APART)) ** 2 * K2, K2 @ (v / scale), assume_a="sym")
+    except (ValueError, np.linalg.LinAlgError):
+        return np.nan
+    z = z / np.linalg.norm(z)
+    stiffness, softening = float(z @ K0 @ z), -float(z @ K2 @ z)
+    return float(np.sqrt(stiffness / softening)) if stiffness > 0 and softening > 0 else np.nan
+
+
+def buckling_mode(pencil: SteadyPencil, critical: float) -> np.ndarray:
+    """Mode (n,) on which the stiffness vanishes at the critical speed [rad/s]."""
+    scale = _scale(pencil.M, pencil.K0)
+    K = scale[:, None] * (pencil.K0 + critical**2 * pencil.K2) * scale
+    values, vectors = np.linalg.eigh(K)
+    return scale * vectors[:, np.abs(values).argmin()]

@@ -1,0 +1,291 @@
+"""Tables and CSV rows of loads along the span."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Group
+from rich.text import Text
+
+from beamdyn.common.edge.tables import table_of
+from beamdyn.common.edge.views import View
+from beamdyn.common.results.columns import Column, Columns
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.statements import said_in
+from beamdyn.equations.directions import words_of_directions
+from beamdyn.loads.span_loads import REMEDIES
+from beamdyn.loads.stations import UNITS
+
+if TYPE_CHECKING:
+    from beamdyn.loads.cycles import LoadCycles
+    from beamdyn.loads.random_loads import RandomLoads
+    from beamdyn.loads.span_loads import LargestLoad, SpanLoads
+    from beamdyn.loads.static_loads import StaticLoads
+    from beamdyn.loads.steady_loads import SteadyLoads
+    from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
+
+_MOST_DIGITS = 7
+_DIGITS_EXPECTED = 3  # of the largest that are expected: statistics have no more
+_CLASSES = 10  # of ranges of cycles
+_SCALES = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa"), "force": (1.0, "N"), "moment": (1.0, "N m")}
+
+
+def static_loads_table(result: StaticLoads) -> Group:
+    """Loads along the span at each speed."""
+    unit = result.display_units.speed_unit()
+    made = (
+        _table(result, f"Loads in equilibrium at {unit.say(speed, 10)}, by {result.provenance.method}", case)
+        for case, speed in enumerate(result.speeds.tolist())
+    )
+    return Group(*made, *_largest_lines(result))
+
+
+def steady_loads_table(result: SteadyLoads) -> Group:
+    """Largest magnitudes along the span at the speed at which they are largest."""
+    stable = result.response.stable.any()
+    case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if stable else 0
+    speed = result.display_units.speed_unit().say(result.speeds[case], 10)
+    at = f"at {speed}, where the bending moment is largest"
+    title = f"Largest magnitudes in steady response {at}, by {result.provenance.method}"
+    return Group(_table(result, title, case), *(_largest_lines(result) if stable else []))
+
+
+def transient_loads_table(result: TransientLoads, window: tuple[float, float] | None = None) -> Group:
+    """Largest values along the span within a window, or the whole run."""
+    start, end = window or (result.run.path.start, result.run.path.end)
+    title = f"Loads of largest magnitude from {start:g} to {end:g} s, by {result.provenance.method}"
+    peaks = result.path.outputs.split(result.path.peaks(start, end)[0])
+    return Group(_table(result, title, None, peaks), *_largest_lines(result, start=start, end=end))
+
+
+def _table(
+    result: SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
+) -> Group:
+    """Rows of stations: axial and shear forces, moments, and the strain and stress that are largest there."""
+    columns = {f"position [{result.display_units.length_unit().name}]": _positions(result)}
+    for name, (scale, unit) in _SCALES.items():
+        found = result.values(name)[case] if values is None else values[name]
+        error = result.error_of(name) if case is None else result.error_of(name)[case]
+        if name not in ("strain", "stress"):
+            for k, head in enumerate(_heads(result, name)):
+                columns[f"{head} [{unit}]"] = _cells(found[:, k], error[:, k])
+        elif found.shape[1] and np.isfinite(found).any():
+            k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]  # the largest of the points
+            at_largest = (np.take_along_axis(scale * each, k, 1)[:, 0] for each in (found, error))
+            columns[f"{name} [{unit}]"] = _cells(*at_largest)
+    return table_of(title, columns)
+
+
+def _heads(result: SpanLoads, quantity: str) -> list[str]:
+    """Heads of forces or moments: those across the beam in each direction, if there are two."""
+    words = [f"{word} ".lstrip() for word in words_of_directions(result.scene) or ("",)]
+    if quantity == "moment":
+        return [f"{word}moment" for word in words]
+    return ["axial force", *(f"{word}shear" for word in words)]
+
+
+def _positions(result: SpanLoads) -> list[str]:
+    """Positions; those with two sides with the side."""
+    x, unit = result.x, result.display_units.length_unit()
+    jumps = np.flatnonzero(np.diff(x) == 0)
+    twice = np.isin(np.arange(len(x)), [*jumps, *(jumps + 1)])
+    sides = ["-" if inboard else "+" for inboard in result.inboard]
+    return [f"{unit.of(at):.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
+
+
+def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
+    return [supported(float(v), float(e), _MOST_DIGITS) for v, e in zip(values, errors, strict=True)]
+
+
+def _largest_lines(result: SpanLoads, **window: float) -> list[Text]:
+    """A sentence on the largest of each quantity that has values."""
+    return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
+
+
+def _lines(result: SpanLoads, say: Callable[[str], str]) -> list[Text]:
+    """A sentence on each quantity that has values, and what strains need where there are none."""
+    known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
+    lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
+    return [*map(Text, (*map(say, reversed(known)), *lacking))]
+
+
+def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
+    (scale, unit), case, units = _SCALES[found.quantity], result.case, result.display_units
+    value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
+    is_speed = case.name == "speed"
+    in_case = units.speed_unit().say(found.case) if is_speed else f"{found.case:.6g} {case.unit}"
+    what, place = _say_component(result, found), units.length_unit().say(found.x)
+    return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {in_case}."
+
+
+def _say_component(result: SpanLoads, found: LargestLoad) -> str:
+    """The direction, or the point of the section with its coordinates there."""
+    named = result.components(found.quantity)[found.component]
+    if found.quantity not in ("strain", "stress"):
+        return f"shear, {named}" if found.quantity == "force" and found.component else named
+    y, z = 1e3 * result.points[result.station_of(found), found.component]
+    second = f", {z:.6g} mm along the second" if result.scene.physics.planes == 2 or z else ""
+    return f"{named} of the section, {y:.6g} mm from its centre along the first direction{second}"
+
+
+def random_loads_table(result: RandomLoads) -> Group:
+    """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
+    units, at = result.display_units, np.arange(len(result.x))
+    columns = {f"position\n[{units.length_unit().name}]": _positions(result)}
+    for name in ("moment", "strain", "stress"):
+        (scale, unit), values = _SCALES[name], result.values(name)[0]
+        if not np.isfinite(values).any():
+            continue
+        if name == "moment":
+            shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
+        else:  # of the point that is largest there
+            shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
+        for k, head in shown:
+            rms, error = (scale * each(name)[at, k] for each in (result.rms, result.rms_error))
+            most, wrong = (scale * each(name)[0][at, k] for each in (result.values, result.error_of))
+            columns[f"{head}\nrms [{unit}]"] = _cells(rms, error)
+            columns[f"{head}\nlargest [{unit}]"] = [*map(_expected, most, wrong)]
+    title = (
+        f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
+        f"at {units.speed_unit().say(result.speed)}, by {said_in(units, result.provenance.method)}"
+    )
+    lines = _lines(result, lambda name: _say_expected(result, result.largest(name)))
+    return Group(table_of(title, columns), *lines, Text(_ESTIMATE))
+
+
+_ESTIMATE = (
+    "Estimates for a Gaussian input; passages of both signs count as independent, with the root mean square "
+    "at the angle of rotation at which it is largest, and all parts add up: rather high."
+)
+
+
+def _expected(value: float, error: float = 0.0) -> str:
+    """A number of statistics, with three digits and no positive exponent; "0 ± error" if none is sure."""
+    text = supported(value, error, _DIGITS_EXPECTED)
+    return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
+
+
+def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
+    """The largest of a quantity, what it is the sum of, and what is passed in one case of a hundred."""
+    name, (scale, unit) = found.quantity, _SCALES[found.quantity]
+    place = result.station_of(found), found.component
+    value = _expected(scale * found.value, scale * found.error)
+    mean, gravity, rms, quantile = (
+        _expected(scale * float(np.abs(each(name)[place])))
+        for each in (result.mean, result.gravity, result.rms, result.quantile)
+    )
+    what, where = _say_component(result, found), result.display_units.length_unit().say(found.x)
+    rate = _expected(float(result.crossings(name)[place]))
+    return (
+        f"Largest {name} expected ({what}): {value} {unit}, at {where}; constant {mean}, gravity {gravity}, "
+        f"rms {rms}, upwards through 0 {rate} times a second; with 99 % probability below {quantile}."
+    )
+
+
+# Cycles -------------------------------------------------------------------------------------------------
+
+
+def cycles_table(cycles: LoadCycles) -> Group:
+    """Cycles by their range, in equal classes up to the largest."""
+    scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
+    edges = np.linspace(0, scale * float(cycles.ranges.max(initial=0.0)) or 1.0, _CLASSES + 1)
+    counts, _ = np.histogram(scale * cycles.ranges, edges, weights=cycles.counts)
+    columns = {
+        f"range [{unit}]": [f"{low:.4g} to {high:.4g}" for low, high in pairwise(edges)][::-1],
+        "cycles": [f"{count:g}" for count in counts[::-1]],
+    }
+    place = cycles.display_units.length_unit().say(cycles.x)
+    title = f"Cycles of {cycles.quantity} at {place}, {cycles.start:g} to {cycles.end:g} s"
+    return table_of(title, columns)
+
+
+def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
+    """Ranges of equal cycles of one quantity that do the damage of those counted, by the Woehler exponent."""
+    quantity, number = equivalents[0].quantity, equivalents[0].cycles
+    scale, unit = _SCALES.get(quantity, (1.0, "1/m"))
+    ranges = [supported(scale * each.range, scale * each.error, _MOST_DIGITS) for each in equivalents]
+    columns = {
+        "Woehler exponent": [f"{each.exponent:g}" for each in equivalents],
+        f"range of {quantity} [{unit}]": ranges,
+    }
+    return table_of(f"Damage-equivalent ranges (number of equal cycles: {number:g})", columns)
+
+
+def cycles_csv(result: LoadCycles) -> Columns:
+    """Range, mean and count of each cycle."""
+    unit = UNITS[result.quantity]
+    return Columns(
+        Column(f"range_of_{result.quantity}", result.ranges, unit),
+        Column("mean", result.means, unit),
+        Column("cycles", result.counts),
+    )
+
+
+# Columns of files -------------------------------------------------------------------------------------
+
+
+def loads_csv(result: SpanLoads) -> Columns:
+    """A row a case and station: the place, all loads, strains and stresses, and their errors."""
+    values = np.concatenate([result.values(name) for name in UNITS], axis=-1)
+    errors = np.concatenate([result.error_of(name) for name in UNITS], axis=-1)
+    cases, stations, _ = values.shape
+    errors = np.broadcast_to(errors, values.shape)
+    return Columns(
+        Column(result.case[0], np.repeat(result.cases, stations), result.case[1]),
+        *_places(result, cases),
+        *_of_components(result, "", values.reshape(cases * stations, -1)),
+        *_of_components(result, "error_of_", errors.reshape(cases * stations, -1)),
+    )
+
+
+def _places(result: SpanLoads, times: int = 1) -> tuple[Column, Column]:
+    """Position and side of each station, some times over."""
+    sides = np.where(result.inboard, "inboard", "outboard")
+    return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
+
+
+def _of_components(result: SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
+    """A column for each component of all quantities, from values (rows, components)."""
+    named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
+    for (name, unit), column in zip(named, values.T, strict=True):
+        yield Column(f"{part}{name}", column, unit)
+
+
+def random_loads_csv(result: RandomLoads) -> Columns:
+    """A row a station: the place, and of each component the largest expected and what it is made of."""
+    parts = {
+        "largest": lambda name: result.values(name)[0],
+        "error_of_largest": lambda name: result.error_of(name)[0],
+        "rms": result.rms,
+        "error_of_rms": result.rms_error,
+        "mean": result.mean,
+        "gravity": result.gravity,
+        "crossings_per_s": result.crossings,
+    }
+    values = {part: np.concatenate([of(name) for name in UNITS], axis=-1) for part, of in parts.items()}
+    each = (column for part in parts for column in _of_components(result, f"{part}_", values[part]))
+    return Columns(*_places(result), *each)
+
+
+def _components(result: SpanLoads, quantity: str) -> list[str]:
+    """Names of the components of a quantity in files."""
+    if quantity in ("strain", "stress"):
+        return [f"{quantity}_{k + 1}" for k in range(result.points.shape[1])]
+    both = result.scene.physics.planes == 2
+    words = ("_first", "_second") if quantity == "curvature" else ("_bending", "_across")
+    ends = words if both else ("",)
+    if quantity == "force":
+        return ["axial_force", *(f"shear_force{end}" for end in ends)]
+    return [f"{quantity}{end}" for end in ends]
+
+
+VIEWS = {
+    "LoadCycles": View(cycles_table, cycles_csv),
+    "RandomLoads": View(random_loads_table, random_loads_csv, 2),
+    "StaticLoads": View(static_loads_table, loads_csv, 3),
+    "SteadyLoads": View(steady_loads_table, loads_csv, 3),
+    "TransientLoads": View(transient_loads_table, loads_csv, 3),
+}

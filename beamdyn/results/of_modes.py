@@ -1,0 +1,440 @@
+"""Natural modes, critical speeds, equilibria, terms and the rotor, as tables for reading and as columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from rich.console import Group
+from rich.text import Text
+
+from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.tables import set_apart, table, table_of
+from beamdyn.common.edge.views import View
+from beamdyn.common.results.columns import Column, Columns, columns_of_rows
+from beamdyn.common.results.digits import supported, supported_or_range
+from beamdyn.common.results.statements import OUTSIDE, of_kind, said_in
+from beamdyn.equations.directions import first_drawn, words_of_directions
+from beamdyn.modes.model_error.left_out_effects import where_worst
+
+if TYPE_CHECKING:
+    from beamdyn.common.results.result import Result
+    from beamdyn.equations.terms import Terms
+    from beamdyn.modes.backbone import Backbone
+    from beamdyn.modes.bounds import FrequencyBounds
+    from beamdyn.modes.critical import CriticalPoint
+    from beamdyn.modes.equilibria import Equilibrium, EquilibriumBranches
+    from beamdyn.modes.locus import Locus
+    from beamdyn.modes.modes import Modes
+    from beamdyn.modes.setting_angles import SettingAngleLimits
+    from beamdyn.scene.rotor import RotorDrawing
+    from beamdyn.scene.scene import Scene
+    from beamdyn.steady.response import SteadyResponse
+    from beamdyn.transient.sweep import Sweep
+
+Cell: TypeAlias = "str | Text"  # of a table
+_MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
+_ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
+_WIDTH = 119  # of a table's columns, so that none is cut at 120
+_CRITICAL_DIGITS = 12  # most digits of a critical speed
+_FEW = 4  # modes of a locus whose frequencies have all digits
+_DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
+_AXES = "b1", "b2", "b3"  # along the beam at rest, in the direction of bending, and across
+
+
+# Parts of tables of all kinds -------------------------------------------------------------------------
+
+
+def model_line(result: Result, sentence: str) -> Text:
+    """The line on the model below a table."""
+    return Text(as_in_files(said_in(result.display_units, sentence)))
+
+
+def line_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> Text:
+    """The line on the model below a table over speeds, with the place of each effect."""
+    effects, speeds = result.left_out_effects, result.left_out_speeds
+    return model_line(result, effects.sentence(what, where_worst(effects, speeds), speeds))
+
+
+def between_speeds(result: Locus | SteadyResponse | Sweep, error: np.ndarray) -> np.ndarray:
+    """Model errors (S,) at all speeds, from those (k,) where they are computed; the nearest outside these."""
+    known = result.left_out_speeds
+    return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
+
+
+def speed_column(result: Result, speeds: np.ndarray) -> dict[str, list[str]]:
+    """A column of speeds, by its head."""
+    unit = result.display_units.speed_unit()
+    return {f"speed [{unit.name}]": [f"{speed:.8g}" for speed in unit.of(speeds)]}
+
+
+def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
+    """Indices of rows to print: some that are evenly spread, others, and both sides of changes of status."""
+    count = len(status)
+    spread = np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int)
+    changed = status[1:] != status[:-1]
+    change = np.flatnonzero(changed if status.ndim == 1 else changed.any(axis=1))[:_MOST_ROWS]
+    return np.unique(np.concatenate([spread, *(each[:_MOST_ROWS] for each in more), change, change + 1]))
+
+
+def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
+    """How many of all speeds a table has, if not all."""
+    few = len(shown) < len(every)
+    return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
+
+
+def csv_directions(scene: Scene) -> tuple[str, ...]:
+    """What heads of files say of the two directions, at any bending angle; nothing where there is one."""
+    return ("bending", "across") if scene.physics.planes == 2 else ()
+
+
+def _csv_shares(result: Modes | Locus) -> dict[str, np.ndarray]:
+    each = enumerate(csv_directions(result.scene))
+    return {f"share_{direction}": result.plane_share[..., k] for k, direction in each}
+
+
+# Modes ------------------------------------------------------------------------------------------------
+
+
+def modes_table(result: Modes) -> Group:
+    """Table of natural modes, and what the model leaves out; digits beyond the model error are dimmed."""
+    size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
+    effects, words = result.left_out_effects, words_of_directions(result.scene)
+    frequency = [
+        set_apart(supported_or_range(f, wrong / (2 * np.pi)).replace("none", "-"), beyond * abs(f))
+        for f, wrong, beyond in zip(result.frequency, size, result.model_error, strict=True)
+    ]
+    rates = zip(result.growth_rate, size, strict=True)
+    columns: dict[str, Sequence[Cell]] = {
+        "mode": [str(mode + 1) for mode in range(len(size))],
+        "frequency [Hz]": frequency,
+        "relative error": [f"{error:.0e}" for error in result.error],
+        "model error": [_say_model_error(float(each), effects.lack_data) for each in effects.total],
+        "growth rate [1/s]": ["0" if rate == 0 else supported(rate, wrong) for rate, wrong in rates],
+    }
+    if words:
+        drawn = first_drawn(result.scene)
+        columns[f"share of {words[drawn]}"] = [f"{share[drawn]:.3f}" for share in result.plane_share]
+    columns["status"] = [*map(str, result.status)]
+    at = result.display_units.speed_unit().say(result.speed, 10)
+    shown = table_of(f"Natural modes at {at}, by {result.provenance.method}", columns, ("status",))
+    return Group(shown, model_line(result, effects.sentence()))
+
+
+def _say_model_error(size: float, lacks_data: bool) -> str:
+    """A relative model error with one digit; with a question mark where the beam lacks data."""
+    more = " + ?" if lacks_data else ""
+    return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
+
+
+def modes_csv(result: Modes) -> Columns:
+    """Frequency, errors, growth rate and status of each mode; of two planes the share of each."""
+    count = len(result.frequency)
+    return Columns(
+        Column("mode", np.arange(1, count + 1)),
+        Column("speed", [result.speed] * count, "rad/s"),
+        Column("frequency", result.frequency, "Hz"),
+        Column("relative_error", result.error),
+        Column("model_error", result.model_error),
+        Column("growth_rate", result.growth_rate, "1/s"),
+        Column("status", result.status),
+        *(Column(name, share) for name, share in _csv_shares(result).items()),
+    )
+
+
+def locus_table(result: Locus) -> Group:
+    """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
+
+    Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends. The
+    column of model errors is left out where another table would be needed for it alone.
+    """
+    size, shown = np.abs(result.eigenvalue) * result.error, rows_worth_showing(result.status)
+    model_errors, lacks = model_error_at(result, shown), result.left_out_effects.lack_data
+    beyond = model_errors * np.abs(result.frequency[shown])
+    modes = {
+        f"mode {mode + 1} [Hz]": [
+            _locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)
+        ]
+        for mode in range(result.frequency.shape[1])
+    }
+    quality = {
+        "largest error": [f"{result.error[s].max():.0e}" for s in shown],
+        "tracking": [f"{result.confidence[s].min():.2f}" for s in shown],
+    }
+    vibrating = np.isin(result.status[shown], ("stable", "neutral"))
+    known = [errors[counts] for errors, counts in zip(model_errors, vibrating, strict=True)]
+    of_model = [_say_model_error(float(each.max()), lacks) if len(each) else "-" for each in known]
+    speeds = speed_column(result, result.speeds[shown])
+    width = _WIDTH - sum(map(_column_width, speeds.items()))
+    packed = _blocks(modes | quality, width)
+    wider = _blocks(modes | {"model error": of_model} | quality, width)
+    blocks = [speeds | block for block in (packed if len(wider) > len(packed) else wider)]
+    words = words_of_directions(result.scene)
+    letters = "; ".join(f"{word[0]}: mostly {word}" for word in words)
+    title = (
+        f"Natural frequencies{f' ({letters})' if words else ''}, by {result.provenance.method}"
+        f"{selection_note(shown, result.speeds)}"
+    )
+    titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
+    made = (table_of(head, block) for head, block in zip(titles, blocks, strict=True))
+    return Group(*made, line_over_speeds(result, "mode"))
+
+
+def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
+    """Model error (k, m) at speeds of some indices, linear between those where it is computed."""
+    each = (between_speeds(result, error)[indices] for error in result.model_error.T)
+    return np.stack([*each], axis=1)
+
+
+def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
+    """Frequency of a mode at speed s, or its status and growth rate.
+
+    Digits beyond the model error [Hz] are dimmed.
+    """
+    if result.status[s, mode] not in ("stable", "neutral"):
+        return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
+    digits = _DIGITS if result.frequency.shape[1] <= _FEW else _DIGITS_OF_MANY
+    frequency = supported_or_range(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
+    direction = words_of_directions(result.scene)[int(result.plane_share[s, mode].argmax()) :][:1]
+    return Text(" ").join((set_apart(frequency, model_error), *(Text(word[0]) for word in direction)))
+
+
+def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str, Sequence[Cell]]]:
+    """Pack columns, in their order, into as few tables of at most a width as will do."""
+    blocks: list[dict[str, Sequence[Cell]]] = []
+    left = -1
+    for column in columns.items():
+        left -= _column_width(column)
+        if left < 0:
+            blocks.append({})
+            left = width - _column_width(column)
+        blocks[-1] |= [column]
+    return blocks
+
+
+def _column_width(column: tuple[str, Sequence[Cell]]) -> int:
+    """Width of a column with its padding and the gap after it."""
+    return max(map(len, (column[0], *column[1]))) + 3
+
+
+def locus_csv(result: Locus) -> Columns:
+    """Frequency, errors, growth rate, status, confidence, shares of planes of each mode, a row a speed."""
+    of_modes = {
+        ("frequency", "Hz"): result.frequency,
+        ("relative_error", ""): result.error,
+        ("model_error", ""): model_error_at(result, np.arange(len(result.speeds))),
+        ("growth_rate", "1/s"): result.growth_rate,
+        ("status", ""): result.status,
+        ("confidence", ""): result.confidence,
+        **{(name, ""): share for name, share in _csv_shares(result).items()},
+    }
+    each = (
+        Column(name, values, unit, mode)
+        for (name, unit), of_all in of_modes.items()
+        for mode, values in enumerate(of_all.T, 1)
+    )
+    return Columns(Column("speed", result.speeds, "rad/s"), *each)
+
+
+# Critical speeds, limits, bounds ------------------------------------------------------------------------
+
+
+def critical_answer(result: CriticalPoint) -> Group:
+    """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
+    unit = result.display_units.speed_unit()
+    if math.isinf(result.none_below) and math.isinf(result.speed):
+        said = Text(f"no critical speed: {as_in_files(result.reason)}")
+    elif math.isinf(result.speed):
+        bound = unit.say(result.none_below, 4)
+        found = f"no critical speed found; there is certainly none below {bound}"
+        said = Text(found if result.error else f"no critical speed below {bound}: {result.reason}")
+    elif not result.speed:
+        said = Text(f"critical speed: 0 {unit.name}; the beam is unstable at every speed: {result.reason}")
+    else:
+        speed = unit.of(result.speed)
+        value = supported_or_range(speed, result.error * speed, _CRITICAL_DIGITS)
+        shown = set_apart(value, float(result.model_error) * speed)
+        straight = of_kind(result.warnings, OUTSIDE)
+        which = "a straight beam would buckle" if straight else "the beam buckles"
+        said = Text.assemble("critical speed: ", shown, f" {unit.name}; above it {which}: {result.reason}")
+    return Group(said, model_line(result, result.left_out_effects.sentence("")))
+
+
+def critical_csv(result: CriticalPoint) -> Columns:
+    """Critical speed, its error, and the speed below which there is none."""
+    heads = ("speed", "rad/s"), "relative_error", ("none_below", "rad/s"), "reason"
+    return columns_of_rows(heads, [(result.speed, result.error, result.none_below, result.reason)])
+
+
+def limits_table(result: SettingAngleLimits) -> Group:
+    """Table of setting-angle limits."""
+    top = result.display_units.speed_unit().say(result.top_speed, 10)
+    columns = {
+        "limit": ("first", "second"),
+        "angle [deg]": [supported(*np.degrees([limit, result.error]).tolist()) for limit in result],
+        "": (
+            "below it the first frequency falls with speed; above it, it rises from rest",
+            "below it the first frequency falls before the top speed; above it, it rises",
+        ),
+    }
+    title = f"Setting-angle limits up to {top}, by {result.provenance.method}"
+    return table_of(title, columns, ("limit", ""))
+
+
+def limits_csv(result: SettingAngleLimits) -> Columns:
+    """Both limits with their error and the top speed of the second."""
+    names = zip(("first", "second"), result, strict=True)
+    rows = ((name, angle, result.error, result.top_speed) for name, angle in names)
+    return columns_of_rows(("limit", ("angle", "rad"), ("error", "rad"), ("top_speed", "rad/s")), rows)
+
+
+def bounds_table(result: FrequencyBounds) -> Group:
+    """Lower and upper bound of each frequency, and how they are guaranteed."""
+    columns = {
+        "mode": [str(mode) for mode in range(1, len(result.lower) + 1)],
+        "at least [Hz]": [f"{low:.10g}" for low in result.lower],
+        "at most [Hz]": [f"{high:.10g}" for high in result.upper],
+        "relative width": [f"{width:.0e}" for width in result.width],
+    }
+    at = result.display_units.speed_unit().say(result.speed, 10)
+    shown = table_of(f"Guaranteed bounds at {at}, of the model", columns)
+    return Group(shown, Text(f"{result.how[:1].upper()}{result.how[1:]}."))
+
+
+def bounds_csv(result: FrequencyBounds) -> Columns:
+    """Bounds of each frequency, one row a mode."""
+    return Columns(
+        Column("mode", range(1, len(result.lower) + 1)),
+        Column("speed", [result.speed] * len(result.lower), "rad/s"),
+        Column("lower", result.lower, "Hz"),
+        Column("upper", result.upper, "Hz"),
+        Column("relative_width", result.width),
+    )
+
+
+def backbone_table(result: Backbone) -> Group:
+    """Frequency of small vibration, and how it changes with the amplitude."""
+    rows = [
+        ("frequency f0 of small vibration", f"{result.frequency:.8g} Hz"),
+        ("coefficient k", supported(result.coefficient, result.error, 8)),
+        ("at an amplitude of 10 % of the length", f"{100 * 0.01 * result.coefficient:+.3g} %"),
+    ]
+    title = f"Backbone of mode {result.mode} at {result.display_units.speed_unit().say(result.speed, 10)}"
+    note = "f = f0 (1 + k (a/L)^2), to first order; a is the amplitude of the tip, L the length."
+    return Group(table(title, ("", ""), rows), Text(note))
+
+
+def backbone_csv(result: Backbone) -> Columns:
+    """Frequency of small vibration and coefficient, with its error."""
+    heads = ("speed", "rad/s"), "mode", ("frequency", "Hz"), "coefficient", "error"
+    row = result.speed, result.mode, result.frequency, result.coefficient, result.error
+    return columns_of_rows(heads, [row])
+
+
+# Equilibria ---------------------------------------------------------------------------------------------
+
+
+def equilibrium_table(result: Equilibrium) -> Group:
+    """Position and slope of the tip, and whether the beam stays there."""
+    length, unit = result.scene.beam.length, result.display_units.length_unit()
+    rows = [
+        (f"tip along {axis}", supported(unit.of(x), unit.of(result.error)), f"{x / length:.4f}")
+        for axis, x in zip(_AXES, result.tip.tolist(), strict=True)
+    ]
+    rows.append(("slope at the tip [deg]", supported(float(np.degrees(result.tip_angle)), 1e-9), ""))
+    rows.append(("stable", "yes" if result.stable else f"no: grows at {result.growth_rate:.4g} 1/s", ""))
+    speed = result.display_units.speed_unit().say(result.speed, 10)
+    title = f"Equilibrium at {speed} ({result.branch} branch), by {result.provenance.method}"
+    return table(title, ("", f"[{unit.name}]", "over the length"), rows)
+
+
+def equilibrium_csv(result: Equilibrium) -> Columns:
+    """Position of the tip, stability and growth rate."""
+    heads = ("speed", "rad/s"), "branch", *((f"tip_{axis}", "m") for axis in _AXES)
+    row = result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
+    return columns_of_rows((*heads, "stable", ("growth_rate", "1/s")), [row])
+
+
+def branches_table(result: EquilibriumBranches) -> Group:
+    """From where to where each branch goes, and where it is stable."""
+    unit, rows = result.display_units.speed_unit(), []
+    for branch in result.branches:
+        speeds, stable = unit.of(branch.speeds), branch.stable
+        ranges = (f"{some.min():.6g} to {some.max():.6g}" if len(some) else "nowhere"
+                  for some in (speeds, speeds[stable]))  # fmt: skip
+        turning = ", ".join(f"{speed:.8g}" for speed in unit.of(branch.turning_speeds)) or "-"
+        rows.append((branch.name, *ranges, turning))
+    if np.isfinite(result.critical_speed):
+        rows.append(("straight beam", "", "", f"buckles at {unit.say(result.critical_speed, 10)}"))
+    heads = (f"{what} [{unit.name}]" for what in ("speeds", "stable", "turns back at"))
+    title = f"Branches of equilibria up to {unit.say(result.top_speed, 10)}, by {result.provenance.method}"
+    return table(title, ("branch", *heads), rows, (0, 3))
+
+
+def branches_csv(result: EquilibriumBranches) -> Columns:
+    """Speed, position of the tip and stability along each branch."""
+    rows = (
+        (branch.name, float(speed), *tip.tolist(), bool(stable))
+        for branch in result.branches
+        for speed, tip, stable in zip(branch.speeds, branch.tip, branch.stable, strict=True)
+    )
+    heads = "branch", ("speed", "rad/s"), *((f"tip_{axis}", "m") for axis in _AXES), "stable"
+    return columns_of_rows(heads, rows)
+
+
+# The scene itself ---------------------------------------------------------------------------------------
+
+
+def terms_table(result: Terms) -> Group:
+    """All terms, which of them are there and why, and what the model leaves out."""
+    heads = "", "term", "symbol", "largest", "reason"
+    shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
+    left_out = [as_in_files(f"Left out: {effect.name}: {effect.reason}.") for effect in result.left_out]
+    return Group(shown, *map(Text, (result.excited(), *left_out)))
+
+
+def terms_csv(result: Terms) -> Columns:
+    """One row a term."""
+    rows = (
+        (t.name, t.symbol, " ".join(t.fields), t.quantity, t.present, t.largest, t.reason) for t in result
+    )
+    return columns_of_rows(("term", "symbol", "fields", "quantity", "present", "largest", "reason"), rows)
+
+
+def rotor_table(result: RotorDrawing) -> Group:
+    """Lengths and angles as drawn, and how much depth and width are drawn larger."""
+    unit = result.display_units.length_unit()
+    lengths = {"radius r of the root": result.radius, "length L of the beam": result.length}
+    angles = {
+        "setting angle φ, 0 is inward": result.setting_angle,
+        "bending angle ψ, 0 is in the plane of rotation": result.bending_angle,
+        "precone η": result.precone,
+    }
+    rows = [
+        *((what, f"{unit.of(length):.6g}", unit.name) for what, length in lengths.items()),
+        *((what, f"{np.degrees(angle):.6g}", "deg") for what, angle in angles.items()),
+        ("depth of the beam drawn larger by", f"{result.magnification:g}", ""),
+    ]
+    return table("Rotor as drawn: undeformed, turned by 180 deg", ("", "value", "unit"), rows, (0, 2))
+
+
+def rotor_csv(result: RotorDrawing) -> Columns:
+    """Edge of the beam as drawn, in the plane of rotation, and how much its depth is drawn larger."""
+    rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
+    return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)
+
+
+VIEWS = {
+    "Backbone": View(backbone_table, backbone_csv, 2),
+    "CriticalPoint": View(critical_answer, critical_csv),
+    "Equilibrium": View(equilibrium_table, equilibrium_csv, 1),
+    "EquilibriumBranches": View(branches_table, branches_csv, 2),
+    "FrequencyBounds": View(bounds_table, bounds_csv, 1),
+    "Locus": View(locus_table, locus_csv, 1),
+    "Modes": View(modes_table, modes_csv, 1),
+    "RotorDrawing": View(rotor_table, rotor_csv, 0, lambda result: result.figure()),
+    "SettingAngleLimits": View(limits_table, limits_csv, 1),
+    "Terms": View(terms_table, terms_csv, 1),
+}

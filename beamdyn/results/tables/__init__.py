@@ -1,1 +1,0 @@
-"""Results as tables, for reading, and as rows of CSV files."""

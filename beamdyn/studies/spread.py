@@ -1,0 +1,346 @@
+"""Ranges of answers of a scene over tolerances of its inputs: to first order, worst cases, Monte Carlo."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field, replace
+from os import PathLike
+from typing import Any, Literal
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, check_used, kind, one_of
+from beamdyn.common.parallel.tasks import Progress
+from beamdyn.common.results.announced import announced, unannounced
+from beamdyn.common.spreading import DEFAULT_SAMPLES
+from beamdyn.common.spreading.first_order import KnownDerivatives
+from beamdyn.common.spreading.result import Spread
+from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
+from beamdyn.common.spreading.statistics import check_samples, check_seed
+from beamdyn.common.spreading.tolerances import (
+    Convert,
+    Distribution,
+    Normal,
+    SpreadInput,
+    Uniform,
+    check_holds,
+    parse_tolerance,
+)
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, with_numbers
+from beamdyn.scene.rectangle import SECTION_UNITS
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion
+from beamdyn.studies.result import Study
+from beamdyn.studies.sensitivities.result import Sensitivities, numbers_of
+from beamdyn.studies.sensitivities.sensitivities import (
+    critical_speed_sensitivities,
+    crossing_sensitivities,
+    frequency_sensitivities,
+)
+from beamdyn.studies.study import speed_of_study, study
+
+_NONLINEAR = "physics.large_deflection"  # the argument that is refused as it has no derivatives
+
+
+def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) -> KnownDerivatives:
+    """Derivatives by inputs, as far as equations give them.
+
+    Parameters
+    ----------
+    question : StudyQuestion
+        What is asked; crossings with their resonances.
+    inputs : sequence of SpreadInput
+        The inputs.
+    """
+    solve = {
+        "frequencies": _of_frequencies,
+        "critical_speed": _of_critical_speed,
+        "crossings": _of_crossings,
+    }.get(question.what)
+    known = {number.name for number in numbers_of(question.scene)} | {SPEED}
+    rows = {each.name: row for row, each in enumerate(inputs) if each.name in known}
+    if solve is None or not rows:
+        return KnownDerivatives()
+    try:
+        with unannounced():
+            found, columns = solve(question, [*rows])
+    except ValueError as error:
+        return KnownDerivatives(warnings=_said(error))
+    value, error = (_columns(each, columns) for each in (found.derivative, found.error))
+    return KnownDerivatives({rows[each.name]: (value[i], error[i]) for i, each in enumerate(found.inputs)})
+
+
+def _said(refusal: ValueError) -> tuple[str, ...]:
+    """Why all slopes are those of designs; nothing where the answer has no derivatives by its nature.
+
+    These are a beam that does not buckle, and large deflection.
+    """
+    if isinstance(refusal, NoModelAnswer) or (
+        isinstance(refusal, InvalidValue) and refusal.field == _NONLINEAR
+    ):
+        return ()
+    return (f"first order: its slopes are those of designs, as derivatives are refused: {refusal}",)
+
+
+def _columns(values: np.ndarray, columns: Sequence[int | None]) -> np.ndarray:
+    """Those of the answers, in their order; nan for those that are missing."""
+    none = np.full(len(values), np.nan)
+    return np.stack([none if column is None else values[:, column] for column in columns], axis=1)
+
+
+def _of_frequencies(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
+    options = question.discretization, question.tolerance
+    found = frequency_sensitivities(question.scene, question.speed, question.modes, names, *options)
+    return found, [*range(question.modes)]
+
+
+def _of_critical_speed(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
+    options = question.discretization, question.tolerance
+    return critical_speed_sensitivities(question.scene, names, *options), [0]
+
+
+def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
+    """Those of the lowest crossing of each mode with each line."""
+    options = {"inputs": names, "discretization": question.discretization}
+    found = crossing_sensitivities(question.scene, question.speed, question.modes, **options)
+    wanted = [each.label for each in question.resonances]
+    return found, [found.answers.index(name) if name in found.answers else None for name in wanted]
+
+
+# Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
+
+
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # of units
+_REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
+
+
+@announced
+def spread(
+    scene: Scene,
+    inputs: Mapping[str, str | Distribution],
+    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
+    *,
+    samples: int = DEFAULT_SAMPLES,
+    seed: int = 0,
+    speed: float | None = None,
+    modes: int | None = None,
+    window: tuple[float, float] | None = None,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
+    store: str | PathLike[str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Spread:
+    """Find the ranges of an answer over tolerances of inputs, and the input that matters most.
+
+    Inputs are independent of each other.  Worst cases have each at the end of its tolerance that makes the
+    answer smallest or largest; random designs give mean, standard deviation, percentiles and Sobol' indices,
+    by `scipy.stats.sobol_indices`.  All designs are answered by `study`.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene: its own numbers are the nominal ones.
+    inputs : mapping of str to str, Uniform or Normal
+        The inputs that have a tolerance, by their names as of `study`, each with it: "+-2%" or "+1% -2%" of
+        the scene's value, within which all values are as likely; "sd 1%", normally distributed with this
+        standard deviation; without the percent sign numbers in SI, also "1.9e-4 to 2.1e-4"; or
+        `Uniform(low, high)`, `Normal(mean, deviation)` in SI.
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
+        The answer, as of `study`.
+    samples : int
+        Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
+        128, else the next is used.
+    seed : int
+        What the random designs follow from.
+    speed, modes, window, discretization, tolerance, workers, executor, store, progress
+        As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
+
+    Returns
+    -------
+    Spread
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, a tolerance reaches values that an input cannot have, or no design
+        has an answer.
+    StudyInterrupted
+        If the executor breaks; finished parts are in the store.
+
+    References
+    ----------
+    Indices: Saltelli et al. (2010), Computer Physics Communications 181, 259; worst cases: Kolda, Lewis and
+    Torczon (2003), SIAM Review 45, 385.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.spread(bd.Scene(strip), {"beam.thickness": "+-2%"}, modes=1, samples=128)
+    >>> round(float(found.worst.largest[0] / found.nominal[0]), 6)  # proportional
+    1.02
+    """
+    check_scene(scene)
+    one_of("what", what, tuple(KINDS))
+    used, cautions = check_samples(samples)
+    at = speed_of_study(scene, what, speed, isinstance(inputs, Mapping) and SPEED in inputs)
+    check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
+    uncertain = check_tolerances(scene, inputs, at)
+    options: dict[str, Any] = {
+        "speed": None if SPEED in inputs else speed,
+        "modes": modes,
+        "window": window,
+        "discretization": discretization,
+        "tolerance": tolerance,
+    }
+    how = {"workers": workers, "executor": executor, "store": store, "progress": progress}
+    answers = _StudyAnswers(scene, what, options | how)
+
+    def derivatives() -> KnownDerivatives:
+        return known_derivatives(replace(answers.first.question, speed=at), uncertain)
+
+    return solve_spread(what, uncertain, used, check_seed(seed), answers, derivatives, cautions)
+
+
+@dataclass
+class _StudyAnswers:
+    """Answers designs by studies; the answers of all are those of the first, in its order."""
+
+    scene: Scene
+    what: Any
+    options: Mapping[str, Any]
+    _studies: list[Study] = field(default_factory=list)
+    _done: int = 0  # designs of earlier calls
+
+    @property
+    def first(self) -> Study:
+        """The first study."""
+        return self._studies[0]
+
+    def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:
+        """Answers of designs."""
+        options = {**self.options, "progress": self._progress}
+        with unannounced():
+            found = study(self.scene, columns, self.what, combine="zip", **options)
+        self._done += len(found.value)
+        if not self._studies:
+            self._studies.append(found)
+        names = self.first.labels or (self.first.question.kind.word,)
+        parts = (each.reshape(len(found.value), -1) for each in (found.value, found.error, found.status))
+        value, error, status = (self._in_order(found, part) for part in parts)
+        return SpreadAnswers(
+            answers=names,
+            units=(found.unit,) * len(names),
+            value=value,
+            error=error,
+            status=status,
+            warnings=found.warnings,
+            method=found.provenance.method,
+            compared_with=found.provenance.compared_with,
+        )
+
+    @property
+    def _progress(self) -> Progress | None:
+        """That of all designs so far: how many worst cases take is not known before."""
+        said, before = self.options["progress"], self._done
+        return said if not before else said and (lambda done, total: said(before + done, before + total))
+
+    def _in_order(self, found: Study, values: np.ndarray) -> np.ndarray:
+        """Columns of answers by the labels of the first study: others may meet fewer lines."""
+        if found.labels == self.first.labels:
+            return values
+        none = np.full(len(values), np.nan if values.dtype.kind == "f" else "not excited")
+        known = {label: values[:, i] for i, label in enumerate(found.labels)}
+        return np.stack([known.get(label, none) for label in self.first.labels], axis=1)
+
+
+# Tolerances ---------------------------------------------------------------------------------------
+
+
+def check_tolerances(
+    scene: Scene, inputs: Mapping[str, str | Distribution], speed: float
+) -> tuple[SpreadInput, ...]:
+    """The inputs with their distributions.
+
+    Raises
+    ------
+    InvalidValue
+        If there are none, an input is unknown or not in the scene, or a tolerance is none or reaches values
+        that the input cannot have.
+    """
+    if not isinstance(inputs, Mapping) or not inputs:
+        raise InvalidValue("inputs", inputs, "it names no input", _REMEDY)
+    return tuple(_check_tolerance(scene, name, given, speed) for name, given in inputs.items())
+
+
+def _check_tolerance(scene: Scene, key: object, given: str | Distribution, speed: float) -> SpreadInput:
+    name = check_path("inputs", key)
+    nominal, unit = nominal_value(scene, name, speed), unit_of(name) or ""
+    if name == SPEED and not nominal and isinstance(given, str) and "%" in given:
+        bound = "a percentage is of the speed, which is 0"
+        raise InvalidValue(f"tolerances[{SPEED!r}]", given, bound, "give spread a speed [rad/s], too")
+    if isinstance(given, str):
+        given = parse_tolerance(name, given, nominal, unit, _in_si(name, given, unit))
+    kind(name, given, Uniform | Normal, _REMEDY)
+    made = SpreadInput(name, unit, nominal, given)
+    check_holds(made)
+    check_reach(scene, made)
+    return made
+
+
+def nominal_value(scene: Scene, name: str, speed: float) -> float:
+    """The value of an input in a scene, in SI; the speed is given, as it is none of the scene's numbers.
+
+    Raises
+    ------
+    InvalidValue
+        If the scene has no such number, or it varies along the beam, or is infinite.
+    """
+    if name == SPEED:
+        return speed
+    value = number_at(scene, name)
+    key = name.removeprefix("beam.")
+    if key in SECTION_UNITS and scene.beam.section is None:
+        bound = "the properties of the beam are not those of a rectangular section"
+        raise InvalidValue("spread", name, bound, "give a spread of beam.bending_stiffness or the like")
+    if value is None:
+        raise InvalidValue("spread", name, "the scene has no such number", "give it one, or leave it out")
+    if np.isnan(value):
+        remedy = f"give a spread of {SCALE}{key}, which multiplies it"
+        raise InvalidValue("spread", name, "it varies along the beam", remedy)
+    if np.isinf(value):
+        raise InvalidValue("spread", name, f"the scene's value is {value:g}", "give it a finite one first")
+    return value
+
+
+def _in_si(name: str, text: str, unit: str) -> Convert:
+    def convert(number: str, written: str) -> float:
+        if written not in ("", unit):
+            bound = f"a text has percentages, or numbers in {unit or 'SI'}"
+            raise InvalidValue(name, text, bound, _without_unit(text, written, unit))
+        return float(number)
+
+    return convert
+
+
+def _without_unit(text: str, written: str, unit: str) -> str:
+    """The remedy for a tolerance whose numbers have another unit than that of the input."""
+    factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
+    if factor is None:
+        return f"give numbers alone{f', in {unit}' if unit else ''}"
+    pattern = rf"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*{re.escape(written)}(?!\w)|(?![\d.]|\s*%))"
+    return f'give "{re.sub(pattern, lambda found: f"{float(found[1]) * factor:g}", text)}"'
+
+
+def check_reach(scene: Scene, given: SpreadInput) -> None:
+    """Refuse a tolerance of which an end makes no scene, all other inputs being nominal."""
+    for end in given.distribution.reach:
+        try:
+            with_numbers(scene, {given.name: end})
+        except InvalidValue as error:
+            said = {"where": f", which {given.text} reaches", "unit": error.unit or given.unit}
+            raise replace(error, **said, remedy="give a smaller spread") from None

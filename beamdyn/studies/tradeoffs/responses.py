@@ -1,0 +1,286 @@
+"""Work-precision of transients, over integrators and modes, and of the steady response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.equations.discretization import Discretization
+from beamdyn.modes.modal.discretization_choice import choose_model
+from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.scene.scene import Scene
+from beamdyn.steady.response import SteadyResponse, steady_response
+from beamdyn.studies.tradeoffs.measurements import (
+    Diagram,
+    Family,
+    Setting,
+    measure_families,
+    number_of,
+    remaining_budget,
+)
+from beamdyn.transient.simulate import simulate
+from beamdyn.transient.transient import Transient, TransientRequest
+
+OURS = "Gauss collocation"
+STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
+_TOLERANCES = tuple(10.0**-k for k in range(1, 11))
+_STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
+_TIGHTEST = 1e-11  # tolerance of the reference
+_CHECK_RTOL = 1e-11  # of DOP853, which checks the reference
+_CHECKED_PART = 0.05  # of the run, from its start
+_CHECK_SHARE = 0.15  # of the budget
+_INSTANTS = 20_001  # times at which tip deflections are compared
+AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
+_MODES = tuple(range(1, 11))
+_MODES_AT_ENDS = (1, 2, 3, 4, 6)
+_ALL_MODES = 8  # of the reference, at each of two speeds
+_MODES_TOLERANCE = 1e-7
+_ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
+_TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
+_STILL = "nothing moves the beam"
+
+
+@one_blas_thread()
+def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: float = 30.0) -> Diagram:
+    """Measure error against time of Gauss collocation and the methods of `solve_ivp`, over tolerances.
+
+    All integrate the same modal equations through `simulate`, whose right-hand side serves any scene: one
+    written by hand for a scene would be faster with the methods of `solve_ivp`.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion.
+    t_end : float
+        End of the run [s].
+    modes : int
+        Number of modes.
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    start = perf_counter()
+    basis = choose_model(scene, "ritz", np.zeros(1), modes).discretization
+    title = f"transient of {t_end:g} s, {number_of(modes, 'mode', 'modes')}"
+    exact = simulate(scene, t_end, modes, _TIGHTEST, discretization=basis)
+    if not exact.largest:
+        return Diagram.make(title, _ERROR_OF, _TIGHT, 0.0, (), (_STILL,))
+    check = _check_by_dop853(scene, exact, modes, basis, _CHECK_SHARE * budget)
+    families = list(_integrators(scene, t_end, modes, basis))
+    left = remaining_budget(budget, start)
+    error, resolved = _tip_error(exact, t_end), _relative(exact.time_error, exact.largest)
+    measurements, skipped = measure_families(families, error, resolved, left)
+    return Diagram.make(title, _ERROR_OF, f"{_TIGHT}; {check}", resolved, measurements, skipped)
+
+
+@one_blas_thread()
+def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
+    """Measure error against time of a transient over the number of modes, at rest or at two speeds.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion.
+    t_end : float
+        End of the run [s].
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    start = perf_counter()
+    assert scene.motion is not None
+    functions = choose_model(scene, "ritz", np.zeros(1), 2 * _ALL_MODES).discretization
+    ends = find_speed_range(scene.motion, t_end)
+
+    def run(modal: ModalBasis) -> Transient:
+        request = TransientRequest(scene, t_end, _MODES_TOLERANCE, "auto", functions, "rest", None, {}, modal)
+        return request.run()
+
+    def family(name: str, speeds: tuple[float, ...], sizes: Sequence[int]) -> Family:
+        cases = (Setting(f"modes={m}", m, lambda deadline, m=m: run(ModalBasis(m, speeds))) for m in sizes)
+        return Family(name, tuple(cases))
+
+    title = f"transient of {t_end:g} s, number of modes"
+    exact = run(ModalBasis(_ALL_MODES, ends))
+    reference = f"{exact.request.basis}, all with a time-integration tolerance of {_MODES_TOLERANCE:g}"
+    if not exact.largest:
+        return Diagram.make(title, _ERROR_OF, reference, 0.0, (), (_STILL,))
+    resolved = _relative(exact.time_error, exact.largest)
+    families = [family(AT_REST, (0.0,), _MODES), family(AT_ENDS, ends, _MODES_AT_ENDS)]
+    measurements, skipped = measure_families(
+        families, _tip_error(exact, t_end), resolved, remaining_budget(budget, start)
+    )
+    return Diagram.make(title, _ERROR_OF, reference, resolved, measurements, skipped)
+
+
+def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
+    """Error measure: largest difference of the tip deflection at common times, over the largest."""
+    t = np.linspace(0, t_end, _INSTANTS)
+    true = exact.deflection(t)
+    return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
+
+
+def _relative(difference: float, largest: float) -> float:
+    """Difference over the largest deflection; absolute where that is 0."""
+    return difference / largest if largest else difference
+
+
+def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
+    """Compare the reference with DOP853 at a tight tolerance on the first part of the run, in words."""
+    end = _CHECKED_PART * exact.path.end
+    options = {"discretization": basis, "events": _stop_after(perf_counter() + limit)}
+    try:
+        other = simulate(scene, end, modes, _CHECK_RTOL, "DOP853", **options)
+    except TimeoutError:
+        return f"not checked by DOP853, which took more than {limit:.2g} s for the first {end:.3g} s"
+    t = np.linspace(0, end, 1001)
+    difference = np.abs(other.deflection(t) - exact.deflection(t)).max()
+    differs = _relative(float(difference), other.largest)
+    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} to {end:.3g} s"
+
+
+def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
+    """Families of the integrators, over their tolerances."""
+
+    def ours(tolerance: float) -> Callable[[float], Any]:
+        return lambda deadline: simulate(scene, t_end, modes, tolerance, discretization=basis)
+
+    def stock(method: str, rtol: float) -> Callable[[float], Any]:
+        def run(deadline: float) -> Transient:
+            with np.errstate(over="ignore", invalid="ignore"):  # divergence is measured as error
+                options = {"discretization": basis, "events": _stop_after(deadline)}
+                return simulate(scene, t_end, modes, rtol, method, **options)
+
+        return run
+
+    yield Family(OURS, tuple(Setting(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
+    for method in STOCK:
+        cases = (Setting(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
+        yield Family(f"solve_ivp {method}", tuple(cases))
+
+
+def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
+    """Event for `solve_ivp` that never occurs, but raises a TimeoutError once the deadline has passed."""
+
+    def event(t: float, y: np.ndarray) -> float:
+        if perf_counter() > deadline:
+            raise TimeoutError(f"at t = {t:.3g} s")
+        return 1.0
+
+    return event
+
+
+# Work-precision of the steady response ------------------------------------------------------------
+
+
+_HARMONICS = tuple(range(6))
+_ALL_HARMONICS = 6  # of the reference
+_STEADY_MODES = tuple(range(1, 9))
+_ALL_STEADY_MODES = 12  # of the reference
+_PHASES = 24  # samples of each phase, at which tip deflections are compared
+_ERROR_OF_STEADY = "the tip deflection, largest over phases and speeds, over the sum of the lines"
+_EPS = float(np.finfo(float).eps)
+
+
+@one_blas_thread()
+def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
+    """Measure error against time of the steady response over the number of interactions.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion whose steady state is known.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    modes : int
+        Number of modes.
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    return _diagram(
+        "harmonics",
+        speeds,
+        lambda h: steady_response(scene, speeds, modes, harmonics=h),
+        _HARMONICS,
+        _ALL_HARMONICS,
+        budget,
+    )
+
+
+@one_blas_thread()
+def steady_modes_diagram(scene: Scene, speeds: np.ndarray, budget: float = 5.0) -> Diagram:
+    """Measure error against time of the steady response over the number of modes.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a motion whose steady state is known.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    budget : float
+        Time for all measurements [s].
+
+    Returns
+    -------
+    Diagram
+    """
+    return _diagram(
+        "modes",
+        speeds,
+        lambda m: steady_response(scene, speeds, m, harmonics=2),
+        _STEADY_MODES,
+        _ALL_STEADY_MODES,
+        budget,
+    )
+
+
+def _diagram(
+    what: str,
+    speeds: np.ndarray,
+    run: Callable[[int], SteadyResponse],
+    sizes: tuple[int, ...],
+    most: int,
+    budget: float,
+) -> Diagram:
+    """Measure responses of several `sizes` against a reference, that of size `most`."""
+    start = perf_counter()
+    exact = run(most)
+    title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
+    if not np.nanmax(exact.bound, initial=0.0):
+        return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", 0.0, (), ("no load excites the beam",))
+    cases = tuple(Setting(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
+    resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
+    left = remaining_budget(budget, start)
+    measurements, skipped = measure_families([Family(what, cases)], _error(exact), resolved, left)
+    if not exact.stable.all():
+        skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
+    return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", resolved, measurements, skipped)
+
+
+def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
+    """Error measure: largest difference of the tip over the phases, over the bound, where both are stable."""
+    phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
+    rotation, road = np.meshgrid(phase, phase)
+    true = [exact.tip(rotation, road, direction) for direction in (0, 1)]
+
+    def error(response: SteadyResponse) -> float:
+        both = exact.stable & response.stable & (exact.bound > 0)
+        along, across = (response.tip(rotation, road, i) - tip for i, tip in enumerate(true))
+        difference = np.hypot(along, across).max(axis=(1, 2))
+        return float((difference[both] / exact.bound[both]).max(initial=0.0))
+
+    return error
