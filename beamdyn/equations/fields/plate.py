@@ -10,15 +10,16 @@ a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
     1/2 int int D [w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) c w_xy^2] dy dx.
 
 The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
-Saint-Venant's.  Rotation at the speed omega about a = (cos eta') b3 + (sin eta') b1, with the precone eta', adds
+Saint-Venant's.  Rotation at the speed omega about the unit vector a adds
 
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
 where T is the tension of the beam per width, and a1, a2 are the components of a in the directions of bending
-and of the width.  N_y pulls the width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not
-zero, rotation also twists the strip, by the load omega^2 a1 a2 rho t y per area.  In a tapered strip d/dx at
-constant y is d/dx - eta (b'/b) d/d eta.
+and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y pulls the
+width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also twists the
+strip, by the load omega^2 a1 a2 rho t y per area.  In a tapered strip d/dx at constant y is
+d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
 a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and
@@ -39,7 +40,7 @@ from beamdyn.common.legendre import gauss_rule
 from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Condition, Explanation
-from beamdyn.equations.fields.bending import Bending
+from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
