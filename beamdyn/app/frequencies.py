@@ -18,8 +18,8 @@ from beamdyn.app.speed_charts import CrossingPoint, describe_margin, frequency_c
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.edge.tables import table
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus

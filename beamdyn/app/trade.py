@@ -19,7 +19,7 @@ from beamdyn.app.left_out import left_out_table
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
-from beamdyn.common.plots.notes import note_below
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.screens.screens import Drag
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size

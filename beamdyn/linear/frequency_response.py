@@ -114,7 +114,7 @@ class FrequencyResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
         labels = [_label(h) for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"

@@ -25,8 +25,8 @@ from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
     TOLERANCES,
     DiscretizationChoice,
+    affordable_target,
     check_discretization,
-    least_target,
     list_models,
     split_tip,
     warn_of_missed_tolerance,
@@ -199,7 +199,7 @@ def critical_point(
     if _bends_from_rest(scene):
         return _argued(scene, Buckling(False, _BENT), start)
     scene = _about_straight_beam(scene)
-    target = max(target, least_target(discretization))
+    target = affordable_target(scene, discretization, target)
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):

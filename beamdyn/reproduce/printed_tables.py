@@ -12,8 +12,8 @@ from numpy.polynomial import Polynomial
 from rich.console import Group
 
 from beamdyn.common.edge.tables import table
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import FIXED, Discretization
-from beamdyn.equations.equations_of_motion import assemble_over
 from beamdyn.equations.fem import Fem
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import frequency_bounds
@@ -151,7 +151,7 @@ def tip_stretch(beam: Beam, speed: float, discretization: Discretization) -> flo
     equations = assemble_over(scene, spaces)
     pencil = equations.steady().part(equations.places(["stretch"]))
     q = np.linalg.solve(pencil.K0 + speed**2 * pencil.K2, speed**2 * pencil.f2)
-    return float(spaces.functions(FIXED.against("axial_stiffness")).end(0) @ q)
+    return float(spaces.functions(FIXED._replace(stiffness="axial_stiffness")).end(0) @ q)
 
 
 def errata_table(errata: Errata) -> Group:

@@ -93,7 +93,7 @@ class Tradeoff(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw all diagrams side by side, in place of the axes."""
-        from beamdyn.common.plots.plots import panels
+        from beamdyn.common.plots.axes_and_lines import panels
 
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):
