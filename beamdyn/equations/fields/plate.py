@@ -194,18 +194,23 @@ class Strip:
                     total = total + np.kron(averages, along * L ** (1 - p.order - q.order))
         return np.atleast_2d(total)
 
-    def stiffness(self, rows: Deflection, columns: Deflection) -> np.ndarray:
-        """Stiffness of the plate [N/m]."""
-        section = self.section
+    def stiffness(self, rows: Deflection, columns: Deflection, warping: Profile = ONE) -> np.ndarray:
+        """Stiffness of the plate [N/m], with a factor of its bending along the beam by warping."""
+        section, EI = self.section, self.scene.beam.bending_stiffness
         nu, D = section.poissons_ratio, plate_stiffness(self.scene.beam)
-        bend, cross = self.integrate, D.scaled(nu)
+        bend, cross = self.integrate, (D * _root(warping)).scaled(nu)
+        GJ = (EI * section.torsion_factor).scaled(2 / (1 + nu))
         return (
-            bend(D, (rows, "w_xx"), (columns, "w_xx"))
+            bend(D * warping, (rows, "w_xx"), (columns, "w_xx"))
             + bend(D, (rows, "w_yy"), (columns, "w_yy"))
             + bend(cross, (rows, "w_xx"), (columns, "w_yy"))
             + bend(cross, (rows, "w_yy"), (columns, "w_xx"))
-            + bend((D * section.torsion_factor).scaled(2 * (1 - nu)), (rows, "w_xy"), (columns, "w_xy"))
+            + bend(GJ, (rows, "w_xy"), (columns, "w_xy"))
         )
+
+
+def _root(factor: Profile) -> Profile:
+    return combine(lambda values: np.sqrt(values)[None], factor)[0]
 
 
 def plate_stiffness(beam: Beam) -> Profile:
@@ -289,12 +294,13 @@ class SectionField(Field):
 
         inertia = strip.integrate(mass, (rows, "w"), (columns, "w"))
         yield Term(f"mass of {self.name}", *names, 2, inertia)
-        if scene.physics.rotary_inertia and beam.rotary_inertia is not None:
-            tilts = (
-                strip.integrate(beam.rotary_inertia, (rows, each), (columns, each)) for each in ("w_x", "w_y")
-            )
-            yield Term(f"rotary inertia of {self.name}", *names, 2, sum(tilts, np.zeros_like(inertia)))
-        yield stiffness("stiffness", strip.stiffness(rows, columns))
+        thick = (mass * strip.section.thickness * strip.section.thickness).scaled(1 / 12)
+        if self.first == 1:
+            tilt = strip.integrate(thick, (rows, "w_y"), (columns, "w_y"))
+            yield Term(f"rotary inertia of {self.name}", *names, 2, tilt)
+            yield stiffness("spin of sections", tilt, "speed_squared", c2**2 - c1**2)
+        warping = strip.section.warping_factor if self.first == 1 else ONE
+        yield stiffness("stiffness", strip.stiffness(rows, columns, warping))
         slopes = (rows, "w_x"), (columns, "w_x")
         cosine, _ = exact_cos_sin(scene.mount.precone)
         yield stiffness("centrifugal stiffening", strip.integrate(n_b, *slopes), "speed_squared", cosine**2)
@@ -325,7 +331,8 @@ def _explanations(name: str) -> dict[str, Explanation]:
     """Explanations of the terms that torsion and camber share."""
     return {
         f"mass of {name}": Explanation("Mkk qk''", "the strip is a plate"),
-        f"rotary inertia of {name}": Explanation("Rkk qk''", "rotary inertia is modelled"),
+        f"rotary inertia of {name}": Explanation("Rkk qk''", "sections turn"),
+        f"spin of sections of {name}": Explanation("ω² (c² - s²) Rkk qk", "the carrier turns", (why.TURNS,)),
         f"stiffness of {name}": Explanation("Kk qk", "the strip is a plate"),
         f"centrifugal stiffening of {name}": Explanation("ω² KGBk qk", "the carrier turns", (why.TURNS,)),
         f"tension by root acceleration of {name}": Explanation(
