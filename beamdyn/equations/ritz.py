@@ -143,12 +143,12 @@ class RitzSpaces:
     @property
     def across(self) -> int:
         """Number of functions across the width of a plate beyond the mean: as many as along a segment."""
-        return min(self.ritz.functions, _MOST_ACROSS)
+        return max(2, min(self.ritz.functions, _MOST_ACROSS))
 
     @property
     def fewer_across(self) -> int:
         """Number of those of the coarser basis."""
-        return min(self.ritz.fewer, _MOST_ACROSS - 2)
+        return max(2, min(self.ritz.fewer, _MOST_ACROSS - 2))
 
     def shares_functions(self, other: RitzSpaces) -> bool:
         """Whether the basis and the segments are the same."""
