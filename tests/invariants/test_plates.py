@@ -16,8 +16,9 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 import beamdyn as bd
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import CLAMPED
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.fields.plate import Strip
 from beamdyn.scene.profile import ONE
 from beamdyn.scene.rectangle import Rectangle
 
@@ -50,8 +51,15 @@ SOLIDS = [((0.05, 0.01, 0.0002), 655.99), ((0.1, 0.02, 0.002), 1586.8)]  # first
 
 
 @pytest.fixture
-def wide(monkeypatch):
-    """Torsion of an infinitely wide section, as the plate program has it."""
+def thin(monkeypatch):
+    """Sections without what their thickness adds to warping and turning."""
+    monkeypatch.setattr(Rectangle, "warping_factor", ONE)
+    monkeypatch.setattr(Strip, "rotary_inertia", ONE.scaled(0.0))
+
+
+@pytest.fixture
+def wide(monkeypatch, thin):
+    """Torsion of an infinitely wide section as well, as the plate program has it."""
     monkeypatch.setattr(Rectangle, "torsion_factor", ONE)
 
 
@@ -170,7 +178,7 @@ def sample(scene, w):
 
 
 @pytest.fixture(params=range(3))
-def tapered(request):
+def tapered(request, thin):
     """A tapered strip with a tip body at an oblique bending angle, a random deflection, and its samples."""
     scene = bd.Scene(TAPERED, bd.Mount(0.2, OUT, 0.7), physics=PLATE)
     equations = assemble_equations(scene, BASIS)

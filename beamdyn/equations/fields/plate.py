@@ -50,6 +50,7 @@ from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
+_SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all terms
 _ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
 
 _IS_OBLIQUE = Condition(
@@ -165,6 +166,12 @@ class Strip:
         """Number of Gauss points across, which integrate products of two functions and a parabola."""
         return self.spaces.across + 3
 
+    @property
+    def rotary_inertia(self) -> Profile:
+        """Rotary inertia of the thickness per length [kg m], with which sections that twist turn."""
+        t = self.section.thickness
+        return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
+
     def deflection(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> Deflection:
         """The deflection by functions of some numbers across."""
         return Deflection(self.section, self.scene.beam.length, field.name, numbers, conditions, self.points)
@@ -259,8 +266,13 @@ class SectionField(Field):
         return scene.physics.plate
 
     def complete(self, scene: Scene) -> Scene:
-        """The scene as it is."""
-        return scene
+        """Model the strip as a plate, flat and with a Poisson's ratio, if its section is rectangular."""
+        section = scene.beam.section
+        if section is None:
+            return scene
+        given = replace(section, poissons_ratio=section.poissons_ratio or _SOME_RATIO)
+        beam = replace(scene.beam, twist=None).with_section(given)
+        return replace(scene, beam=beam, physics=replace(scene.physics, plate=True))
 
     def numbers(self, count: int) -> range:
         """Numbers k of the functions of this field among `count` functions beyond the mean."""
@@ -294,9 +306,8 @@ class SectionField(Field):
 
         inertia = strip.integrate(mass, (rows, "w"), (columns, "w"))
         yield Term(f"mass of {self.name}", *names, 2, inertia)
-        thick = (mass * strip.section.thickness * strip.section.thickness).scaled(1 / 12)
         if self.first == 1:
-            tilt = strip.integrate(thick, (rows, "w_y"), (columns, "w_y"))
+            tilt = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y"))
             yield Term(f"rotary inertia of {self.name}", *names, 2, tilt)
             yield stiffness("spin of sections", tilt, "speed_squared", c2**2 - c1**2)
         warping = strip.section.warping_factor if self.first == 1 else ONE
@@ -331,8 +342,6 @@ def _explanations(name: str) -> dict[str, Explanation]:
     """Explanations of the terms that torsion and camber share."""
     return {
         f"mass of {name}": Explanation("Mkk qk''", "the strip is a plate"),
-        f"rotary inertia of {name}": Explanation("Rkk qk''", "sections turn"),
-        f"spin of sections of {name}": Explanation("ω² (c² - s²) Rkk qk", "the carrier turns", (why.TURNS,)),
         f"stiffness of {name}": Explanation("Kk qk", "the strip is a plate"),
         f"centrifugal stiffening of {name}": Explanation("ω² KGBk qk", "the carrier turns", (why.TURNS,)),
         f"tension by root acceleration of {name}": Explanation(
@@ -356,6 +365,8 @@ class Torsion(SectionField):
     first = 1
     explanations: ClassVar[Mapping[str, Explanation]] = {
         **_explanations("torsion"),
+        "rotary inertia of torsion": Explanation("Rkk qk''", "sections turn"),
+        "spin of sections of torsion": Explanation("ω² (c² - s²) Rkk qk", "the carrier turns", (why.TURNS,)),
         "mass of the tip body in torsion": Explanation(
             "Jp r rᵀ qk''", "a body at the tip turns", (why.TIP_BODY,)
         ),
