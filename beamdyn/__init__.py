@@ -117,7 +117,7 @@ _NAMES = {
     "studies.result": ("Study",),
     "studies.study": ("study",),
     "studies.tradeoffs": ("Tradeoff", "tradeoff"),
-    "transient.gauss_solver": ("GaussCollocation",),
+    "transient.scipy_integrators": ("GaussCollocation",),
     "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
     "transient.transient": ("Transient",),
@@ -218,7 +218,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.spreads.spread import spread
     from beamdyn.studies.study import study
     from beamdyn.studies.tradeoffs import Tradeoff, tradeoff
-    from beamdyn.transient.gauss_solver import GaussCollocation
+    from beamdyn.transient.scipy_integrators import GaussCollocation
     from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep
     from beamdyn.transient.transient import Transient

@@ -19,7 +19,7 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate
-from beamdyn.transient.model_of_basis import choose_for_basis
+from beamdyn.transient.problem import choose_for_basis
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Trajectory, largest_in_each, largest_on, magnitude
 from beamdyn.transient.transient import TransientRequest
@@ -76,7 +76,7 @@ class SweepRequest(FieldsOnly):
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the modal basis and the tolerance."""
-        return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
+        return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
     @property
     def basis_name(self) -> str:

@@ -8,9 +8,8 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import refine
 from beamdyn.modes.modal.modal_basis import ModalBasis
-from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.trajectory import SAMPLES
-from beamdyn.transient.transient import Transient, TransientRequest
+from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes
 
 _MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
 _SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST

@@ -49,7 +49,6 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
-from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import simulate
 from beamdyn.transient.step_size import TOLERANCES
 from beamdyn.transient.sweep_basis import (
@@ -60,7 +59,7 @@ from beamdyn.transient.sweep_basis import (
     run_samples,
     with_basis_of,
 )
-from beamdyn.transient.transient import Transient
+from beamdyn.transient.transient import Transient, warn_of_missed_modes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -170,7 +169,7 @@ class Sweep(StatesModelError):
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
         with unannounced():  # of a run that `warnings` speaks of
             run = simulate(replace(self.scene, motion=motion), self.t_end)
-        return left_out_of_transient(run, self.window).at(np.newaxis)
+        return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
         """Whether a warning holds at each speed, (S,), of a run with that tolerance."""
