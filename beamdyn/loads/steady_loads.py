@@ -22,13 +22,18 @@ from beamdyn.loads.span_loads import (
 )
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, SpanStations, StationOutputs
 from beamdyn.scene.motion import Line
-from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities, name_line
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import Pair, generate_harmonics, list_harmonics
+from beamdyn.steady.periodic_system import (
+    Pair,
+    check_steady_state,
+    expand_quantities,
+    generate_harmonics,
+    list_harmonics,
+    name_line,
+)
 from beamdyn.steady.response import SteadyResponse
-from beamdyn.steady.tip_lines import combine_pairs
-from beamdyn.steady.vibration import vibration_of
+from beamdyn.steady.vibration import combine_pairs, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

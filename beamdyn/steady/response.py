@@ -36,17 +36,18 @@ from beamdyn.scene.validity import (
     warn_of_left_out,
     warn_of_road,
 )
-from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.tip_lines import (
-    across_bending,
+from beamdyn.steady.periodic_system import check_steady_state, name_line
+from beamdyn.steady.vibration import (
+    UNSTABLE,
+    WITHOUT_STABLE_MEAN,
     add_static,
-    along_bending,
+    choose_vibrating,
     combine_pairs,
     sizes_of,
     solve_parts,
+    vibration_of,
 )
-from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -329,6 +330,9 @@ class ResponseRequest(FieldsOnly):
         harmonic, vibrating = combine_pairs(c, used, motion)
         line, share = add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         vibrated = _largest(vibrating, harmonic, stable)
+        about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
+        method = f"{self.model.discretization}, {self.basis}{about}, {len(used)} harmonics"
+        estimated = "without the harmonics of the last interaction"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
@@ -341,20 +345,14 @@ class ResponseRequest(FieldsOnly):
             error=error * share,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
             line_frequency=np.abs(vibration.parts[0][0].rates @ harmonic.T) / (2 * np.pi),
-            line_amplitude=along_bending(line),
-            line_amplitude_across=across_bending(line),
+            line_amplitude=line[:, 0],
+            line_amplitude_across=line[:, 1:].sum(axis=1),
             harmonics=harmonic,
             warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
-            provenance=self._provenance(len(used), start),
+            provenance=Provenance(__version__, method, estimated, perf_counter() - start),
             vibration=vibrated,
             request=self,
         )
-
-    def _provenance(self, harmonics: int, start: float) -> Provenance:
-        about = " about the equilibrium at each speed" if self.scene.physics.large_deflection else ""
-        method = f"{self.model.discretization}, {self.basis}{about}, {harmonics} harmonics"
-        estimated = "without the harmonics of the last interaction"
-        return Provenance(__version__, method, estimated, perf_counter() - start)
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
         """Amplitudes of another scene with as many modes, or more if only one has large deflection."""

@@ -92,9 +92,7 @@ class RecordSteps:
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
         """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
         wanted, ends = _wanted_steps(system, t_end, step_size), smooth_piece_ends(system.motion, t_end)
-        parts = np.maximum(
-            1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int)
-        )  # equal ones
+        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))  # equal ones
         index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
         inside = np.repeat(ends[:-1], parts) + index * np.repeat(np.diff(ends) / parts, parts)
         pieces = np.append(inside, ends[-1])
