@@ -28,19 +28,17 @@ SHOWN_BY.update(
 
 # The public names by their module.
 _NAMES = {
-    "studies.campbell.crossings": ("LineCrossing",),
+    "studies.campbell.crossings": ("LineCrossing", "Margin"),
     "studies.campbell.diagram": ("Campbell", "campbell"),
-    "studies.campbell.margins": ("Margin",),
     "common.results.announced": ("OutsideLinearTheory",),
     "common.results.result": ("load",),
     "scene.rotor": ("RotorDrawing", "draw"),
     "common.results.display_units": ("DisplayUnits",),
     "common.edge.config": ("ConfigError",),
     "files.scenes": ("load_scene",),
-    "files.decks.audit": ("DeckAudit", "PropertyStep", "ShapeCheck"),
+    "files.decks.audit": ("DeckAudit", "ModePolynomial", "PropertyStep", "ShapeCheck"),
     "files.decks.blade": ("IgnoredProperty",),
     "files.decks.deck": ("Deck", "read_deck"),
-    "files.decks.mode_shapes": ("ModePolynomial",),
     "equations.discretization": ("Discretization",),
     "equations.fem": ("Fem",),
     "equations.ritz": ("Ritz",),
@@ -70,18 +68,22 @@ _NAMES = {
         "SteadyRotation",
         "UserMotion",
     ),
-    "linear.excitations": ("BaseMotion", "PointForce"),
+    "linear.inputs_outputs": (
+        "AccelerationAt",
+        "BaseMotion",
+        "DeflectionAt",
+        "MomentAtRoot",
+        "PointForce",
+        "StrainAtRoot",
+    ),
     "linear.frequency_response": ("FrequencyResponse", "frequency_response"),
-    "linear.matrices": ("Matrices", "matrices"),
-    "linear.observations": ("AccelerationAt", "DeflectionAt", "MomentAtRoot", "StrainAtRoot"),
-    "linear.parametric": ("ParametricTerm",),
+    "linear.matrices": ("Matrices", "matrices", "state_space"),
+    "linear.mean_square": ("ParametricTerm",),
     "linear.random_response": ("RandomResponse", "random_response"),
     "linear.spectra": ("PowerSpectrum", "RoadRoughness"),
-    "linear.state_space": ("state_space",),
     "modes.modal.equilibrium": ("NoEquilibrium",),
     "scene.mount": ("Mount",),
-    "scene.physics": ("Physics",),
-    "scene.physics_choice": ("JudgedEffect", "PhysicsChoice"),
+    "scene.physics": ("JudgedEffect", "Physics", "PhysicsChoice"),
     "scene.profile": ("Polynomial", "Profile", "Table"),
     "scene.scene": ("Scene",),
     "modes.backbone": ("Backbone", "backbone"),
@@ -94,8 +96,7 @@ _NAMES = {
         "equilibrium",
         "equilibrium_branches",
     ),
-    "studies.sensitivities.result": ("Sensitivities",),
-    "studies.sensitivities.scene_numbers": ("SceneNumber",),
+    "studies.sensitivities.result": ("SceneNumber", "Sensitivities"),
     "studies.sensitivities.sensitivities": (
         "critical_speed_sensitivities",
         "crossing_sensitivities",
@@ -113,7 +114,7 @@ _NAMES = {
     "common.spreading.statistics": ("Scatter", "SobolIndices"),
     "common.spreading.tolerances": ("Normal", "SpreadInput", "Uniform"),
     "common.spreading.worst_case": ("WorstCases",),
-    "studies.spreads.spread": ("spread",),
+    "studies.spread": ("spread",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
     "studies.tradeoffs": ("Tradeoff", "tradeoff"),
@@ -144,19 +145,23 @@ if TYPE_CHECKING:
     from beamdyn.equations.fem import Fem
     from beamdyn.equations.ritz import Ritz
     from beamdyn.equations.terms import Terms, terms
-    from beamdyn.files.decks.audit import DeckAudit, PropertyStep, ShapeCheck
+    from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, PropertyStep, ShapeCheck
     from beamdyn.files.decks.blade import IgnoredProperty
     from beamdyn.files.decks.deck import Deck, read_deck
-    from beamdyn.files.decks.mode_shapes import ModePolynomial
     from beamdyn.files.scenes import load_scene
-    from beamdyn.linear.excitations import BaseMotion, PointForce
     from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
-    from beamdyn.linear.matrices import Matrices, matrices
-    from beamdyn.linear.observations import AccelerationAt, DeflectionAt, MomentAtRoot, StrainAtRoot
-    from beamdyn.linear.parametric import ParametricTerm
+    from beamdyn.linear.inputs_outputs import (
+        AccelerationAt,
+        BaseMotion,
+        DeflectionAt,
+        MomentAtRoot,
+        PointForce,
+        StrainAtRoot,
+    )
+    from beamdyn.linear.matrices import Matrices, matrices, state_space
+    from beamdyn.linear.mean_square import ParametricTerm
     from beamdyn.linear.random_response import RandomResponse, random_response
     from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
-    from beamdyn.linear.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
     from beamdyn.loads.load_statistics import RandomStatistics
     from beamdyn.loads.random_loads import RandomLoads, random_loads
@@ -195,8 +200,7 @@ if TYPE_CHECKING:
         UserMotion,
     )
     from beamdyn.scene.mount import Mount
-    from beamdyn.scene.physics import Physics
-    from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
+    from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
     from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.rotor import RotorDrawing, draw
@@ -204,18 +208,16 @@ if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossing, Crossings
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
-    from beamdyn.studies.campbell.crossings import LineCrossing
+    from beamdyn.studies.campbell.crossings import LineCrossing, Margin
     from beamdyn.studies.campbell.diagram import Campbell, campbell
-    from beamdyn.studies.campbell.margins import Margin
     from beamdyn.studies.result import Study
-    from beamdyn.studies.sensitivities.result import Sensitivities
-    from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
+    from beamdyn.studies.sensitivities.result import SceneNumber, Sensitivities
     from beamdyn.studies.sensitivities.sensitivities import (
         critical_speed_sensitivities,
         crossing_sensitivities,
         frequency_sensitivities,
     )
-    from beamdyn.studies.spreads.spread import spread
+    from beamdyn.studies.spread import spread
     from beamdyn.studies.study import study
     from beamdyn.studies.tradeoffs import Tradeoff, tradeoff
     from beamdyn.transient.scipy_integrators import GaussCollocation

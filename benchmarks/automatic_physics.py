@@ -25,7 +25,7 @@ import beamdyn as bd
 from beamdyn.equations.effects import NAMED, add_effects
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.of_modes import bends
-from beamdyn.scene.physics_choice import PhysicsChoice
+from beamdyn.scene.physics import PhysicsChoice
 from benchmarks.cases.random_physics import Section, random_twist, speed_of_deflection
 from benchmarks.cases.scenes import time_unit
 from benchmarks.resumable import Cases, add_options

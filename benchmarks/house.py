@@ -69,7 +69,7 @@ READERS = {
     "beamdyn/common/parallel/store.py",
     "beamdyn/common/inputs/paths.py",
     "beamdyn/common/spreading/tolerances.py",
-    "beamdyn/files/decks/stations.py",
+    "beamdyn/files/decks/blade.py",
     "beamdyn/common/plots/campbell.py",
     "beamdyn/scene/numbers.py",
 }

@@ -32,7 +32,7 @@ from beamdyn.studies.tradeoffs import (
     steady_modes_diagram,
     transient_modes_diagram,
 )
-from beamdyn.studies.tradeoffs.transients import OURS
+from beamdyn.studies.tradeoffs.responses import OURS
 from benchmarks import rows
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
 from benchmarks.cases.table_3 import handwritten, modal_system

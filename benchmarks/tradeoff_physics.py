@@ -15,7 +15,7 @@ from time import perf_counter
 
 import beamdyn as bd
 from beamdyn.studies.tradeoffs import Diagram, physics_diagram
-from beamdyn.studies.tradeoffs.physics import AS_GIVEN
+from beamdyn.studies.tradeoffs.frequencies import AS_GIVEN
 from benchmarks.cases.scenes import HARVESTER
 from benchmarks.rows import markdown_table, time_text
 

@@ -13,8 +13,7 @@ from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed
 
 if TYPE_CHECKING:
-    from beamdyn.linear.excitations import Excitation
-    from beamdyn.linear.observations import Observation
+    from beamdyn.linear.inputs_outputs import Excitation, Observation
     from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.scene.scene import Scene
 
@@ -118,7 +117,7 @@ NO_RANDOM_INPUT = RandomInput()
 
 def parse_input(text: str) -> Excitation:
     """The excitation of ``--input``: a word, or a force at a position with its unit."""
-    from beamdyn.linear.excitations import PointForce, as_excitation
+    from beamdyn.linear.inputs_outputs import PointForce, as_excitation
 
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
@@ -128,7 +127,7 @@ def parse_input(text: str) -> Excitation:
 
 def parse_output(text: str) -> Observation:
     """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
-    from beamdyn.linear.observations import AccelerationAt, DeflectionAt, as_observation
+    from beamdyn.linear.inputs_outputs import AccelerationAt, DeflectionAt, as_observation
 
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":

@@ -114,7 +114,7 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
     from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
     from beamdyn.common.edge.wording import of_file
     from beamdyn.scene.numbers import unit_of
-    from beamdyn.studies.spreads.spread import nominal_value
+    from beamdyn.studies.spread import nominal_value
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""

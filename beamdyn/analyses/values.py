@@ -82,7 +82,7 @@ def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
 
     If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
     """
-    from beamdyn.files.rolling_speeds import as_velocity
+    from beamdyn.files.scenes import as_velocity
     from beamdyn.scene.motion import RollingWheel
 
     if scene is not None and isinstance(scene.motion, RollingWheel):

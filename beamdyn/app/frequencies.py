@@ -18,8 +18,8 @@ from beamdyn.app.speed_charts import CrossingPoint, describe_margin, frequency_c
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.edge.tables import table
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
@@ -29,7 +29,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.margins import Margin, margins_at_rated
+from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
 _COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance

@@ -12,7 +12,7 @@ from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES
 from beamdyn.app.left_out import left_out_table
 from beamdyn.app.sketches import sketch
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.plots.notes import note_below
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.result import Result
 from beamdyn.common.screens.screens import Screen
 from beamdyn.modes.model_error.left_out_effects import StatesModelError

@@ -10,7 +10,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.modes.locus import Locus
 from beamdyn.scene.motion import Line
-from beamdyn.studies.campbell.margins import Margin
+from beamdyn.studies.campbell.crossings import Margin
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
 _HEADROOM = 1.08  # height of the chart over the highest frequency

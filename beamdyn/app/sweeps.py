@@ -19,8 +19,8 @@ from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_ca
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import check_designs
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.screens.form_entries import entries_of
 from beamdyn.common.screens.screens import Sweeps
 from beamdyn.modes.critical import CriticalPoint

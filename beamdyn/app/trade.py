@@ -19,7 +19,7 @@ from beamdyn.app.left_out import left_out_table
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
-from beamdyn.common.plots.notes import note_below
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.screens.screens import Drag
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
@@ -27,9 +27,8 @@ from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import notes_of, warnings_of
 from beamdyn.results.of_studies import diagram_csv, diagram_table
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
-from beamdyn.studies.tradeoffs.physics import physics_diagram
 
 _BUDGET = 2.0  # for all measurements of a diagram [s]
 _RUNS = 5  # of the chosen model, the shortest of which counts

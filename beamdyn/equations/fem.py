@@ -166,7 +166,7 @@ class FemSpaces(FieldsOnly):
 
     def functions(self, conditions: RootConditions) -> FemSpace:
         """Trial functions that satisfy conditions at the root."""
-        return FemSpace(self, conditions.at_root)
+        return FemSpace(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)

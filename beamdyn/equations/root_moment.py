@@ -24,8 +24,9 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.equations_of_motion import Equations, assemble_over
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
 

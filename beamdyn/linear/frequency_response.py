@@ -14,11 +14,9 @@ from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.linear.choice import check_linear, with_forces
-from beamdyn.linear.convergence import Refined, evaluate_accurately
-from beamdyn.linear.excitations import Excitation, as_excitation
+from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, with_forces
+from beamdyn.linear.inputs_outputs import Excitation, Observation, as_excitation, as_observation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import Observation, as_observation
 from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -116,7 +114,7 @@ class FrequencyResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
         labels = [_label(h) for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"

@@ -15,16 +15,32 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.linear.choice import check_linear, with_forces
-from beamdyn.linear.convergence import evaluate_accurately, evaluate_also
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.frequency_grid import about_resonances, frequencies_of_response, one_of_each
-from beamdyn.linear.mean_square import PartialFractions, damped_motion, partial_fractions
+from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
+from beamdyn.linear.inputs_outputs import (
+    AccelerationAt,
+    DeflectionAt,
+    Excitation,
+    Observation,
+    as_observation,
+)
+from beamdyn.linear.mean_square import (
+    ParametricTerm,
+    PartialFractions,
+    damped_motion,
+    parametric_term,
+    partial_fractions,
+)
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import AccelerationAt, DeflectionAt, Observation, as_observation
-from beamdyn.linear.parametric import ParametricTerm, parametric_term
-from beamdyn.linear.random_input import highest_frequency, random_input, warn_of_band
-from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.spectra import (
+    PowerSpectrum,
+    RoadRoughness,
+    about_resonances,
+    frequencies_of_response,
+    highest_frequency,
+    one_of_each,
+    random_input,
+    warn_of_band,
+)
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
@@ -106,7 +122,7 @@ class RandomResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the density over frequency, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
         label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"

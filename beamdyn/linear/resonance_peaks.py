@@ -17,11 +17,9 @@ from typing import NamedTuple
 import numpy as np
 
 from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.modal_sum import ModalSum, modal_sums
+from beamdyn.linear.inputs_outputs import Excitation, Observation
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
-from beamdyn.linear.observations import Observation
-from beamdyn.linear.transfer import respond
+from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
 _DENSE = 0.1  # step of samples over the distance to the nearest pole

@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import (
     InvalidValue,
     ascending,
+    kind,
     one_of,
     positive,
     real_array,
@@ -20,6 +21,10 @@ from beamdyn.common.inputs.checks import (
     set_fields,
 )
 from beamdyn.common.inputs.described import Described
+from beamdyn.linear.inputs_outputs import BaseMotion, Excitation, as_excitation
+from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.scene import Scene
 
 BetweenPoints = Literal["linear", "log"]
 _WIDEST = 1.5  # ratio of the ends of a piece of a power law, on which polynomials of some degree are exact
@@ -206,3 +211,139 @@ class RoadRoughness:
         n = np.array([self.lowest, self.highest])
         height = self.density * (n / REFERENCE) ** -self.waviness / v
         return PowerSpectrum((n * v).tolist(), ((2 * np.pi * n * v) ** 4 * height).tolist())
+
+
+# Random inputs at a steady speed ------------------------------------------------------------------
+
+
+_TURN = 2 * np.pi
+
+
+def random_input(
+    scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
+) -> tuple[Excitation, PowerSpectrum | float]:
+    """The excitation and its density; a road becomes the vertical acceleration of the wheel.
+
+    Raises
+    ------
+    InvalidValue
+        If a road is given another input, no wheel, or no speed; or the density is none.
+    """
+    if isinstance(psd, RoadRoughness):
+        return BaseMotion("n2"), _of_road(scene, speed, psd, given)
+    excitation = as_excitation("input", "bending" if given is None else given)
+    if isinstance(psd, PowerSpectrum):
+        return excitation, psd
+    if not hasattr(psd, "__float__"):
+        kind("psd", psd, PowerSpectrum, "PowerSpectrum(frequencies, values), a RoadRoughness, or a number")
+    return excitation, positive("psd", psd, "", "give the density of white noise")
+
+
+def _of_road(
+    scene: Scene, speed: float, road: RoadRoughness, given: Excitation | str | None
+) -> PowerSpectrum:
+    if given not in (None, "n2", BaseMotion("n2")):
+        raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
+    wheel = scene.motion
+    if not isinstance(wheel, RollingWheel):
+        bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
+        raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
+    refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
+    return road.acceleration(wheel.rolling_radius * speed)
+
+
+def highest_frequency(spectrum: PowerSpectrum | float) -> float:
+    """Highest frequency of the input [Hz]; 0 for white noise."""
+    return spectrum.frequencies[-1] if isinstance(spectrum, PowerSpectrum) else 0.0
+
+
+def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: ModelAtSpeed) -> Iterator[str]:
+    """Yield a warning if the input lacks a frequency that excites the first resonance.
+
+    An input that does not turn with the beam excites it at its own frequency plus and minus that of rotation.
+    """
+    resonances = np.abs(np.imag(model.free_motion.finite_poles)) / _TURN
+    if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
+        return
+    first = resonances[resonances > 0].min()
+    shifts = np.array([*model.drives(drive)]) * model.speed / _TURN
+    exciting = np.unique(np.abs(first + shifts))
+    lowest, highest = spectrum.frequencies[0], spectrum.frequencies[-1]
+    missing = exciting[(exciting < lowest) | (exciting > highest)]
+    if missing.size:
+        by, lacks = (" and ".join(f"{f:.4g}" for f in each) for each in (exciting, missing))
+        yield (
+            f"the first resonance, at {first:.4g} Hz, is excited by inputs at {by} Hz, but the input has "
+            f"{lowest:.4g} to {highest:.4g} Hz: what {lacks} Hz excites is not in the answer; give all of it"
+        )
+
+
+# Frequencies of the density of a random response --------------------------------------------------
+
+
+_STEP = 0.02  # relative distance of frequencies of the input
+_STEEPEST = 0.1  # logarithm of the ratio of densities of the input at two of them
+_DECADES = 3  # that a piece which begins at 0 is listed downwards
+_CLOSE = 0.2  # distance of two frequencies near a resonance, over that from it or its bandwidth
+_REACH = 30.0  # half bandwidths about a resonance that are dense, beside its frequency
+_BESIDE = 1e-6  # relative distance of a frequency outside of an input to its end, where the density falls
+_SAME = 1e-13  # relative distance of two frequencies that are one
+
+
+def frequencies_of_response(
+    spectrum: PowerSpectrum, poles: np.ndarray, shifts: Sequence[float]
+) -> np.ndarray:
+    """Frequencies at which an input has a response [Hz], ascending.
+
+    Parameters
+    ----------
+    spectrum : PowerSpectrum
+        The density of the input.
+    poles : ndarray of complex
+        Poles of the response [1/s], all of them damped.
+    shifts : sequence of float
+        How far the response is from the input [Hz].
+
+    Returns
+    -------
+    ndarray
+    """
+    of_input = np.concatenate([_frequencies_of(piece) for piece in spectrum.pieces()])
+    ends = np.array([of_input[0] * (1 - _BESIDE), of_input[-1] * (1 + _BESIDE)])
+    excited, beside = (_shifted(f, shifts) for f in (of_input, ends))
+    about = np.concatenate([beside, about_resonances(poles)])
+    inside = (about > excited.min()) & (about < excited.max())
+    return one_of_each(np.concatenate([excited, about[inside]]))
+
+
+def _frequencies_of(piece: SpectrumPiece) -> np.ndarray:
+    """Frequencies of a part of the input [Hz], at equal ratios."""
+    start = piece.start or piece.end / 10**_DECADES
+    steps = math.log(piece.end / start) * max(1 / _STEP, abs(piece.power) / _STEEPEST)
+    between = np.geomspace(start, piece.end, math.ceil(steps) + 1)[1:-1]
+    return np.concatenate([[piece.start], between, [piece.end]])
+
+
+def _shifted(f: np.ndarray, shifts: Sequence[float]) -> np.ndarray:
+    """Frequencies of the response to those of the input, of either sign [Hz]."""
+    return np.concatenate([np.abs(shift + each) for shift in shifts for each in (f, -f)])
+
+
+def about_resonances(poles: np.ndarray) -> np.ndarray:
+    """Frequencies dense about those of poles, from 0 on [Hz], in no order."""
+    each = [_about(float(pole.imag), -float(pole.real)) for pole in poles / _TURN if pole.imag >= 0]
+    f = np.concatenate([*each, np.empty(0)])
+    return f[f >= 0]
+
+
+def _about(centre: float, half_width: float) -> np.ndarray:
+    """Frequencies about one: at a distance the steps are in proportion to it."""
+    reach = np.arcsinh(_REACH + centre / half_width)
+    side = half_width * np.sinh(np.linspace(0.0, reach, math.ceil(reach / _CLOSE) + 1))
+    return np.concatenate([centre - side[:0:-1], centre + side])
+
+
+def one_of_each(f: np.ndarray) -> np.ndarray:
+    """The frequencies, ascending, without those that differ by rounding."""
+    f = np.unique(f)
+    return f[np.diff(f, prepend=-1.0) > _SAME * f]

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.equations.root_motion import Quantity, root_motion
-from beamdyn.linear.excitations import BaseMotion, Excitation
+from beamdyn.linear.inputs_outputs import BaseMotion, Excitation
 from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum

@@ -18,12 +18,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.linear.choice import model_of_few_modes
-from beamdyn.linear.convergence import Refined, evaluate_accurately
-from beamdyn.linear.excitations import Excitation
+from beamdyn.linear.convergence import Refined, evaluate_accurately, model_of_few_modes
+from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.random_input import highest_frequency
-from beamdyn.linear.spectra import PowerSpectrum
+from beamdyn.linear.spectra import PowerSpectrum, highest_frequency
 from beamdyn.linear.transfer import check_stable
 from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
 from beamdyn.loads.stations import SpanStations, StationOutputs

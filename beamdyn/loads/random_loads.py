@@ -12,14 +12,11 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refu
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
-from beamdyn.linear.choice import check_linear, with_forces
-from beamdyn.linear.excitations import Excitation
-from beamdyn.linear.mean_square import partial_fractions
+from beamdyn.linear.convergence import check_linear, with_forces
+from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
+from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.observations import DeflectionAt
-from beamdyn.linear.parametric import ParametricTerm, parametric_term
-from beamdyn.linear.random_input import random_input, warn_of_band
-from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, random_input, warn_of_band
 from beamdyn.loads.load_fractions import LoadFractions
 from beamdyn.loads.load_statistics import (
     InputAndOutputs,
@@ -32,7 +29,7 @@ from beamdyn.loads.span_loads import AskedLoads, Case, SpanLoads, with_unit
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.static_load import warn_of_rotation
-from beamdyn.scene.direction import ACROSS
+from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 

@@ -239,7 +239,7 @@ class SpanLoads(Result):
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
         """Draw values (C, S, k) of a quantity along the span, if the result has it."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         named = self.components(quantity)

@@ -14,15 +14,15 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, real
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.elastica import DeflectedState
 from beamdyn.equations.root_motion import RootMotion, root_motion
-from beamdyn.modes.modal.deflected import DeflectedSolver
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -128,9 +128,9 @@ def backbone(
     if not (s.imag > 0 and s.real <= 0):
         bound = f"it does not vibrate about the equilibrium at {speeds[0]:g} rad/s"
         raise InvalidValue("mode", mode, bound, 'another speed or Physics(branch="bent")')
-    found = [FreeVibration.of(model, float(speeds[0]), mode) for model in (solution.model, solution.coarse)]
+    models = solution.model, solution.model.coarser
+    found = [FreeVibration.of(model, float(speeds[0]), mode) for model in models]
     k, coarse = (each.coefficient(SMALL / 2) for each in found)
-    names = str(solution.model.discretization), str(solution.coarse.discretization)
     return Backbone(
         speed=float(speeds[0]),
         mode=mode,
@@ -138,7 +138,7 @@ def backbone(
         coefficient=k,
         error=abs(k - coarse) + abs(k - found[0].coefficient(SMALL)),
         warnings=tuple(found[0].warnings()),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        provenance=provenance_of(solution, start),
         scene=scene,
     )
 

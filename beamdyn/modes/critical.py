@@ -23,10 +23,10 @@ from beamdyn.modes.buckling import Buckling, decide_buckling
 from beamdyn.modes.critical_physics import find_with_chosen_physics
 from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
+    FEM_TARGET,
     TOLERANCES,
     DiscretizationChoice,
     check_discretization,
-    least_target,
     list_models,
     split_tip,
     warn_of_missed_tolerance,
@@ -199,7 +199,7 @@ def critical_point(
     if _bends_from_rest(scene):
         return _argued(scene, Buckling(False, _BENT), start)
     scene = _about_straight_beam(scene)
-    target = max(target, least_target(discretization))
+    target = max(target, FEM_TARGET) if discretization == "fem" else target
     models = partial(_list_models, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):

@@ -30,7 +30,7 @@ _SAMPLES = 32  # of the stiffness on a segment, which decide about the basis onl
 _STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
 
-_CONDITIONS = CLAMPED.against("bending_stiffness")
+_CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
 
 def most_functions(beam: Beam) -> int:

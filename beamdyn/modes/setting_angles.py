@@ -21,7 +21,7 @@ from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     choose_model,
 )
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain

@@ -45,7 +45,7 @@ from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.flexibility import bound_on_cells, bound_traces
 from beamdyn.modes.head import Head
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import exact_cos_sin

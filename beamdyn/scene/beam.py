@@ -20,9 +20,8 @@ from beamdyn.common.inputs.checks import (
 )
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.scene.direction import direction_of
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
-from beamdyn.scene.points import PointMass, PointSpring, TipMass
+from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import (
     Profile,
     Property,

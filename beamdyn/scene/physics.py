@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, set_fields
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.result import Result, plain
+from beamdyn.common.results.statements import TOLERANCE, Statement
 
 
 @dataclass(frozen=True)
@@ -74,8 +79,8 @@ class Physics:
 
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""
-        for name, plain in (("planes", 1), ("shear", False), ("stretch", False)):
-            if (given := getattr(self, name)) != plain:
+        for name, without in (("planes", 1), ("shear", False), ("stretch", False)):
+            if (given := getattr(self, name)) != without:
                 bound = "it cannot be combined with large_deflection"
                 raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")
 
@@ -90,3 +95,151 @@ class AutomaticPhysics(Physics):
 
 AUTO_NAME = "auto"
 AUTO = AutomaticPhysics()
+
+
+# Physics that was chosen for a scene --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class JudgedEffect:
+    """An effect beyond the plain beam, and whether it was included.
+
+    Parameters
+    ----------
+    name : str
+        Name of the effect.
+    size : float
+        Largest relative change that it makes in the answer; inf where it turns modes into others, nan where
+        that is not known.
+    included : bool
+        Whether the physics includes it.
+    reason : str
+        Why it is left out, or its size not known; empty if its size alone decided.
+    time, coordinates : float
+        Time of the eigenproblem and number of coordinates with this effect alone, relative to the plain
+        beam; nan where it is left out, or was added for a deflection that was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> modes = bd.natural_modes(bd.Scene(strip, bd.Mount(0.215), physics="auto"), speed=50.0, modes=1)
+    >>> sorted(effect.name for effect in modes.physics_choice.effects)[:2]
+    ['large deflection', 'rotary inertia of sections']
+    """
+
+    name: str
+    size: float
+    included: bool
+    reason: str = ""
+    time: float = math.nan
+    coordinates: float = math.nan
+
+
+@dataclass(frozen=True)
+class PhysicsChoice:
+    """How the physics of a scene was chosen, where it was given as "auto".
+
+    Parameters
+    ----------
+    physics : Physics
+        The physics.
+    tolerance : float
+        Relative change of the answer that may be left out.
+    speeds : tuple of float
+        Speeds at which the effects were judged [rad/s].
+    effects : tuple of JudgedEffect
+        The effects that models have, those included first.
+    model_error : float
+        Largest sum of the sizes of the effects left out, as far as they are known: a relative change.
+    time, coordinates : float
+        Time of the eigenproblem and number of coordinates, relative to the plain beam.
+    not_modelled : tuple of str
+        Effects that no model here has.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> modes = bd.natural_modes(bd.Scene(strip, bd.Mount(0.215), physics="auto"), speed=50.0, modes=1)
+    >>> modes.physics_choice.is_met
+    True
+    """
+
+    physics: Physics
+    tolerance: float
+    speeds: tuple[float, ...]
+    effects: tuple[JudgedEffect, ...]
+    model_error: float
+    time: float
+    coordinates: float
+    not_modelled: tuple[str, ...]
+
+    @property
+    def included(self) -> tuple[str, ...]:
+        """Names of the effects that the physics includes."""
+        return tuple(effect.name for effect in self.effects if effect.included)
+
+    @property
+    def not_known(self) -> dict[str, str]:
+        """Effects left out whose size is not known, and why."""
+        left_out = (effect for effect in self.effects if not effect.included)
+        return {effect.name: effect.reason for effect in left_out if math.isnan(effect.size)}
+
+    @property
+    def is_met(self) -> bool:
+        """Whether the effects left out, as far as their sizes are known, are within the tolerance."""
+        return self.model_error <= self.tolerance
+
+    def sentence(self) -> str:
+        """One line: what was included, its size and cost, and what was not."""
+        included = [_say_included(effect) for effect in self.effects if effect.included]
+        several = len(included) > 1 and not math.isnan(self.time)
+        cost = f"; in all {self.time:.2g} times the time of the plain beam" if several else ""
+        return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or "the plain beam"}{cost}'
+
+    def warnings(self) -> Iterator[Statement]:
+        """Yield a warning if the tolerance is not met, or if it is not known whether it is."""
+        large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
+        why = "; ".join(f"{e.name}, left out, is worth {_say_size(e.size)}: {e.reason}" for e in large)
+        if not self.is_met:
+            reason = f": {why}" if why else ""
+            yield Statement(
+                f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "
+                f"{_say_size(self.model_error)}{reason}",
+                kind=TOLERANCE,
+                quantity="model error",
+                value=self.model_error,
+                limit=self.tolerance,
+            )
+        if self.not_known:
+            each = "; ".join(f"{name} ({why})" for name, why in self.not_known.items())
+            said = f"physics = auto: left out, as not known: {each}"
+            yield Statement(said, kind=TOLERANCE, quantity="model error", limit=self.tolerance)
+
+
+def _say_included(effect: JudgedEffect) -> str:
+    more = f"{effect.coordinates:.2g}"
+    coordinates = "as many coordinates" if more == "1" else f"{more} times the coordinates"
+    cost = f"; {effect.time:.2g} times the time, {coordinates}"
+    return f"{effect.name} ({_say_size(effect.size)}{'' if math.isnan(effect.time) else cost})"
+
+
+def _say_size(size: float) -> str:
+    if math.isnan(size):
+        return "an unknown change"
+    return "another answer" if math.isinf(size) else percent(size)
+
+
+class OfChosenPhysics(Result):
+    """Base of results of a scene, the physics of which may have been chosen; see `Result`."""
+
+    scene: Any
+
+    @property
+    def physics_choice(self) -> PhysicsChoice | None:
+        """How the physics was chosen, where it was given as "auto"; None where it was given."""
+        return self.scene.physics_choice
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with the choice of physics where there was one."""
+        choice = self.physics_choice
+        return super().to_dict() | ({} if choice is None else {"physics_choice": plain(choice)})

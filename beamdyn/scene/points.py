@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, get_args
+from typing import Annotated, Final, Literal, get_args
 
 from beamdyn.common.inputs.checks import amount, one_of, positive, real, refuse, set_fields
 from beamdyn.common.inputs.described import Described
-from beamdyn.scene.direction import ALONG_BENDING, Direction
+
+Direction = Literal["bending", "across"]
+ALONG_BENDING: Final = "bending"
+ACROSS: Final = "across"
+
+
+def direction_of(direction: str) -> int:
+    """0 for the direction of the bending angle, 1 for that across."""
+    return 1 if direction == ACROSS else 0
+
+
+# What stands on the beam or holds it at a point ---------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,10 @@ from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
-from beamdyn.scene.direction import ACROSS
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, aligned_cos_sin
-from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics
-from beamdyn.scene.physics_choice import PhysicsChoice
+from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
+from beamdyn.scene.points import ACROSS
 from beamdyn.scene.profile import mean
 
 _SLENDER = Physics(), Physics(stretch=True)  # in one plane

@@ -15,7 +15,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
-from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import Model, plane_share

@@ -13,10 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.deflected import DeflectedSolver
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
-from beamdyn.modes.modal.eigen import Solver
-from beamdyn.modes.modal.equilibrium import NoEquilibrium
+from beamdyn.modes.modal.eigenproblem import Solver
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion

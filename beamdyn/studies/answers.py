@@ -100,15 +100,12 @@ class AnswerArrays:
             self._methods.get(part.method, 0) + part.value.shape[0] * part.value.shape[1]
         )
         for caution in part.cautions:
-            self._note(place, caution)
-
-    def _note(self, place: Place, caution: Caution) -> None:
-        """Add up cautions of one kind; keep the worst, and of equal ones the first."""
-        noted = self._cautions.setdefault(caution.kind, [])
-        noted.append((place[0].start, place[1].start, caution))
-        worst = min(noted, key=lambda each: (-each[2].weight, *each[:2]))
-        self._cautions[caution.kind] = [worst]
-        self._counts[caution.kind] = self._counts.get(caution.kind, 0) + caution.count
+            # Add up cautions of one kind; keep the worst, and of equal ones the first.
+            noted = self._cautions.setdefault(caution.kind, [])
+            noted.append((place[0].start, place[1].start, caution))
+            worst = min(noted, key=lambda each: (-each[2].weight, *each[:2]))
+            self._cautions[caution.kind] = [worst]
+            self._counts[caution.kind] = self._counts.get(caution.kind, 0) + caution.count
 
     @property
     def status(self) -> np.ndarray:

@@ -21,8 +21,13 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.periodic_system import excitation_lines, periodic_system
 from beamdyn.studies.answers import REFUSED, DesignAnswers, caution_where
-from beamdyn.studies.frequencies import cautions_of_error, cautions_of_refused, stacks_of
-from beamdyn.studies.refinement import BasisAnswers, Refinement
+from beamdyn.studies.batched import (
+    BasisAnswers,
+    Refinement,
+    cautions_of_error,
+    cautions_of_refused,
+    stacks_of,
+)
 from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"

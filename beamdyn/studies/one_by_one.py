@@ -33,7 +33,7 @@ from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
-from beamdyn.studies.critical_speeds import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
+from beamdyn.studies.batched import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
@@ -87,17 +87,12 @@ class SingleDesigns(FieldsOnly):
         with unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        return DesignAnswers(value, error, status, (*self._cautions(designs, found),), SINGLE_CALLS)
-
-    def _cautions(
-        self, designs: Sequence[Mapping[str, float]], found: Sequence[SpeedAnswer]
-    ) -> list[Caution]:
-        """How many answers are refused, and how many have warnings, with those of the first."""
+        # How many answers are refused, and how many have warnings, with those of the first.
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
         limited = _caution("there are warnings", designs, warned, [answer.warnings for answer in found])
-        return [*without, *limited]
+        return DesignAnswers(value, error, status, (*[*without, *limited],), SINGLE_CALLS)
 
 
 def _caution(

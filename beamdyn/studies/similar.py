@@ -190,16 +190,12 @@ class SimilarDesigns(FieldsOnly):
             return common | {"inertia": tip["inertia"], "tilt": self.tilt, "in_plane": self.in_plane}
         if np.isfinite(spring := springs["second_root_stiffness"]).all():
             common["second_spring"] = spring
-        common |= self._second_moments
-        second = self._scale(3) / self._scale(1)
-        return common | {"angle": self._of_mount("bending_angle"), "second_stiffness": second}
-
-    @property
-    def _second_moments(self) -> dict[str, np.ndarray]:
-        """Second moments of mass of the tip body along the beam, along bending and along its axis [kg m2]."""
+        # Second moments of mass of the tip body along the beam, along bending and along its axis [kg m2].
         n, e, one = (self.tip[name] for name in ("inertia", "transverse_inertia", "axial_inertia"))
         twice = {"along_beam": n + e - one, "along_bending": n + one - e, "along_axis": e + one - n}
-        return {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}  # below 0 by rounding only
+        common |= {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}
+        second = self._scale(3) / self._scale(1)
+        return common | {"angle": self._of_mount("bending_angle"), "second_stiffness": second}
 
     @property
     def tilt(self) -> np.ndarray:

@@ -36,9 +36,8 @@ from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
-from beamdyn.studies.critical_speeds import critical_speeds_of
+from beamdyn.studies.batched import critical_speeds_of, frequencies_of
 from beamdyn.studies.crossings import crossings_of, list_resonances
-from beamdyn.studies.frequencies import frequencies_of
 from beamdyn.studies.one_by_one import SingleDesigns
 from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
 from beamdyn.studies.result import Study
@@ -291,17 +290,13 @@ class SimilarTask:
             self.question.refinement(self.designs.reference),
         )
         if question.what == "frequencies":
-            return frequencies_of(designs, refinement, self.speeds, self._damping)
+            # Damping ratio of each design; None where none is damped.
+            own = np.full(self.designs.count, self.question.scene.damping_ratio)
+            ratio = self.columns.get("model.damping_ratio", own)
+            return frequencies_of(designs, refinement, self.speeds, (ratio if ratio.any() else None))
         if question.what == "critical_speed":
             return critical_speeds_of(designs, refinement, self._single)
         return crossings_of(designs, refinement, question.scene, question.resonances, question.speed)
-
-    @property
-    def _damping(self) -> np.ndarray | None:
-        """Damping ratio of each design; None where none is damped."""
-        own = np.full(self.designs.count, self.question.scene.damping_ratio)
-        ratio = self.columns.get("model.damping_ratio", own)
-        return ratio if ratio.any() else None
 
     def _single(self, rows: np.ndarray) -> DesignAnswers:
         columns = {name: values[rows] for name, values in self.columns.items()}
@@ -416,12 +411,8 @@ class _Request:
         return (
             question.refinement(self._reference).can_be_batched
             and all(p.can_be_solved for p in parts)
-            and self._few_nodes
+            and replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes(self.designs.count)
         )
-
-    @property
-    def _few_nodes(self) -> bool:
-        return replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes(self.designs.count)
 
     @cached_property
     def _first(self) -> dict[str, float]:

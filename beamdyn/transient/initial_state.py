@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, as_floats
 from beamdyn.equations.elastica import QUANTITIES
 from beamdyn.equations.root_motion import Quantity
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.system import ModalSystem

@@ -19,8 +19,8 @@ from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.result import Spread
-from beamdyn.common.spreading.sampling import check_samples, check_seed, count_designs
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
+from beamdyn.common.spreading.statistics import check_samples, check_seed, count_designs
 from beamdyn.common.spreading.tolerances import SpreadInput
 from brakes.answers.base import ERROR, BrakeType, SweepRequest
 from brakes.config.caliper import Angle

@@ -223,7 +223,7 @@ def _answer_spread(
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.spread_tables import spread_csv, spread_table
     from beamdyn.common.edge.tables import show
-    from beamdyn.common.spreading.pictures import spread_figure
+    from beamdyn.common.spreading.result import spread_figure
     from brakes.answers.spread import spread_of_brake
 
     file, varying, spreading, what = request

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
 from beamdyn.common.results.pictures import save_animation
 from brakes.drawings import mechanism_parts as parts
-from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
+from brakes.planar import GROUND, Action, Equilibrium, Load, Position, free_body
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -378,76 +377,61 @@ def animate(
 # Curves over the stroke of a mechanism or a caliper ------------------------------------------------------
 
 
-class LoadsOverStroke(NamedTuple):
-    """Loads over a stroke.
+def loads_over_stroke(
+    axis: ChartAxis,
+    travel: np.ndarray,
+    curves: Sequence[tuple[Load, str, np.ndarray]],
+    place: float,
+    locked: Mapping[str, np.ndarray],
+) -> list[Chart]:
+    """Charts of forces and of moments over a stroke, as far as there are any.
 
     Parameters
     ----------
+    axis : ChartAxis
+        Axis of the driver's travel.
     travel : ndarray, shape (S,)
-        Travel of the driver, in `unit`.
-    driver, unit : str
-        Name of the driver, and the unit of its travel.
-    forces, moments : mapping of str to ndarray, shape (S,)
-        Loads by name [N], [N m].
+        Travel of the driver, in the axis's unit.
+    curves : sequence of (Load, str, ndarray)
+        Loads, names of the curves, and sizes (S,) [N, N m].
     place : float
-        Travel to mark, in `unit`.
+        Travel to mark.
     locked : mapping of str to ndarray of bool, shape (S,)
-        Where the mechanism locks, by the name of the load.
+        Where the mechanism locks, by the name of the curve: points on the axis of zero force.
     """
-
-    travel: np.ndarray
-    driver: str
-    unit: str
-    forces: Mapping[str, np.ndarray]
-    moments: Mapping[str, np.ndarray]
-    place: float
-    locked: Mapping[str, np.ndarray] = MappingProxyType({})
-
-    def charts(self) -> list[Chart]:
-        """Charts of the forces and of the moments, as far as there are any."""
-        return [
-            self._chart(*each)
-            for each in (("Forces", "force", "N", self.forces), ("Moments", "moment", "N m", self.moments))
-            if each[-1]
-        ]
-
-    def _chart(self, title: str, what: str, unit: str, loads: Mapping[str, np.ndarray]) -> Chart:
-        return Chart(
-            f"{title} of the loads over the stroke",
-            travel_axis(f"travel of {self.driver}", self.unit, self.travel),
-            ChartAxis(f"{what} of the load", unit),
-            named_curves(self.travel, loads),
-            [*self._locked(loads)],
-            cursor=self.place,
-        )
-
-    def _locked(self, loads: Mapping[str, np.ndarray]) -> Iterator[ChartPoints]:
-        """Yield points on the axis of zero force where the mechanism locks."""
-        for name in loads:
-            if name in self.locked:
-                at = self.travel[self.locked[name]].tolist()
-                yield ChartPoints(f"{name}: locks", [(x, 0.0, f"{name}: locks") for x in at], "inside")
+    charts = []
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        if shown := {name: size for load, name, size in curves if load.unit == unit}:
+            points = [
+                ChartPoints(
+                    f"{n}: locks", [(x, 0.0, f"{n}: locks") for x in travel[locked[n]].tolist()], "inside"
+                )
+                for n in shown
+                if n in locked
+            ]
+            title, y = f"{what.title()}s of the loads over the stroke", ChartAxis(f"{what} of the load", unit)
+            charts.append(Chart(title, axis, y, named_curves(travel, shown), points, cursor=place))
+    return charts
 
 
-def mechanism_figure(drawing: Drawing, loads: LoadsOverStroke | None) -> Figure:
-    """Draw a mechanism and its loads over the stroke.
+def mechanism_figure(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
+    """Draw a mechanism and, beside it, charts of its loads over the stroke.
 
     Parameters
     ----------
     drawing : Drawing
         From `brakes.drawings.mechanism.open_and_closed`.
-    loads : LoadsOverStroke, optional
-        Its loads, forces and moments in an axes each.
+    charts : sequence of Chart
+        From `loads_over_stroke`; none if there is no stroke.
     """
     from matplotlib.figure import Figure
 
     from beamdyn.common.drawing.on_axes import draw_in
 
-    width = 12.0 if loads else 7.5
+    width = 12.0 if charts else 7.5
     figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
-    draw_in(figure, (0.005, 0.01, (6.2 if loads else width) / width - 0.01, 0.98), drawing)
-    if loads is not None:
-        charts = loads.charts()
+    draw_in(figure, (0.005, 0.01, (6.2 if charts else width) / width - 0.01, 0.98), drawing)
+    if charts:
         plot_charts_of_one_x(figure, charts, 7.0 / width, [1.0] * len(charts))
     return figure
 

@@ -105,16 +105,8 @@ class Truck:
         ahead = "it is ahead of the front wheel: the truck tips over it"
         refuse(x <= least, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
         behind = "it is behind the rear wheel, at wheelbase = {limit}"
-        refuse(
-            x >= self.wheelbase - least,
-            f"x of {name}",
-            x,
-            "m",
-            behind,
-            remedy,
-            limit=self.wheelbase,
-            other="empty_cg",
-        )
+        late, length = x >= self.wheelbase - least, self.wheelbase
+        refuse(late, f"x of {name}", x, "m", behind, remedy, limit=length, other="empty_cg")
         low = "it is below the ground (-front_wheel_radius)"
         refuse(y + self.front_wheel_radius <= least, f"y of {name}", y, "m", low, remedy, other="empty_cg")
 

@@ -45,16 +45,11 @@ def node_at(system: System, y: np.ndarray, before: np.ndarray) -> Node:
     joints, loads = rows.gradient[0, : system.constraints], list(system.loads.values())
     tangent = np.linalg.svd(joints)[2][-1]
     tangent = tangent if tangent @ before > 0 else -tangent
-    regularity = _regularity(np.vstack((joints, tangent)))
+    matrix, regularity = np.vstack((joints, tangent)), 1.0
+    if matrix.shape[0] == matrix.shape[1]:
+        size = np.linalg.svd(matrix, compute_uv=False)
+        regularity = float(np.linalg.slogdet(matrix).sign * size[-1] / size[0])
     return Node(y, tangent, rows.value[0, loads], rows.gradient[0, loads] @ tangent, regularity)
-
-
-def _regularity(matrix: np.ndarray) -> float:
-    """Smallest singular value over the largest, with the sign of the determinant (1 if not square)."""
-    if matrix.shape[0] != matrix.shape[1]:
-        return 1.0
-    size = np.linalg.svd(matrix, compute_uv=False)
-    return float(np.linalg.slogdet(matrix).sign * size[-1] / size[0])
 
 
 def follow(system: System, node: Node) -> Iterator[Node]:
@@ -73,6 +68,7 @@ def follow(system: System, node: Node) -> Iterator[Node]:
 
 
 def _angle(a: Node, b: Node) -> float:
+    """Angle between the tangents of two nodes [rad]."""
     return float(np.arccos(min(1.0, a.tangent @ b.tangent)))
 
 
@@ -112,7 +108,11 @@ def newton(system: System, y: np.ndarray, equation: Equation, last_step: float =
         residual = np.concatenate((rows.value[:, :m], residual[:, None]), axis=1)
         if tries > 6 and np.abs(residual).max() < _CLOSED:  # convergence is slow where motions branch
             return y
-        step = _step(np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1), residual, system)
+        slope = np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1)
+        try:  # the step of least norm where the matrix is not square and regular
+            step = np.linalg.solve(slope, residual[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            step = decompose(slope, system.rounding).solve(residual)
         y = y - step
         size = np.abs(step).max()
         if size < last_step:
@@ -120,16 +120,6 @@ def newton(system: System, y: np.ndarray, equation: Equation, last_step: float =
         if not size < 10.0:
             break
     raise np.linalg.LinAlgError("Newton's method does not converge")
-
-
-def _step(gradient: np.ndarray, residual: np.ndarray, system: System) -> np.ndarray:
-    """Newton step: by elimination where the matrix is square and regular, else the step of least norm."""
-    if gradient.shape[1] == gradient.shape[2]:
-        try:
-            return np.linalg.solve(gradient, residual[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            pass
-    return decompose(gradient, system.rounding).solve(residual)
 
 
 def find_zero(system: System, a: Node, b: Node, function: Callable[[Node], float]) -> Node:
@@ -178,14 +168,13 @@ def solve_at_sum(system: System, a: Node, b: Node, weight: np.ndarray, target: f
 def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:
     """Coordinates (S, 3 n) at given lengths along the curve from the first node."""
     half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
-    arc = np.concatenate(
-        ([0.0], np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))
-    )  # circles between the nodes
+    arc = np.append(0.0, np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))  # circles between the nodes
     segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(nodes) - 2)
     return close_joints(system, *_between(nodes, segment, (target - arc[segment]) / np.diff(arc)[segment]))
 
 
 def _chords(nodes: list[Node]) -> np.ndarray:
+    """Distances between neighbouring nodes."""
     return np.linalg.norm(np.diff([node.y for node in nodes], axis=0), axis=1)
 
 

@@ -14,7 +14,6 @@ from brakes.planar.statics import (
     Equilibrium,
     balance_at,
     collect_result,
-    forces_on_bodies,
     solve,
     tell_where,
 )
@@ -54,6 +53,11 @@ class FrictionalEquilibrium:
     squeeze: Equilibrium
     release: Equilibrium
     without: Equilibrium
+
+    @property
+    def ways(self) -> dict[str, Equilibrium]:
+        """All three by their names: "without friction", "squeezing", "releasing"."""
+        return {"without friction": self.without, "squeezing": self.squeeze, "releasing": self.release}
 
 
 def solve_with_friction(
@@ -108,22 +112,16 @@ def solve_with_friction(
             f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
             f"{np.max(without.mobility)}, and {without.message}"
         )
-    balance = balance_at(mechanism, position)
-    sliding = _sliding(mechanism.system, balance, driver)
-    squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
-    return FrictionalEquilibrium(squeeze, release, without)
-
-
-def _sliding(system: System, balance: Balance, driver: str) -> np.ndarray:
-    """Signs of the sliding velocities (S, F) while the driver's coordinate grows."""
+    balance, system = balance_at(mechanism, position), mechanism.system
     gradient = balance.rows.gradient
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
-    rate = times(gradient, motion)
-    driven = rate[:, [system.loads[driver]]]
-    slip = rate[:, list(system.friction.values())]
-    still = rank_tolerance(system.rounding)  # velocities are those per unit motion
+    rate = times(gradient, motion)  # velocities are those per unit motion
+    driven, slip = rate[:, [system.loads[driver]]], rate[:, list(system.friction.values())]
     check_moves(system, driver, driven)
-    return np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
+    still = rank_tolerance(system.rounding)
+    sliding = np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)  # while the coordinate grows
+    squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
+    return FrictionalEquilibrium(squeeze, release, without)
 
 
 def _branch(
@@ -137,27 +135,36 @@ def _branch(
     unpressed, jams = _jams_when_disturbed(system, balance, start, law)
     law = np.where(unpressed, 0.0, law)
     multiplier, jammed = _newton(system, balance, start, law)
-    reversed_ = _reversed(system, load, start, multiplier) & ~jammed
+    # Where a load that is not zero without friction acts the other way with it.
+    zero = rank_tolerance(system.rounding) * np.maximum(*(np.abs(x).max(axis=1) for x in (start, multiplier)))
+    reversed_ = (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
     multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
     jammed |= kept <= rank_tolerance(system.rounding)  # as near as this, rounding would decide
-    reversed_ &= ~jammed
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
+    if (jams & ~jammed).any():
+        warning = _warn_of_jamming(mechanism, unpressed, jams & ~jammed)
+        result = replace(result, warnings=(*result.warnings, warning))
     name = mechanism.loads[load - system.constraints].name
-    jams &= ~jammed
-    if jams.any():
-        result = replace(
-            result, warnings=(*result.warnings, _warn_of_jamming(mechanism, unpressed[jams], jams))
+    names, words = join_names(map(repr, mechanism.friction)) if mechanism.friction else "", []
+    if jammed.any():
+        words.append(
+            f"self-locking{tell_where(jammed)}: with the friction of {names} no size of {name!r} moves the "
+            "mechanism this way; reduce friction or the radius of the pivots"
         )
-    words = _explain(name, list(mechanism.friction), jammed, reversed_)
+    if (reversed_ := reversed_ & ~jammed).any():
+        words.append(
+            f"self-locking{tell_where(reversed_)}: the friction of {names} holds the mechanism, and {name!r} "
+            "has to act the other way to move it this way"
+        )
     if not words:
         return result
     if set(result.open_or_slack) - {name}:  # a cable that would have to push back is what locks
-        return replace(result, message=f"{result.message}; {words}")
-    return replace(result, status="self-locking", message=words)
+        return replace(result, message="; ".join((result.message, *words)))
+    return replace(result, status="self-locking", message="; ".join(words))
 
 
 def _jams_when_disturbed(
@@ -181,25 +188,12 @@ def _jams_when_disturbed(
         for sense in (-1.0, 1.0):
             offset = np.zeros((len(start), system.size))
             offset[:, [coordinate]] = sense * size
-            jams |= _jams_by(system, balance, multiplier, law, unpressed, offset)
+            without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
+            pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
+            if pressed.any():  # what stays unpressed has a direction of rounding
+                rubbing = np.where(unpressed & ~pressed, 0.0, law)
+                jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
-
-
-def _jams_by(
-    system: System,
-    balance: Balance,
-    start: np.ndarray,
-    law: np.ndarray,
-    unpressed: np.ndarray,
-    offset: np.ndarray,
-) -> np.ndarray:
-    """Where (S,) forces (S, 3 n) on the bodies press an unpressed joint so that the mechanism jams."""
-    without = _newton(system, balance, start, np.where(unpressed, 0.0, law), offset)[0]
-    pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-    if not pressed.any():
-        return np.zeros(len(start), bool)
-    rubbing = np.where(unpressed & ~pressed, 0.0, law)  # what stays unpressed has a direction of rounding
-    return pressed.any(axis=1) & _newton(system, balance, start, rubbing, offset)[1]
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
@@ -216,7 +210,8 @@ def _rounding(system: System) -> float:
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> Statement:
-    names = [name for k, name in enumerate(mechanism.friction) if unpressed[:, k].any()]
+    """Warning of frictions (S, F) that press with no force where (S,) the least offset jams the mechanism."""
+    names = [name for k, name in enumerate(mechanism.friction) if unpressed[jams, k].any()]
     press = "press" if len(names) > 1 else "presses"
     remedy = "reduce friction, or guide it over a greater length"
     return Statement(
@@ -227,29 +222,6 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
         quantity=", ".join(names),
         remedy=remedy,
     )
-
-
-def _reversed(system: System, load: int, start: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
-    """Where a load that is not zero without friction acts the other way with it, shape (S,)."""
-    largest = np.maximum(np.abs(start).max(axis=1), np.abs(multiplier).max(axis=1))
-    zero = rank_tolerance(system.rounding) * largest
-    return (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
-
-
-def _explain(load: str, rubbing: list[str], jammed: np.ndarray, reversed_: np.ndarray) -> str:
-    """Why the mechanism locks itself; empty if it does not."""
-    words, names = [], join_names(map(repr, rubbing)) if rubbing else ""
-    if jammed.any():
-        words.append(
-            f"self-locking{tell_where(jammed)}: with the friction of {names} no size of {load!r} moves the "
-            "mechanism this way; reduce friction or the radius of the pivots"
-        )
-    if reversed_.any():
-        words.append(
-            f"self-locking{tell_where(reversed_)}: the friction of {names} holds the mechanism, and {load!r} "
-            "has to act the other way to move it this way"
-        )
-    return "; ".join(words)
 
 
 def _newton(
@@ -292,4 +264,4 @@ def _friction(
         pressed = size > _rounding(system) * largest  # below, the direction is rounding
         direction = np.where(pressed, law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY), 0.0)
         slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
-    return forces_on_bodies(balance, multiplier), slope
+    return balance.forces_on_bodies(multiplier), slope

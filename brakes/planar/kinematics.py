@@ -25,9 +25,9 @@ from brakes.planar.system import (
     System,
     check_moves,
     decompose,
-    explain_mobility,
+    describe,
     join_names,
-    moving_bodies,
+    names_of_moving,
     rank_tolerance,
     times,
 )
@@ -157,7 +157,13 @@ def assemble(mechanism: Mechanism) -> Position:
             break
         y, rows = y - step, trial
     if np.abs(rows.value[:, :m]).max(initial=0.0) > _rounding(system):
-        raise AssemblyError(_gaps(system, rows.value[0]))
+        gaps = {name: np.linalg.norm(rows.value[0, own]) for name, own in system.joints.items()}
+        worst = max(gaps, key=lambda name: gaps[name])
+        apart = f"{worst!r} stays {gaps[worst] * system.length:.6g} m apart"
+        raise AssemblyError(
+            f"the joints cannot be brought together: {apart}; "
+            "check its points and the lengths of the bars and cables in its loop"
+        )
     return Position(mechanism, y[0])
 
 
@@ -207,9 +213,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     >>> run.position.angle("lever").round(9)
     array([0. , 0.1, 0.2])
     """
-    check_mechanism(mechanism)
-    _check_coordinate(mechanism, driver)
-    system, start, k = _start(mechanism, driver)
+    system, start, k = _start(mechanism, driver, driver)
     target = real_array("values", values) / _units(system)[k]
     if not target.size:
         raise ValueError("values is empty: give at least one value of the driver")
@@ -228,7 +232,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
         ) from None
     if len(nodes) > 1:  # the curve followed ends past the values
         nodes[0], nodes[-1] = (node_at(system, y[i], nodes[end].tangent) for i, end in ((-2, 0), (-1, -1)))
-    return _finish(mechanism, driver, start, nodes, y[:-2])
+    return _finish(mechanism, k, start, nodes, y[:-2])
 
 
 def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -> Stroke:
@@ -267,8 +271,7 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     >>> np.hypot(*path.position.point("crank", (0.0, 0.04)).T).round(9)  # the pin B stays on its circle
     array([0.04, 0.04, 0.04, 0.04, 0.04])
     """
-    check_mechanism(mechanism)
-    system, start, _ = _start(mechanism, driver)
+    system, start, k = _start(mechanism, driver)
     s = np.linspace(
         0.0, positive("length", length, "m") / system.length, count("points", points, 2, MOST_POSITIONS)
     )
@@ -280,7 +283,7 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
             break
     y = solve_at_arc_lengths(system, nodes, s)
     nodes[-1] = node_at(system, y[-1], nodes[-1].tangent)
-    return _finish(mechanism, driver, start, nodes, y)
+    return _finish(mechanism, k, start, nodes, y)
 
 
 def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, float], value: float) -> float:
@@ -306,17 +309,19 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
     ValueError
         If the mobility is not 1, the driver does not move, or a load has no coordinate.
     """
-    check_mechanism(mechanism)
-    for name in (driver, *weights):
-        _check_coordinate(mechanism, name)
-    system, start, k = _start(mechanism, driver)
+    system, start, k = _start(mechanism, driver, driver, *weights)
     unit = _units(system)
     weight = np.array([weights.get(name, 0.0) for name in system.loads]) * unit
     if weight @ start.rate <= 0:
         raise OppositeTravelError(f"the travel of {join_names(weights)} falls while {driver!r} grows")
     target, before = float(weight @ start.value) + value, start
     for node in follow(system, start):
-        last = _before_turning(system, before, node, (np.eye(len(unit))[k], weight))
+        turning = [
+            find_zero(system, before, node, lambda n, w=w: float(n.rate @ w))
+            for w in (np.eye(len(unit))[k], weight)
+            if node.rate @ w <= 0
+        ]
+        last = min(turning, key=lambda n, a=before: float((n.y - a.y) @ a.tangent), default=node)
         slack = 0.0 if last is node else _rounding(system) * system.length
         if weight @ last.value >= target - slack:
             y = solve_at_sum(system, before, last, weight, min(target, float(weight @ last.value)))
@@ -332,27 +337,27 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
     raise AssertionError("a curve is followed until it ends with an error")
 
 
-def _before_turning(system: System, a: Node, b: Node, sums: Sequence[np.ndarray]) -> Node:
-    """The second of two nodes, or where the first of these sums of coordinates turns back before it."""
-    turning = [find_zero(system, a, b, lambda n, w=w: float(n.rate @ w)) for w in sums if b.rate @ w <= 0]
-    return min(turning, key=lambda node: float((node.y - a.y) @ a.tangent), default=b)
+def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, Node, int]:
+    """The system, the assembled position with the driver growing, and the driver's place among the loads.
 
-
-def _check_coordinate(mechanism: Mechanism, name: str) -> None:
-    if not mechanism.load(name).has_coordinate:
-        raise ValueError(f"driver {name!r} follows its body and has no coordinate: drive another load")
-
-
-def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
-    """The system, the assembled position with the driver growing, and the driver's place among the loads."""
+    Loads that are measured must have a coordinate.
+    """
+    check_mechanism(mechanism)
+    for name in measured:
+        if not mechanism.load(name).has_coordinate:
+            raise ValueError(f"driver {name!r} follows its body and has no coordinate: drive another load")
     mechanism.load(driver)
     system = mechanism.system
     y = assemble(mechanism).batch
     k = list(system.loads).index(driver)
-    constraints = decompose(system.rows(y).gradient[:, : system.constraints], system.rounding)
-    free = constraints.null()
-    if free.shape[1] != 1:
-        raise ValueError(explain_mobility(system, y, free))
+    free = decompose(system.rows(y).gradient[:, : system.constraints], system.rounding).null()
+    if not (mobility := free.shape[1]):
+        raise ValueError("the mechanism does not move: mobility 0; a stroke needs 1: remove a joint")
+    if mobility > 1:
+        raise ValueError(
+            f"the mechanism has mobility {mobility}; a stroke needs 1: {describe(system, y, free)}; "
+            f"add {mobility - 1} joint{'s' if mobility > 2 else ''} (a rotation lock, a bar, a contact)"
+        )
     node = node_at(system, y[0], free[:, 0])
     check_moves(system, driver, node.rate[k])
     return system, node if node.rate[k] > 0 else node.reversed(), k
@@ -360,19 +365,17 @@ def _start(mechanism: Mechanism, driver: str) -> tuple[System, Node, int]:
 
 def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str) -> list[Node]:
     """Nodes from the first to where coordinate k has moved by a value."""
-    system = mechanism.system
-    wanted = _amount(mechanism, driver, value * _units(system)[k], 6)
+    system, unit = mechanism.system, _units(mechanism.system)[k]
+    wanted = _amount(mechanism, driver, value * unit, 6)
     nodes, target, sense = [start], start.value[k] + value, np.sign(value)
     for node in follow(system, start) if value else ():
         if node.rate[k] * sense <= 0:
             turning = find_zero(system, nodes[-1], node, lambda n: n.rate[k])
             if (target - turning.value[k]) * sense > _rounding(system):
-                reached = (turning.value[k] - start.value[k]) * _units(system)[k]
-                beside = (
-                    "just short of it, " if f"{reached:.4g}" == f"{value * _units(system)[k]:.4g}" else ""
-                )
+                reached = (turning.value[k] - start.value[k]) * unit
+                near = f"{reached:.4g}" == f"{value * unit:.4g}"
                 raise OutOfReachError(
-                    f"driver {driver!r} cannot reach {wanted}: it turns back {beside}at "
+                    f"driver {driver!r} cannot reach {wanted}: it turns back {'just short of it, ' * near}at "
                     f"{_amount(mechanism, driver, reached)} (toggle position)",
                     "stay below it, drive another load, or follow the motion past it with trace",
                 )
@@ -385,42 +388,34 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
     return nodes
 
 
-def _finish(mechanism: Mechanism, driver: str, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
+def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
+    """The stroke at coordinates y (S, 3 n) of a driver, by its place among the loads."""
     system = mechanism.system
-    rows, m = system.rows(y), system.constraints
+    rows, m, unit = system.rows(y), system.constraints, _units(system)
     constraints = decompose(rows.gradient[:, :m], system.rounding)
-    tangent = constraints.vt[:, -1]
-    names, k = list(system.loads), list(system.loads).index(driver)
-    index = list(system.loads.values())
-    rate = times(rows.gradient[:, index], tangent)
-    moves = np.abs(rate[:, [k]]) > rank_tolerance(system.rounding)
-    single = (constraints.rank == system.size - 1)[:, None] & moves
+    names, index = [*system.loads], [*system.loads.values()]
+    rate = times(rows.gradient[:, index], constraints.vt[:, -1])
+    still = rank_tolerance(system.rounding)  # of rates per unit of motion, and of singular values
+    single = (constraints.rank == system.size - 1)[:, None] & (np.abs(rate[:, [k]]) > still)
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
-    unit = _units(system)
     known = [load.has_coordinate for load in mechanism.loads]
     travel = np.where(known, (rows.value[:, index] - start.value) * unit, np.nan)
+    reversing = {load: lambda n, j=j: n.rate[j] for j, load in enumerate(names)}
+    toggles = [
+        _toggle(mechanism, node, float((node.value[k] - start.value[k]) * unit[k]), names[k], load)
+        for load, function in (*reversing.items(), (None, lambda n: n.regularity))
+        for node in _zeros(system, nodes, function, still)
+    ]
     return Stroke(
-        driver=driver,
+        driver=names[k],
         values=travel[:, k].copy(),
         position=Position(mechanism, y),
         travel=dict(zip(names, travel.T, strict=True)),
         ratio=dict(zip(names, (ratio * unit / unit[k]).T, strict=True)),
         mobility=system.size - constraints.rank,
-        toggles=_toggles(mechanism, nodes, start, k),
+        toggles=tuple(toggles),
         closure=float(np.abs(rows.value[:, :m]).max(initial=0.0)),
     )
-
-
-def _toggles(mechanism: Mechanism, nodes: list[Node], start: Node, k: int) -> tuple[Toggle, ...]:
-    """Positions between the nodes at which a load's coordinate reverses, or motions branch."""
-    system, toggles = mechanism.system, []
-    still = rank_tolerance(system.rounding)  # of rates per unit of motion, and of singular values
-    for j, load in enumerate(system.loads):
-        for node in _zeros(system, nodes, lambda n, j=j: n.rate[j], still):
-            toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, load))
-    for node in _zeros(system, nodes, lambda n: n.regularity, still):
-        toggles.append(_toggle(mechanism, node, node.value[k] - start.value[k], k, None))
-    return tuple(toggles)
 
 
 def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float], still: float) -> list[Node]:
@@ -435,15 +430,14 @@ def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float],
     return [find_zero(system, nodes[signed[i]], nodes[signed[i + 1]], function) for i in changes]
 
 
-def _toggle(mechanism: Mechanism, node: Node, moved: float, k: int, load: str | None) -> Toggle:
-    value = float(moved * _units(mechanism.system)[k])
-    there = f"at driver value {_amount(mechanism, [*mechanism.system.loads][k], value, 6)}"
-    position = Position(mechanism, node.y)
+def _toggle(mechanism: Mechanism, node: Node, value: float, driver: str, load: str | None) -> Toggle:
+    """The toggle position of a load, or where motions branch, at a value of the driver [m or rad]."""
+    position, there = Position(mechanism, node.y), f"at driver value {_amount(mechanism, driver, value, 6)}"
     if load is None:
         message = f"motions branch {there}: the mechanism may leave the drawn one there"
         return Toggle(None, value, position, (), message)
-    moving = moving_bodies(node.tangent[:, None])
-    still = tuple(name for name, moves in zip(mechanism.bodies, moving, strict=True) if not moves)
+    moving = names_of_moving(mechanism.system, node.tangent[:, None])
+    still = tuple(name for name in mechanism.bodies if name not in moving)
     message = f"toggle position of {load!r} {there}: its motion reverses"
     message += f"; {join_names(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
     return Toggle(load, value, position, still, message)
@@ -457,12 +451,3 @@ def _units(system: System) -> np.ndarray:
 def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> str:
     """How far the coordinate of a load has moved, with its SI unit."""
     return f"{moved:.{digits}g} {'rad' if mechanism.load(load).is_couple else 'm'}"
-
-
-def _gaps(system: System, value: np.ndarray) -> str:
-    gap = {name: float(np.linalg.norm(value[rows]) * system.length) for name, rows in system.joints.items()}
-    worst = max(gap, key=lambda name: gap[name])
-    return (
-        f"the joints cannot be brought together: {worst!r} stays {gap[worst]:.6g} m apart; "
-        "check its points and the lengths of the bars and cables in its loop"
-    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +11,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import kind, set_fields, several
 from brakes.planar.part import Joint, Load, Part, Shape
 from brakes.planar.rows import GROUND, FrictionLaw, Point, suggest
-from brakes.planar.system import System, build
+from brakes.planar.system import System
 
 
 @dataclass(frozen=True)
@@ -58,10 +57,16 @@ class Mechanism:
             set_fields(self, **{key: several(key, getattr(self, key), wanted)})
         if not self.bodies or GROUND in self.bodies:
             raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
-        _unique("body", self.bodies)
-        _unique("joint or load", [part.name for part in self.parts])
+        for what, names in (("body", self.bodies), ("joint or load", [part.name for part in self.parts])):
+            if twice := [name for name, times in Counter(names).items() if times > 1]:
+                raise ValueError(f"{what} {twice[0]!r} occurs twice: give each its own name")
         for part in self.parts:
-            _check_bodies(part.title, part.acts_on, self.bodies)
+            if unknown := [name for name in part.acts_on if name not in (*self.bodies, GROUND)]:
+                remedy = suggest(unknown[0], (*self.bodies, GROUND))
+                raise ValueError(f"{part.title} is on body {unknown[0]!r}, which does not exist; {remedy}")
+            if len(set(part.acts_on)) == 1:
+                alone = f"{part.title} acts on {part.acts_on[0]!r} alone"
+                raise ValueError(f"{alone}: name two different bodies, one of them movable")
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -82,7 +87,7 @@ class Mechanism:
     def system(self) -> System:
         """Its rows as arrays."""
         joints = {joint.name: joint.rows() for joint in self.joints}
-        return build(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
+        return System(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
 
     @cached_property
     def shapes(self) -> tuple[tuple[str, Shape], ...]:
@@ -173,19 +178,3 @@ class Position:
         """Angle by which a body has turned from the drawing [rad], shape () or (S,)."""
         angle = self.mechanism.system.angle(self.batch, body)
         return angle.reshape(self.coordinates.shape[:-1])
-
-
-def _unique(what: str, names: Iterable[str]) -> None:
-    twice = [name for name, times in Counter(names).items() if times > 1]
-    if twice:
-        raise ValueError(f"{what} {twice[0]!r} occurs twice: give each its own name")
-
-
-def _check_bodies(key: str, names: tuple[str, ...], bodies: tuple[str, ...]) -> None:
-    for name in names:
-        if name != GROUND and name not in bodies:
-            raise ValueError(
-                f"{key} is on body {name!r}, which does not exist; {suggest(name, (*bodies, GROUND))}"
-            )
-    if len(set(names)) == 1:
-        raise ValueError(f"{key} acts on {names[0]!r} alone: name two different bodies, one of them movable")

@@ -5,8 +5,8 @@ those of a unit multiplier (a joint) or of a unit magnitude (a load).  Each kind
 
 - `is_couple`: whether it is a couple [N m] on an angle [rad], rather than a force [N] on a length [m];
 - `bodies`, on which it acts, and `ends`, its points, which set the scales of the mechanism;
-- `arrays`, the class that evaluates all rows of its kind at once, and `entries`, what one row contributes to
-  the columns of its arrays after its index;
+- `add`, which evaluates all rows of its kind at once from columns, and `entries`, what one row contributes to
+  these after its index;
 - `constant`: the part of its value that does not depend on the position, lengths over that of the mechanism;
 - `effects`: what it does to a body at a given size, for free-body diagrams.
 """
@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import difflib
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple, Protocol
 
@@ -68,7 +70,7 @@ def suggest(name: object, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(map(repr, known))}"
 
 
-# All rows of one kind as arrays, evaluated at many positions at once -------------------------------------
+# All rows of one kind, evaluated at many positions at once ------------------------------------------------
 
 
 _TINY = 1e-200  # keeps a direction finite where two points of a path meet
@@ -94,105 +96,6 @@ class Totals(NamedTuple):
     couple: np.ndarray
 
 
-class Lines(NamedTuple):
-    """Arrays of `Line`: rows, bodies and frames (indices), arms in the bodies and normals (complex)."""
-
-    row: np.ndarray
-    body: np.ndarray
-    other: np.ndarray
-    frame: np.ndarray
-    arm: np.ndarray
-    arm_other: np.ndarray
-    normal: np.ndarray
-
-    def add(self, pose: Pose, totals: Totals) -> None:
-        """n.(p - o), with the couple n' x (p - o) on the body with which n turns."""
-        value, force, couple = totals
-        row, a, b, frame = self[:4]
-        arm, arm_other, normal = (
-            pose.spin[k] * vector[:, None] for k, vector in zip((a, b, frame), self[4:], strict=True)
-        )
-        gap = pose.centre[a] + arm - pose.centre[b] - arm_other
-        value[row] += np.real(normal.conj() * gap)
-        force[row, a] += normal
-        couple[row, a] += np.imag(arm.conj() * normal)
-        force[row, b] -= normal
-        couple[row, b] -= np.imag(arm_other.conj() * normal)
-        # A force that follows its body (frame = body) is not a gradient: it has no such couple.
-        couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
-
-
-class Segments(NamedTuple):
-    """Arrays of the segments of `Path`: rows, bodies (indices) and arms (complex) of their two ends."""
-
-    row: np.ndarray
-    body: np.ndarray
-    other: np.ndarray
-    arm: np.ndarray
-    arm_other: np.ndarray
-
-    def add(self, pose: Pose, totals: Totals) -> None:
-        """Minus the length of the path, whose segments pull their ends together."""
-        value, force, couple = totals
-        row, a, b, arm, arm_other = self
-        arm, arm_other = pose.spin[a] * arm[:, None], pose.spin[b] * arm_other[:, None]
-        span = pose.centre[b] + arm_other - pose.centre[a] - arm
-        length = np.maximum(np.abs(span), _TINY)
-        pull = span / length
-        np.add.at(value, row, -length)  # a path may have several segments on one body: not +=
-        np.add.at(force, (row, a), pull)
-        np.add.at(force, (row, b), -pull)
-        np.add.at(couple, (row, a), np.imag(arm.conj() * pull))
-        np.add.at(couple, (row, b), -np.imag(arm_other.conj() * pull))
-
-
-class Turns(NamedTuple):
-    """Arrays of `Turn`: rows, bodies (indices) and ratios of their angles."""
-
-    row: np.ndarray
-    body: np.ndarray
-    other: np.ndarray
-    ratio: np.ndarray
-
-    def add(self, pose: Pose, totals: Totals) -> None:
-        """Angle - ratio * other angle; what a gear does not pass on, its housing on the ground takes."""
-        value, _, couple = totals
-        row, a, b, ratio = self
-        ratio = ratio[:, None]
-        value[row] += pose.angle[a] - ratio * pose.angle[b]
-        couple[row, a] += 1.0
-        couple[row, b] -= ratio
-        couple[row, -1] += ratio - 1.0
-
-
-class Rounds(NamedTuple):
-    """Arrays of `Round`: rows, bodies (indices), arms in the bodies, directions to the normal (complex)."""
-
-    row: np.ndarray
-    body: np.ndarray
-    other: np.ndarray
-    arm: np.ndarray
-    arm_other: np.ndarray
-    direction: np.ndarray
-
-    def add(self, pose: Pose, totals: Totals) -> None:
-        """|p - c| where the row is normal to the face, 0 where it is tangential; forces act at p on both."""
-        value, force, couple = totals
-        row, a, b, arm, arm_other, direction = self
-        arm = pose.spin[a] * arm[:, None]
-        span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * arm_other[:, None]
-        length = np.maximum(np.abs(span), _TINY)
-        push = direction[:, None] * span / length
-        value[row] += np.real(direction)[:, None] * length
-        force[row, a] += push
-        force[row, b] -= push
-        couple[row, a] += np.imag(arm.conj() * push)
-        couple[row, b] -= np.imag((pose.centre[a] + arm - pose.centre[b]).conj() * push)
-
-
-Arrays = Lines | Segments | Turns | Rounds
-
-
 Arm = Callable[[str, Point], complex]  # from the centre of a body to a point of it, over L
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
 
@@ -209,7 +112,39 @@ class Place(Protocol):
         ...
 
 
-class Line(NamedTuple):
+class _AtPoint(ABC):
+    """A row whose force acts at a point of a body, and back on another body that has a line or a circle."""
+
+    body: str
+    at: Point
+    other: str
+    on: Point
+
+    is_couple = False
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The body of the point and the other one."""
+        return self.body, self.other
+
+    @property
+    def ends(self) -> tuple[End, End]:
+        """The point, and that of the line or the centre of the circle."""
+        return (self.body, self.at), (self.other, self.on)
+
+    @abstractmethod
+    def unit_force(self, place: Place) -> complex:
+        """The force on the body of a unit row."""
+
+    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
+        """A force at the point, and its opposite on the other body."""
+        if body in self.bodies:
+            force = (size if body == self.body else -size) * self.unit_force(place)
+            yield place.point(self.body, self.at), np.array((force.real, force.imag)), 0.0
+
+
+@dataclass(frozen=True)
+class Line(_AtPoint):
     """n.(p - o): distance of a point p of a body from a line through o of another, along its normal n.
 
     A unit row pushes the body along +n.  The normal turns with the body `frame`.
@@ -222,19 +157,6 @@ class Line(NamedTuple):
     frame: str
     normal: Point
 
-    arrays = Lines
-    is_couple = False
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        """The body of the point and that of the line."""
-        return self.body, self.other
-
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """The point and that of the line."""
-        return (self.body, self.at), (self.other, self.on)
-
     def constant(self, length: float) -> float:
         """None."""
         return 0.0
@@ -244,23 +166,93 @@ class Line(NamedTuple):
         bodies = index[self.body], index[self.other], index[self.frame]
         return [(*bodies, arm(self.body, self.at), arm(self.other, self.on), complex(*self.normal))]
 
-    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """A force along the normal at the point, and its opposite on the other body."""
-        if body in self.bodies:
-            angle = place.angle(self.frame)
-            (x, y), cos, sin = self.normal, np.cos(angle), np.sin(angle)
-            normal = np.array((cos * x - sin * y, sin * x + cos * y))
-            yield place.point(self.body, self.at), (size if body == self.body else -size) * normal, 0.0
+    @staticmethod
+    def add(
+        pose: Pose,
+        totals: Totals,
+        row: np.ndarray,
+        a: np.ndarray,
+        b: np.ndarray,
+        frame: np.ndarray,
+        *vectors: Any,
+    ) -> None:
+        """n.(p - o), with the couple n' x (p - o) on the body with which n turns."""
+        value, force, couple = totals
+        turned = (pose.spin[k] * vector[:, None] for k, vector in zip((a, b, frame), vectors, strict=True))
+        arm, arm_other, normal = turned
+        gap = pose.centre[a] + arm - pose.centre[b] - arm_other
+        value[row] += np.real(normal.conj() * gap)
+        force[row, a] += normal
+        couple[row, a] += np.imag(arm.conj() * normal)
+        force[row, b] -= normal
+        couple[row, b] -= np.imag(arm_other.conj() * normal)
+        # A force that follows its body (frame = body) is not a gradient: it has no such couple.
+        couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
+
+    def unit_force(self, place: Place) -> complex:
+        """The normal."""
+        return complex(complex(*self.normal) * np.exp(1j * place.angle(self.frame)))
 
 
-class Path(NamedTuple):
+@dataclass(frozen=True)
+class Round(_AtPoint):
+    """Distance of a point p of a body from a circle about a point c of another, or the sliding along it.
+
+    A unit row pushes the body along n = (p - c)/|p - c|, turned by `direction`, and the other body back, both
+    at p.  Along the circle its gradient is the velocity of p over the surface; its value is 0 there.
+
+    on : tuple of float
+        The centre c.
+    direction : complex
+        1: away from the centre; -1: towards it; 1j: along the circle, anticlockwise.
+    """
+
+    body: str
+    at: Point
+    other: str
+    on: Point
+    radius: float
+    direction: complex
+
+    def constant(self, length: float) -> float:
+        """Minus the radius, where the row is normal to the circle."""
+        return -self.direction.real * self.radius / length
+
+    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
+        """One tuple."""
+        ends = arm(self.body, self.at), arm(self.other, self.on)
+        return [(index[self.body], index[self.other], *ends, self.direction)]
+
+    @staticmethod
+    def add(
+        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, arm: Any, on: Any, way: Any
+    ) -> None:
+        """|p - c| where the row is normal to the face, 0 where it is tangential; forces act at p on both."""
+        value, force, couple = totals
+        arm = pose.spin[a] * arm[:, None]
+        span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * on[:, None]
+        length = np.maximum(np.abs(span), _TINY)
+        push = way[:, None] * span / length
+        value[row] += np.real(way)[:, None] * length
+        force[row, a] += push
+        force[row, b] -= push
+        couple[row, a] += np.imag(arm.conj() * push)
+        couple[row, b] -= np.imag((pose.centre[a] + arm - pose.centre[b]).conj() * push)
+
+    def unit_force(self, place: Place) -> complex:
+        """The normal of the circle at the point, turned by the direction."""
+        out = complex(*(place.point(self.body, self.at) - place.point(self.other, self.on)))
+        return self.direction * out / abs(out)
+
+
+@dataclass(frozen=True)
+class Path:
     """Shortening of a polyline over points of bodies below a length [m]; a unit row pulls it together."""
 
     bodies: tuple[str, ...]
     points: tuple[Point, ...]
     length: float
 
-    arrays = Segments
     is_couple = False
 
     @property
@@ -274,23 +266,35 @@ class Path(NamedTuple):
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
         """One tuple a segment."""
-        return [
-            (index[a], index[b], arm(a, p), arm(b, q))
-            for (a, p), (b, q) in zip(self.ends, self.ends[1:], strict=False)
-        ]
+        return [(index[a], index[b], arm(a, p), arm(b, q)) for (a, p), (b, q) in pairwise(self.ends)]
+
+    @staticmethod
+    def add(
+        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, arm: Any, arm_other: Any
+    ) -> None:
+        """Minus the length of the path, whose segments pull their ends together."""
+        value, force, couple = totals
+        arm, arm_other = pose.spin[a] * arm[:, None], pose.spin[b] * arm_other[:, None]
+        span = pose.centre[b] + arm_other - pose.centre[a] - arm
+        length = np.maximum(np.abs(span), _TINY)
+        pull = span / length
+        np.add.at(value, row, -length)  # a path may have several segments on one body: not +=
+        np.add.at(force, (row, a), pull)
+        np.add.at(force, (row, b), -pull)
+        np.add.at(couple, (row, a), np.imag(arm.conj() * pull))
+        np.add.at(couple, (row, b), -np.imag(arm_other.conj() * pull))
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
         """At each point of the body, the pull towards its neighbours on the path."""
         points = np.array([place.point(*end) for end in self.ends])
         span = np.diff(points, axis=0)
         pull = size * span / np.linalg.norm(span, axis=1, keepdims=True)
-        force = np.vstack((pull, np.zeros(2))) - np.vstack((np.zeros(2), pull))
-        for k, owner in enumerate(self.bodies):
-            if owner == body:
-                yield points[k], force[k], 0.0
+        force = np.diff(np.pad(pull, ((1, 1), (0, 0))), axis=0)
+        yield from ((points[k], force[k], 0.0) for k, owner in enumerate(self.bodies) if owner == body)
 
 
-class Turn(NamedTuple):
+@dataclass(frozen=True)
+class Turn:
     """Angle of a body less `ratio` times that of another and an offset [rad]; a unit row is a couple."""
 
     body: str
@@ -298,7 +302,6 @@ class Turn(NamedTuple):
     ratio: float = 1.0
     offset: float = 0.0
 
-    arrays = Turns
     is_couple = True
     ends = ()
 
@@ -315,60 +318,24 @@ class Turn(NamedTuple):
         """One tuple."""
         return [(index[self.body], index[self.other], self.ratio)]
 
+    @staticmethod
+    def add(
+        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, ratio: np.ndarray
+    ) -> None:
+        """Angle - ratio * other angle; what a gear does not pass on, its housing on the ground takes."""
+        value, _, couple = totals
+        ratio = ratio[:, None]
+        value[row] += pose.angle[a] - ratio * pose.angle[b]
+        couple[row, a] += 1.0
+        couple[row, b] -= ratio
+        couple[row, -1] += ratio - 1.0
+
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
         """A couple; what a gear does not pass on, its housing on the ground takes."""
         share = {self.body: 1.0, self.other: -self.ratio}
         share[GROUND] = share.get(GROUND, 0.0) + self.ratio - 1.0
         if share.get(body):
             yield np.full(2, np.nan), np.zeros(2), size * share[body]
-
-
-class Round(NamedTuple):
-    """Distance of a point p of a body from a circle about a point c of another, or the sliding along it.
-
-    A unit row pushes the body along n = (p - c)/|p - c|, turned by `direction`, and the other body back, both
-    at p.  Along the circle its gradient is the velocity of p over the surface; its value is 0 there.
-
-    direction : complex
-        1: away from the centre; -1: towards it; 1j: along the circle, anticlockwise.
-    """
-
-    body: str
-    at: Point
-    other: str
-    centre: Point
-    radius: float
-    direction: complex
-
-    arrays = Rounds
-    is_couple = False
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        """The body of the point and that of the circle."""
-        return self.body, self.other
-
-    @property
-    def ends(self) -> tuple[End, ...]:
-        """The point and the centre."""
-        return (self.body, self.at), (self.other, self.centre)
-
-    def constant(self, length: float) -> float:
-        """Minus the radius, where the row is normal to the circle."""
-        return -self.direction.real * self.radius / length
-
-    def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """One tuple."""
-        ends = arm(self.body, self.at), arm(self.other, self.centre)
-        return [(index[self.body], index[self.other], *ends, self.direction)]
-
-    def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """A force at the point, and its opposite on the other body."""
-        if body in self.bodies:
-            at = place.point(self.body, self.at)
-            push = self.direction * complex(*(at - place.point(self.other, self.centre)))
-            force = (size if body == self.body else -size) * push / abs(push)
-            yield at, np.array((force.real, force.imag)), 0.0
 
 
 Row = Line | Path | Turn | Round

@@ -18,10 +18,10 @@ from brakes.planar.system import (
     Rows,
     System,
     decompose,
-    describe_loose,
-    describe_near_toggle,
-    describe_self_stress,
+    describe,
+    join_names,
     names_of_moving,
+    rank_tolerance,
     times,
 )
 
@@ -138,6 +138,10 @@ class Balance(NamedTuple):
     given: np.ndarray
     matrix: np.ndarray
 
+    def forces_on_bodies(self, multiplier: np.ndarray) -> np.ndarray:
+        """Generalised forces of multipliers (S, R) on the bodies, (S, 3 n)."""
+        return times(self.rows.gradient.swapaxes(1, 2), multiplier)
+
 
 def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium:
     """Reactions and unknown amplitudes at one position or many.
@@ -181,7 +185,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
     balance = balance_at(mechanism, position)
     forces = decompose(balance.matrix, mechanism.system.rounding)
     multiplier = balance.given.copy()
-    multiplier[:, balance.unknown] = forces.solve(-forces_on_bodies(balance, balance.given))
+    multiplier[:, balance.unknown] = forces.solve(-balance.forces_on_bodies(balance.given))
     return collect_result(position, balance, forces, multiplier)
 
 
@@ -201,11 +205,6 @@ def balance_at(mechanism: Mechanism, position: Position) -> Balance:
     return Balance(rows, index, given, rows.gradient[:, index].swapaxes(1, 2))
 
 
-def forces_on_bodies(balance: Balance, multiplier: np.ndarray) -> np.ndarray:
-    """Generalised forces of multipliers (S, R) on the bodies, (S, 3 n)."""
-    return times(balance.rows.gradient.swapaxes(1, 2), multiplier)
-
-
 def collect_result(
     position: Position,
     balance: Balance,
@@ -218,63 +217,76 @@ def collect_result(
 
     `regularity` (S,) is the smallest singular value of the equations with friction, over the largest.
     """
-    system = position.mechanism.system
+    mechanism, system = position.mechanism, position.mechanism.system
     constraints = decompose(balance.rows.gradient[:, : system.constraints], system.rounding)
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
-    residual = np.abs(forces_on_bodies(balance, multiplier)).max(axis=1) / scale
+    residual = np.abs(balance.forces_on_bodies(multiplier)).max(axis=1) / scale
     unbalanced = (residual > tolerance(system)) & ~np.asarray(jammed)
-    stressed = _in_self_stress(balance, forces)
+    # Multipliers (S, R) that take part in a self-stress are not determined by equilibrium.
+    stressed = np.zeros(multiplier.shape, bool)
+    stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
     shown = np.where(stressed | (unbalanced | jammed)[:, None], np.nan, multiplier)
-    undetermined = _names(system, np.any(stressed[~unbalanced], axis=0))
-    reactions, magnitudes, amplitudes, friction = _forces(position, balance.rows, shown)
-    ways = one_way_parts(position.mechanism.parts)
-    wrong_way = find_wrong_way(ways, magnitudes | amplitudes, tolerance(system) * scale)
-    virtual_work = _virtual_work(system, balance, constraints, multiplier) / scale
+    rows = np.any(stressed[~unbalanced], axis=0)
+    undetermined = [name for name, own in system.joints.items() if rows[own].any()]
+    undetermined += [name for name, row in system.loads.items() if rows[row]]
+    sizes = _sizes(mechanism, balance.rows, shown)
+    ways = one_way_parts(mechanism.parts)
+    wrong_way = find_wrong_way(ways, sizes["magnitudes"] | sizes["amplitudes"], tolerance(system) * scale)
+    # Work of loads and friction on free motions; if there are none, closure on the ground.
+    loads = np.where(np.arange(multiplier.shape[1]) < system.constraints, 0.0, multiplier)
+    work = np.abs(times(constraints.null_rows(), balance.forces_on_bodies(loads))).max(axis=1)
+    received = [np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]]
+    virtual_work = np.where(constraints.rank == system.size, np.maximum(*received), work) / scale
     kept = forces.kept if regularity is None else regularity
     missing = unbalanced | jammed | (kept == 0)  # no forces, or none that are unknown
-    wrong = (system.rounding + residual) / np.where(missing, np.nan, kept)
-    error = np.maximum(wrong, virtual_work)
+    error = np.maximum((system.rounding + residual) / np.where(missing, np.nan, kept), virtual_work)
+    verdict = _verdict(position, constraints, forces, unbalanced, undetermined, wrong_way.values())
+    weak = (
+        f"reactions hang on the last digits of the drawing (smallest singular value {forces.kept.min():.1g}"
+        "): the position is close to a toggle position or to indeterminacy"
+    )
+    arrays: dict[str, Any] = {
+        "mobility": system.size - constraints.rank,
+        "indeterminacy": forces.vt.shape[-1] - forces.rank,
+        "uncontrolled": system.size - forces.rank,
+        "virtual_work": virtual_work,
+        "residual": residual,
+        "error": error,
+        "kept": forces.kept,
+        "dropped": forces.dropped,
+        "multiplier": shown * system.unit,
+    }
+    shape = position.coordinates.shape[:-1]  # without an axis where there is one position alone
     return Equilibrium(
         position=position,
-        reactions=reactions,
-        magnitudes=magnitudes,
-        amplitudes=amplitudes,
-        friction=friction,
-        undetermined=undetermined,
+        **verdict,
+        **{key: {n: v.reshape(shape + v.shape[1:]) for n, v in each.items()} for key, each in sizes.items()},
+        movable=names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
+        undetermined=tuple(undetermined),
         open_or_slack=tuple(wrong_way),
-        virtual_work=_shaped(position, virtual_work),
-        residual=_shaped(position, residual),
-        error=_shaped(position, error),
-        multiplier=_shaped(position, shown * system.unit),
-        **_verdict(position, constraints, forces, unbalanced, undetermined, wrong_way),
-        **_ranks(position, constraints, forces),
+        warnings=(weak,) if forces.kept.min() < _WEAK else (),
+        **{key: values.reshape(shape + values.shape[1:]) for key, values in arrays.items()},
     )
 
 
-def _shaped(position: Position, array: np.ndarray) -> np.ndarray:
-    """An array (S, ...) of positions; without its first axis where there is one position alone."""
-    return array.reshape((*position.coordinates.shape[:-1], *array.shape[1:]))
-
-
-def _in_self_stress(balance: Balance, forces: Decomposition) -> np.ndarray:
-    """Which multipliers (S, R) take part in a self-stress, so that equilibrium does not determine them."""
-    stressed = np.zeros(balance.given.shape, bool)
-    stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
-    return stressed
-
-
-def _ranks(position: Position, constraints: Decomposition, forces: Decomposition) -> dict[str, Any]:
-    """Attributes of an `Equilibrium` that follow from ranks: of the joints, and of all unknown forces."""
-    system = position.mechanism.system
-    unknowns = forces.vt.shape[-1]
+def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
+    """Reactions, their magnitudes, amplitudes and friction, by name, of scaled multipliers (S, R)."""
+    system, physical = mechanism.system, multiplier * mechanism.system.unit
+    reactions, magnitudes = {}, {}
+    for joint in mechanism.joints:
+        own = system.joints[joint.name]
+        magnitudes[joint.name] = joint.size(physical[:, own])
+        if not joint.is_couple:
+            force = (rows.force[:, own, system.bodies[joint.acts_on[0]]] * multiplier[:, own]).sum(axis=1)
+            reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
+    amplitudes, friction = (
+        {name: physical[:, row] for name, row in each.items()} for each in (system.loads, system.friction)
+    )
     return {
-        "mobility": _shaped(position, system.size - constraints.rank),
-        "indeterminacy": _shaped(position, unknowns - forces.rank),
-        "uncontrolled": _shaped(position, system.size - forces.rank),
-        "movable": names_of_moving(system, constraints.null(int(constraints.rank.argmin()))),
-        "kept": _shaped(position, forces.kept),
-        "dropped": _shaped(position, forces.dropped),
-        "warnings": _warnings(forces),
+        "reactions": reactions,
+        "magnitudes": magnitudes,
+        "amplitudes": amplitudes,
+        "friction": friction,
     }
 
 
@@ -298,17 +310,10 @@ def tolerance(system: System) -> float:
     return max(_BALANCED, 1e3 * system.rounding)
 
 
-class WrongWay(NamedTuple):
-    """A contact that would have to pull, or a cable that would have to push: status and sentence."""
-
-    status: str
-    sentence: str
-
-
 def find_wrong_way(
     ways: Mapping[str, OneWay], sizes: Mapping[str, np.ndarray], least: np.ndarray
-) -> dict[str, WrongWay]:
-    """What acts one way only and would have to act the other way, by name.
+) -> dict[str, tuple[str, str]]:
+    """Contacts that would have to pull, and cables that would have to push: status and sentence, by name.
 
     Parameters
     ----------
@@ -325,7 +330,7 @@ def find_wrong_way(
         if (wrong := size < -least).any():
             force = f"{-np.nanmin(size):.6g} N{tell_where(wrong)}"
             sentence = f"{way.noun} {name!r} would have to {way.cannot} with {force}: {way.remedy}"
-            found[name] = WrongWay(way.status, sentence)
+            found[name] = way.status, sentence
     return found
 
 
@@ -344,28 +349,40 @@ def _verdict(
     constraints: Decomposition,
     forces: Decomposition,
     unbalanced: np.ndarray,
-    undetermined: tuple[str, ...],
-    wrong_way: Mapping[str, WrongWay],
+    undetermined: Sequence[str],
+    wrong_way: Iterable[tuple[str, str]],
 ) -> dict[str, Any]:
     """Status, message and loose bodies, as attributes of an `Equilibrium`: those of the worst position."""
     system = position.mechanism.system
     worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
-    loose = forces.left_null(worst)
-    how = describe_loose(system, position.batch[worst], loose) if unbalanced.any() or loose.shape[1] else ""
+    loose, y = forces.left_null(worst), position.batch[worst]
     found: list[tuple[str, str]] = []
+    how = describe(system, y, loose) if unbalanced.any() or loose.shape[1] else ""
+    remedy = "add a joint, or give a load that moves it an unknown amplitude"
     if unbalanced.any():
-        free = constraints.null(worst)
+        free, margin, least = constraints.null(worst), forces.dropped[worst], rank_tolerance(system.rounding)
         if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
-            there, margin = position.batch[worst], float(forces.dropped[worst])
-            found.append(("near a toggle", describe_near_toggle(system, there, loose, margin)))
+            sentence = (
+                f"too near a toggle position to decide whether the loads are in balance: {how} there, which "
+                f"only forces beyond all bounds could stop (smallest singular value {margin:.1g}, at least "
+                f"{least:.1g} is needed); draw it further from that position, or give a load that moves it "
+                "an unknown amplitude"
+            )
+            found.append(("near a toggle", sentence))
         else:
-            found.append(("no equilibrium", f"the loads are not in balance: {how}"))
+            found.append(("no equilibrium", f"the loads are not in balance: {how}; {remedy}"))
     else:
         if undetermined:
-            found.append(("undetermined", describe_self_stress(undetermined)))
+            sentence = (
+                "statically indeterminate: equilibrium alone does not give "
+                f"{join_names(undetermined)}; remove a joint among them, or give a load of unknown amplitude "
+                "its magnitude"
+            )
+            found.append(("undetermined", sentence))
         if loose.shape[1]:
-            found.append(("loose", f"the loads are in balance, but nothing keeps them so: {how}"))
-        found += wrong_way.values()
+            sentence = f"the loads are in balance, but nothing keeps them so: {how}; {remedy}"
+            found.append(("loose", sentence))
+        found += wrong_way
     status, message = combine(found)
     return {"status": status, "message": message, "loose": names_of_moving(system, loose)}
 
@@ -377,8 +394,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
         beside = close_joints(system, y + _BESIDE * motion, motion[None])
     except np.linalg.LinAlgError:  # motions branch here
         return True
-    there = Position(position.mechanism, beside[0])
-    matrix = balance_at(position.mechanism, there).matrix
+    matrix = balance_at(position.mechanism, Position(position.mechanism, beside[0])).matrix
     return int(decompose(matrix, system.rounding).rank[0]) > rank
 
 
@@ -387,49 +403,3 @@ def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
     if not found:
         return "determined", "every reaction and amplitude is determined"
     return found[0][0], "; ".join(sentence for _, sentence in found)
-
-
-def _names(system: System, rows: np.ndarray) -> tuple[str, ...]:
-    """Names of the joints and loads that have one of the rows marked."""
-    joints = [name for name, own in system.joints.items() if rows[own].any()]
-    return (*joints, *(name for name, row in system.loads.items() if rows[row]))
-
-
-def _virtual_work(
-    system: System, balance: Balance, constraints: Decomposition, multiplier: np.ndarray
-) -> np.ndarray:
-    """Work of loads and friction on free motions (S,); if there are none, closure on the ground."""
-    loads = multiplier.copy()
-    loads[:, : system.constraints] = 0.0
-    work = np.abs(times(constraints.null_rows(), forces_on_bodies(balance, loads))).max(axis=1)
-    received = np.stack([np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]])
-    return np.where(constraints.rank == system.size, received.max(axis=0), work)
-
-
-def _forces(position: Position, rows: Rows, multiplier: np.ndarray) -> tuple[dict[str, np.ndarray], ...]:
-    """Reactions, their magnitudes, amplitudes and friction, by name."""
-    system, reactions, magnitudes = position.mechanism.system, {}, {}
-    physical = multiplier * system.unit
-    for joint in position.mechanism.joints:
-        own = system.joints[joint.name]
-        magnitudes[joint.name] = joint.size(physical[:, own])
-        if not joint.is_couple:
-            first = system.bodies[joint.acts_on[0]]
-            force = (rows.force[:, own, first] * multiplier[:, own]).sum(axis=1)
-            reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
-    amplitudes = {name: physical[:, row] for name, row in system.loads.items()}
-    friction = {name: physical[:, row] for name, row in system.friction.items()}
-    return tuple(
-        {name: _shaped(position, values) for name, values in each.items()}
-        for each in (reactions, magnitudes, amplitudes, friction)
-    )
-
-
-def _warnings(forces: Decomposition) -> tuple[str, ...]:
-    """Warning of ill-conditioned positions."""
-    if (weak := forces.kept.min()) >= _WEAK:
-        return ()
-    return (
-        f"reactions hang on the last digits of the drawing (smallest singular value {weak:.1g}): "
-        "the position is close to a toggle position or to indeterminacy",
-    )

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from brakes.planar.rows import GROUND, Arm, Arrays, FrictionLaw, Point, Pose, Row, Totals
+from brakes.planar.rows import GROUND, FrictionLaw, Point, Pose, Row, Totals
 
 # Rank, null spaces and least-squares solutions of many small matrices at once, by singular values --------
 
@@ -98,11 +97,19 @@ class Rows(NamedTuple):
     gradient: np.ndarray
 
 
-@dataclass(frozen=True)
 class System:
     """Arrays of a mechanism; rows are numbered joints first, then loads, then friction.
 
     Parameters
+    ----------
+    bodies : sequence of str
+        Names of the bodies, without the ground.
+    joints, loads : mapping
+        Rows of each joint, and row of each load.
+    friction : mapping
+        Name of the joint and law of each friction.
+
+    Attributes
     ----------
     bodies : dict
         Index of each body; the ground has the last.
@@ -126,44 +133,74 @@ class System:
         Part of each row's value that does not depend on the position.
     unit : ndarray, shape (R,)
         Size [N, N m] of each row over its multiplier: L for a couple, 1 for a force.
-    arrays : list of Arrays
-        The rows of each kind.
+    size, constraints : int
+        Number of coordinates 3 n, and of rows of joints.
+    kinds : list of (callable, list of ndarray)
+        What evaluates the rows of each kind, and the columns that it takes.
     """
 
-    bodies: dict[str, int]
-    joints: dict[str, slice]
-    loads: dict[str, int]
-    friction: dict[str, int]
-    pressing: list[np.ndarray]
-    coefficient: np.ndarray
-    length: float
-    origin: complex
-    centre: np.ndarray
-    radius: np.ndarray
-    rounding: float
-    constant: np.ndarray
-    unit: np.ndarray
-    arrays: list[Arrays]
+    def __init__(
+        self,
+        bodies: Sequence[str],
+        joints: Mapping[str, Sequence[Row]],
+        loads: Mapping[str, Row],
+        friction: Mapping[str, tuple[str, FrictionLaw]],
+    ) -> None:
+        self.bodies = {name: k for k, name in enumerate((*bodies, GROUND))}
+        self.size, first = 3 * len(bodies), 0
+        self.joints: dict[str, slice] = {}
+        for name, rows in joints.items():
+            self.joints[name] = slice(first, first := first + len(rows))
+        self.constraints = first
+        self.loads = {name: first + k for k, name in enumerate(loads)}
+        self.friction = {name: first + len(loads) + k for k, name in enumerate(friction)}
+        laws = [law for _, law in friction.values()]
+        table = [*chain(*joints.values()), *loads.values(), *(law.row for law in laws)]
+        self._set_scales([(self.bodies[body], complex(*at)) for row in table for body, at in row.ends])
+        self.unit = np.array([self.length if row.is_couple else 1.0 for row in table])
+        self.constant = np.array([row.constant(self.length) for row in table])
+        own = [np.arange(self.joints[joint].start, self.joints[joint].stop) for joint, _ in friction.values()]
+        self.pressing = [
+            rows[list(law.pressing or range(len(rows)))] for rows, law in zip(own, laws, strict=True)
+        ]
+        self.coefficient = np.array([law.coefficient for law in laws]) / self.unit[first + len(loads) :]
+        entries = defaultdict(list)
+        for r, row in enumerate(table):
+            entries[type(row)] += [(r, *entry) for entry in row.entries(self.bodies, self._arm)]
+        self.kinds = [
+            (kind.add, [np.array(column) for column in zip(*rows, strict=True)])
+            for kind, rows in entries.items()
+        ]
 
-    @property
-    def size(self) -> int:
-        """Number of coordinates 3 n."""
-        return 3 * (len(self.bodies) - 1)
+    def _set_scales(self, points: Sequence[tuple[int, complex]]) -> None:
+        """Origin, length L, and the centre, radius and rounding of the points (body, place) of each body."""
+        self.origin = complex(np.mean([p for _, p in points])) if points else 0j
+        self.length = max((abs(p - self.origin) for _, p in points), default=0.0) or 1.0
+        self.centre, self.radius = np.zeros(len(self.bodies), complex), np.ones(len(self.bodies))
+        for k in range(len(self.bodies) - 1):
+            own = np.array([(p - self.origin) / self.length for body, p in points if body == k])
+            if own.size:
+                self.centre[k] = own.mean()
+                spread = np.abs(own - self.centre[k]).max()
+                self.radius[k] = spread if spread > _ONE_POINT else 1.0
+        far = 1 + abs(self.origin) / self.length
+        self.rounding = float(np.finfo(float).eps * far / self.radius.min())
 
-    @property
-    def constraints(self) -> int:
-        """Number of rows of joints."""
-        return max((rows.stop for rows in self.joints.values()), default=0)
+    def _arm(self, body: str, at: Point) -> complex:
+        """From the centre of a body to a point of it in the drawing, over L."""
+        return (complex(*at) - self.origin) / self.length - self.centre[self.bodies[body]]
 
     def rows(self, y: np.ndarray) -> Rows:
         """Values and gradients at coordinates y of shape (S, 3 n)."""
-        centre, angle = self._pose(y)
-        pose = Pose(centre, angle, np.exp(1j * angle))
+        moved = np.zeros((len(self.bodies), 3, len(y)))
+        moved[:-1] = y.T.reshape(-1, 3, len(y))
+        angle = moved[:, 2] / self.radius[:, None]
+        pose = Pose(self.centre[:, None] + moved[:, 0] + 1j * moved[:, 1], angle, np.exp(1j * angle))
         value = np.repeat(self.constant[:, None], len(y), axis=1)
         force = np.zeros((len(value), len(self.bodies), len(y)), complex)
         couple = np.zeros(force.shape)
-        for arrays in self.arrays:
-            arrays.add(pose, Totals(value, force, couple))
+        for add, columns in self.kinds:
+            add(pose, Totals(value, force, couple), *columns)
         parts = np.stack((np.real(force), np.imag(force), couple / self.radius[:, None]), axis=-1)
         gradient = parts[:, :-1].transpose(2, 0, 1, 3).reshape(len(y), len(value), self.size)
         return Rows(value.T, force.transpose(2, 0, 1), couple.transpose(2, 0, 1), gradient)
@@ -173,100 +210,15 @@ class System:
         k = self.bodies[body]
         if 3 * k == self.size:  # the ground
             return np.tile(np.array(at, dtype=float), (len(y), 1))
-        arm = (complex(*at) - self.origin) / self.length - self.centre[k]
         # The displacement is added to the drawing, so that a point far from (0, 0) keeps its digits.
         shift = y[:, 3 * k] + 1j * y[:, 3 * k + 1]
-        moved = (shift + arm * (np.exp(1j * self.angle(y, body)) - 1)) * self.length
+        moved = (shift + self._arm(body, at) * (np.exp(1j * self.angle(y, body)) - 1)) * self.length
         return np.array(at) + moved.view(float).reshape(-1, 2)
 
     def angle(self, y: np.ndarray, body: str) -> np.ndarray:
         """Angle of a body [rad], shape (S,)."""
         k = self.bodies[body]
         return y[:, 3 * k + 2] / self.radius[k] if 3 * k < self.size else np.zeros(len(y))
-
-    def _pose(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Centres (complex) and angles of all bodies and the ground, each (n + 1, S)."""
-        moved = np.zeros((len(self.bodies), 3, len(y)))
-        moved[:-1] = y.T.reshape(-1, 3, len(y))
-        return self.centre[:, None] + moved[:, 0] + 1j * moved[:, 1], moved[:, 2] / self.radius[:, None]
-
-
-def build(
-    bodies: Sequence[str],
-    joints: Mapping[str, Sequence[Row]],
-    loads: Mapping[str, Row],
-    friction: Mapping[str, tuple[str, FrictionLaw]],
-) -> System:
-    """Arrays of named rows.
-
-    Parameters
-    ----------
-    bodies : sequence of str
-        Names of the bodies, without the ground.
-    joints, loads : mapping
-        Rows of each joint, and row of each load.
-    friction : mapping
-        Name of the joint and law of each friction.
-    """
-    index = {name: k for k, name in enumerate((*bodies, GROUND))}
-    laws = [law for _, law in friction.values()]
-    table = [*chain(*joints.values()), *loads.values(), *(law.row for law in laws)]
-    slices, first = {}, 0
-    for name, rows in joints.items():
-        slices[name] = slice(first, first := first + len(rows))
-    origin, length, centre, radius, rounding = _scales(table, index)
-
-    def arm(body: str, at: Point) -> complex:
-        return (complex(*at) - origin) / length - centre[index[body]]
-
-    return System(
-        bodies=index,
-        joints=slices,
-        loads={name: first + k for k, name in enumerate(loads)},
-        friction={name: first + len(loads) + k for k, name in enumerate(friction)},
-        pressing=[_pressing(slices[joint], law) for joint, law in friction.values()],
-        coefficient=np.array([law.coefficient / (length if law.row.is_couple else 1.0) for law in laws]),
-        length=length,
-        origin=origin,
-        centre=centre,
-        radius=radius,
-        rounding=rounding,
-        constant=np.array([row.constant(length) for row in table]),
-        unit=np.array([length if row.is_couple else 1.0 for row in table]),
-        arrays=_arrays(table, index, arm),
-    )
-
-
-def _pressing(joint: slice, law: FrictionLaw) -> np.ndarray:
-    """Indices of the rows that make up the force that presses."""
-    rows = np.arange(joint.start, joint.stop)
-    return rows[list(law.pressing)] if law.pressing else rows
-
-
-def _arrays(table: Sequence[Row], index: Mapping[str, int], arm: Arm) -> list[Arrays]:
-    """The rows of each kind as arrays."""
-    entries: dict[type[Arrays], list[tuple[Any, ...]]] = defaultdict(list)
-    for r, row in enumerate(table):
-        entries[row.arrays] += [(r, *entry) for entry in row.entries(index, arm)]
-    return [kind(*map(np.array, zip(*rows, strict=True))) for kind, rows in entries.items()]
-
-
-def _scales(
-    table: Sequence[Row], index: Mapping[str, int]
-) -> tuple[complex, float, np.ndarray, np.ndarray, float]:
-    """Origin, length L, and the centre, radius and rounding of the points of each body."""
-    points = [(index[body], complex(*at)) for row in table for body, at in row.ends]
-    origin = complex(np.mean([p for _, p in points])) if points else 0j
-    length = max((abs(p - origin) for _, p in points), default=0.0) or 1.0
-    centre, radius = np.zeros(len(index), complex), np.ones(len(index))
-    for k in range(len(index) - 1):
-        own = np.array([(p - origin) / length for body, p in points if body == k])
-        if own.size:
-            centre[k] = own.mean()
-            spread = np.abs(own - centre[k]).max()
-            radius[k] = spread if spread > _ONE_POINT else 1.0
-    rounding = np.finfo(float).eps * (1 + abs(origin) / length) / radius.min()
-    return origin, length, centre, radius, rounding
 
 
 # Sentences that say what is loose, undetermined or out of reach ------------------------------------------
@@ -313,51 +265,47 @@ class OutOfReachError(ValueError):
         return f"{self.reason}; {self.remedy}"
 
 
-def moving_bodies(motions: np.ndarray) -> np.ndarray:
-    """Which bodies move in motions of shape (3 n, k): shape (n,)."""
-    size = np.linalg.norm(motions.reshape(len(motions) // 3, 3, motions.shape[1]), axis=(1, 2))
-    return size > _STILL * max(size.max(initial=0.0), 1e-300)
-
-
 def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
     """Names of the bodies that move in motions of shape (3 n, k)."""
-    return tuple(name for name, moves in zip(system.bodies, moving_bodies(motions), strict=False) if moves)
+    size = np.linalg.norm(motions.reshape(len(motions) // 3, 3 * motions.shape[1]), axis=1)
+    moves = size > _STILL * max(size.max(initial=0.0), 1e-300)
+    return tuple(name for name, moving in zip(system.bodies, moves, strict=False) if moving)
 
 
 def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
     """Describe motions (3 n, k) in words; bodies without relative motion are named together."""
-    twists = _twists(system, y, motions)
+    parts, pose = motions.reshape(len(motions) // 3, 3, motions.shape[1]), y.reshape(-1, 3)
+    centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
+    rate = parts[:, 2] / system.radius[:-1, None]
+    # The twist of a body: velocity (complex) of its point at the origin, and angular velocity, (n, 2, k).
+    twists = np.stack((parts[:, 0] + 1j * parts[:, 1] - 1j * rate * centre[:, None], rate), axis=1)
     groups: list[tuple[list[str], np.ndarray]] = []
-    for name, twist, moves in zip(system.bodies, twists, moving_bodies(motions), strict=False):
-        if moves:
-            _join(groups, name, twist)
-    return ", ".join(f"{join_names(names)} {_motion(system, names, twist)}" for names, twist in groups)
+    for name in names_of_moving(system, motions):
+        twist = twists[system.bodies[name]]
+        same = (names for names, other in groups if np.abs(twist - other).max() < 1e-7 * np.abs(other).max())
+        if (names := next(same, None)) is None:
+            groups.append(([name], twist))
+        else:
+            names.append(name)
+    return ", ".join(f"{join_names(names)} {_motion(system, len(names), twist)}" for names, twist in groups)
 
 
-def explain_mobility(system: System, y: np.ndarray, free: np.ndarray) -> str:
-    """Explain why a mechanism with free motions (3 n, k), k other than 1, has no stroke."""
-    k = free.shape[1]
-    if not k:
-        return "the mechanism does not move: mobility 0; a stroke needs 1: remove a joint"
-    return (
-        f"the mechanism has mobility {k}; a stroke needs 1: {describe(system, y, free)}; "
-        f"add {k - 1} joint{'s' if k > 2 else ''} (a rotation lock, a bar, a contact)"
-    )
-
-
-def describe_loose(system: System, y: np.ndarray, motions: np.ndarray) -> str:
-    """Describe what is loose, and the remedy."""
-    return f"{describe(system, y, motions)}; add a joint, or give a load that moves it an unknown amplitude"
-
-
-def describe_near_toggle(system: System, y: np.ndarray, motions: np.ndarray, margin: float) -> str:
-    """Say that rounding decides what holds a mechanism, by which margin, and the remedy."""
-    return (
-        "too near a toggle position to decide whether the loads are in balance: "
-        f"{describe(system, y, motions)} there, which only forces beyond all bounds could stop "
-        f"(smallest singular value {margin:.1g}, at least {rank_tolerance(system.rounding):.1g} is needed); "
-        "draw it further from that position, or give a load that moves it an unknown amplitude"
-    )
+def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
+    """Describe the motions (2, k) of a group of bodies; a single one has a centre or a direction."""
+    real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
+    left, size, _ = np.linalg.svd(real, full_matrices=False)
+    ways = int((size > 1e-7 * size[0]).sum())
+    end = "s" if bodies == 1 else " together"
+    if ways > 1:
+        return f"move{end} in {ways} independent ways"
+    vx, vy, rate = left[:, 0]
+    if abs(rate) < 1e-7:
+        vx, vy = np.array((vx, vy)) * np.sign(vx if abs(vx) > 1e-9 else vy)
+        x, y = (round(float(v), 9) + 0.0 for v in (vx, vy))
+        return f"slide{end} along ({x:.3g}, {y:.3g})"
+    centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
+    x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
+    return f"turn{end} about ({x:.6g}, {y:.6g}) m"
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
@@ -371,51 +319,7 @@ def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
         )
 
 
-def describe_self_stress(names: tuple[str, ...]) -> str:
-    """Say what equilibrium does not determine, and the remedy."""
-    return (
-        f"statically indeterminate: equilibrium alone does not give {join_names(names)}; "
-        "remove a joint among them, or give a load of unknown amplitude its magnitude"
-    )
-
-
 def join_names(names: Iterable[str]) -> str:
     """Names as a list in a sentence."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
-
-
-def _twists(system: System, y: np.ndarray, motions: np.ndarray) -> np.ndarray:
-    """Twist of each body: velocity (complex) of its point at the origin, and angular velocity, (n, 2, k)."""
-    parts = motions.reshape(len(motions) // 3, 3, motions.shape[1])
-    pose = y.reshape(-1, 3)
-    centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
-    rate = parts[:, 2] / system.radius[:-1, None]
-    return np.stack((parts[:, 0] + 1j * parts[:, 1] - 1j * rate * centre[:, None], rate), axis=1)
-
-
-def _join(groups: list[tuple[list[str], np.ndarray]], name: str, twist: np.ndarray) -> None:
-    """Add a body to the group that has its twist, or to a new one."""
-    for names, other in groups:
-        if np.abs(twist - other).max() < 1e-7 * np.abs(other).max():
-            names.append(name)
-            return
-    groups.append(([name], twist))
-
-
-def _motion(system: System, names: list[str], twist: np.ndarray) -> str:
-    """Describe the motions (2, k) of a group; a single one has a centre or a direction."""
-    real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
-    left, size, _ = np.linalg.svd(real, full_matrices=False)
-    ways = int((size > 1e-7 * size[0]).sum())
-    one, together = len(names) == 1, "" if len(names) == 1 else " together"
-    if ways > 1:
-        return f"{'moves' if one else 'move'}{together} in {ways} independent ways"
-    vx, vy, rate = left[:, 0]
-    if abs(rate) < 1e-7:
-        vx, vy = np.array((vx, vy)) * np.sign(vx if abs(vx) > 1e-9 else vy)
-        x, y = (round(float(v), 9) + 0.0 for v in (vx, vy))
-        return f"{'slides' if one else 'slide'}{together} along ({x:.3g}, {y:.3g})"
-    centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
-    x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
-    return f"{'turns' if one else 'turn'}{together} about ({x:.6g}, {y:.6g}) m"

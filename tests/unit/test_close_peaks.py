@@ -10,11 +10,9 @@ import pytest
 from rich.console import Console
 
 import beamdyn as bd
-from beamdyn.linear.choice import model_at_speed
-from beamdyn.linear.excitations import as_excitation
-from beamdyn.linear.modal_sum import modal_sums
-from beamdyn.linear.observations import as_observation
-from beamdyn.linear.transfer import respond
+from beamdyn.linear.convergence import model_at_speed
+from beamdyn.linear.inputs_outputs import as_excitation, as_observation
+from beamdyn.linear.transfer import modal_sums, respond
 from beamdyn.results.of_linear_models import response_table
 
 STRIP = bd.Beam.rectangular(

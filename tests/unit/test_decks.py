@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.files.decks.mode_shapes import fit_mode_polynomials
+from beamdyn.files.decks.audit import fit_mode_polynomials
 from tests.unit import decks_written as written
 
 FILES = {

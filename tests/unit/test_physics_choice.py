@@ -16,7 +16,7 @@ from beamdyn.cli.program import main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.files.scenes import parse_scene
 from beamdyn.modes.model_error.effect_choice import EffectSizes, choose_by
-from beamdyn.scene.physics_choice import PhysicsChoice
+from beamdyn.scene.physics import PhysicsChoice
 
 LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"
 SECOND, STRETCH = "second plane of bending", "stretch"

@@ -15,7 +15,7 @@ from beamdyn.common.edge.one_by_one import one_by_one
 from beamdyn.common.edge.spread_tables import headline
 from beamdyn.common.edge.varied_inputs import parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.spreading.sampling import BLOCKS, SpreadDesigns
+from beamdyn.common.spreading.statistics import BLOCKS, SpreadDesigns
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 from brakes.answers.caliper import MECHANISM
 from brakes.cli import main as brakes

@@ -13,11 +13,11 @@ from beamdyn.cli import NO_ANSWER, main
 from beamdyn.common.edge.spread_tables import headline, spread_table
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results.pictures import COLOURS
-from beamdyn.common.spreading.pictures import draw_scatter
+from beamdyn.common.spreading.result import draw_scatter
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
 from beamdyn.common.spreading.statistics import scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput, Uniform
-from beamdyn.studies.spreads import derivatives
+from beamdyn.studies import spread as spreads
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 2e11, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2))
@@ -172,7 +172,7 @@ def test_a_refusal_of_derivatives_is_not_silent(refusal, said, monkeypatch):
     def refuse(*_, **__):
         raise refusal
 
-    monkeypatch.setattr(derivatives, "frequency_sensitivities", refuse)
+    monkeypatch.setattr(spreads, "frequency_sensitivities", refuse)
     found = bd.spread(SCENE, {"beam.thickness": "+-2%"}, **FEW)
     assert not found.first_order.exact.any()
     assert any(str(refusal) in each for each in found.warnings) == said

@@ -197,8 +197,7 @@ def test_warnings_say_of_how_many_designs():
 
 
 def test_the_static_deflection_that_is_warned_of_is_that_of_single_calls():
-    from beamdyn.studies.frequencies import solve_frequencies
-    from beamdyn.studies.refinement import Refinement
+    from beamdyn.studies.batched import Refinement, solve_frequencies
     from beamdyn.studies.similar import SimilarDesigns
 
     columns = {"beam.thickness": [3e-4, 2e-4], "beam.length": [0.05, 0.04], "mount.setting_angle": [1.0, 2.0]}

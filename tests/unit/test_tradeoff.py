@@ -23,9 +23,9 @@ from beamdyn.studies.tradeoffs import (
     transient_modes_diagram,
     transients,
 )
-from beamdyn.studies.tradeoffs.physics import ALL, AS_GIVEN, pick
+from beamdyn.studies.tradeoffs.frequencies import ALL, AS_GIVEN, pick
+from beamdyn.studies.tradeoffs.responses import AT_ENDS, AT_REST
 from beamdyn.studies.tradeoffs.study import MOST_MODES
-from beamdyn.studies.tradeoffs.transients import AT_ENDS, AT_REST
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.tradeoff_physics import make_scenes
 

@@ -13,7 +13,7 @@ from beamdyn.studies.tradeoffs import (
     pareto_front,
     timing,
 )
-from beamdyn.studies.tradeoffs.timing import Family, Setting, measure_families
+from beamdyn.studies.tradeoffs.measurements import Family, Setting, measure_families
 from benchmarks.tradeoff import LEGENDRE, compare_sizes
 
 coarse = st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 2.0])  # few values, so that ties are drawn

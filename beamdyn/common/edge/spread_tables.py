@@ -230,7 +230,7 @@ def _sweep_figure(result: Any) -> Figure:
 
 
 def _spread_figure(result: Any) -> Figure:
-    from beamdyn.common.spreading.pictures import spread_figure
+    from beamdyn.common.spreading.result import spread_figure
 
     return spread_figure(result)
 

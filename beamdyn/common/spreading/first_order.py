@@ -2,13 +2,105 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from beamdyn.common.spreading.slopes import Slopes
 from beamdyn.common.spreading.tolerances import SpreadInput
+
+
+@dataclass(frozen=True)
+class KnownDerivatives:
+    """Derivatives of k answers that are known from equations.
+
+    Parameters
+    ----------
+    rows : mapping of int to pair of ndarray, shape (k,)
+        Derivatives by an input, by its row, and their absolute errors; nan where there is none.
+    warnings : tuple of str
+        Why there are none of others.
+    """
+
+    rows: Mapping[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of k answers by d inputs at the nominal design.
+
+    Parameters
+    ----------
+    value, error : ndarray, shape (d, k)
+        Derivatives, nan where there is none, and their absolute errors [unit / unit of the input].
+    exact : ndarray of bool, shape (d, k)
+        Which are derivatives of the equations; others are those of polynomials through designs.
+    """
+
+    value: np.ndarray
+    error: np.ndarray
+    exact: np.ndarray
+
+    def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
+        """The same with exact derivatives and their errors (k,) of some inputs, where these are finite."""
+        value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
+        for row, (slope, wrong) in rows.items():
+            known = np.isfinite(slope)
+            value[row, known], error[row, known], exact[row, known] = slope[known], wrong[known], True
+        return Slopes(value, error, exact)
+
+
+def slopes_from(
+    nominal: np.ndarray, beside: np.ndarray, steps: np.ndarray, error: np.ndarray | float = 0.0
+) -> Slopes:
+    """Slopes of the polynomials of fourth degree through five designs of each input.
+
+    Parameters
+    ----------
+    nominal : ndarray, shape (k,)
+        Answers of the nominal design.
+    beside : ndarray, shape (d, 4, k)
+        Answers of designs of which one input is off by the steps.
+    steps : ndarray, shape (d, 4)
+        These steps.
+    error : ndarray, shape (k,)
+        Absolute error of an answer.
+
+    Returns
+    -------
+    Slopes
+        The error is the distance of the slope of the parabola through three of the designs, and what the
+        errors of the answers make of it; nan and inf where a design has no answer.
+    """
+    with np.errstate(invalid="ignore"):
+        changes = beside - nominal
+        fine = np.array([_slope_weights(each) for each in steps])
+        coarse = np.array([_parabola_weights(each) for each in steps])
+        value = np.einsum("ds,dsk->dk", fine, changes)
+        distance = np.abs(value - np.einsum("ds,dsk->dk", coarse, changes))
+        noise = 2 * np.abs(fine).sum(axis=1)[:, None] * error
+    known = np.isfinite(value)
+    errors = np.where(known, distance + noise, np.inf)
+    return Slopes(np.where(known, value, np.nan), errors, np.zeros(value.shape, dtype=bool))
+
+
+def _slope_weights(steps: np.ndarray) -> np.ndarray:
+    """Weights of changes of an answer at steps from 0, whose sum is the slope at 0 of the polynomial."""
+    size = np.abs(steps).max()
+    powers = (steps / size)[None, :] ** np.arange(1, len(steps) + 1)[:, None]
+    return np.linalg.solve(powers, np.eye(len(steps))[0]) / size
+
+
+def _parabola_weights(steps: np.ndarray) -> np.ndarray:
+    """The same for a parabola through 0, the last step and the one that is its half or at the other end."""
+    used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
+    weights = np.zeros(len(steps))
+    weights[used] = _slope_weights(steps[used])
+    return weights
+
+
+# Ranges to first order ----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

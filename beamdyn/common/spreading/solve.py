@@ -15,11 +15,9 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
-from beamdyn.common.spreading.first_order import first_order_of
+from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
 from beamdyn.common.spreading.result import Spread
-from beamdyn.common.spreading.sampling import SpreadDesigns
-from beamdyn.common.spreading.slopes import KnownDerivatives, slopes_from
-from beamdyn.common.spreading.statistics import Scatter, indices_of, scatter_of
+from beamdyn.common.spreading.statistics import Scatter, SpreadDesigns, indices_of, scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
 

@@ -2,13 +2,204 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from beamdyn.files.decks.stations import Stations
+from beamdyn.common.edge.data_text import (
+    DataText,
+    NamedValue,
+    named_count,
+    number_at,
+    plain_name,
+    quote,
+    to_number,
+)
+
+_COMMENT = re.compile(r"[!#].*")
+_UNIT = re.compile(r"\(([^()]*)\)")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that a program knows.
+
+    Parameters
+    ----------
+    name : str
+        Its head, as the program's manual writes it.
+    unit : str
+        Unit that the program takes; "" for a plain number.
+    required : bool
+        Whether the program needs it.
+    positive : bool
+        Whether its values are above zero.
+    """
+
+    name: str
+    unit: str
+    required: bool = False
+    positive: bool = False
+
+
+@dataclass(frozen=True)
+class Stations:
+    """The table of a deck.
+
+    Parameters
+    ----------
+    columns : dict of ndarray, shape (n,)
+        Values by the program's name of the column, in its unit.
+    units : dict of str
+        Unit of each column.
+    lines : tuple of int, shape (n,)
+        Line of each row.
+    """
+
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+    lines: tuple[int, ...]
+
+
+def read_stations(text: DataText, known: Sequence[Column], count: NamedValue) -> Stations:
+    """Read the table of a file.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    known : sequence of Column
+        Columns of the program; the first is the position, from 0 at the root to 1 at the tip.
+    count : NamedValue
+        How many rows the file says it has.
+
+    Raises
+    ------
+    ConfigError
+        If heads, units, rows or their number are not as expected.
+    """
+    head_line = _find_heads(text, known, count)
+    by_name = {plain_name(column.name): column for column in known}
+    heads = _read_heads(text, head_line, by_name)
+    _check_units(text, head_line + 1, heads)
+    rows, lines = _read_rows(text, head_line + 2, heads, count)
+    columns = {column.name: rows[:, place].copy() for place, column in enumerate(heads)}
+    check_order(text, lines, heads[0].name, columns[heads[0].name])
+    for column in heads:
+        _check_positive(text, lines, column, columns[column.name])
+    return Stations(columns, {column.name: column.unit for column in heads}, lines)
+
+
+def _find_heads(text: DataText, known: Sequence[Column], count: NamedValue) -> int:
+    """Line of the heads: the first whose first word is that of the position."""
+    first = plain_name(known[0].name)
+    for line in range(count.line + 1, len(text.lines) + 1):
+        if [plain_name(word) for word in text.words(line)[:1]] == [first]:
+            return line
+    wanted = " ".join(column.name for column in known if column.required)
+    raise text.lacking(f"expected a line of heads below line {count.line}, such as '{wanted}'")
+
+
+def _read_heads(text: DataText, line: int, known: Mapping[str, Column]) -> list[Column]:
+    words = _COMMENT.sub("", text.lines[line - 1]).split()
+    heads = [known.get(plain_name(word), Column(word, "?")) for word in words]
+    names = [column.name for column in heads]
+    if twice := next((name for name in names if names.count(name) > 1), ""):
+        raise text.refusal(line, f"{twice} stands twice; expected each head once")
+    if missing := [c.name for c in known.values() if c.required and c.name not in names]:
+        raise text.refusal(
+            line, f"expected a column {missing[0]}; the heads are {', '.join(names)}{_rest(missing)}"
+        )
+    return heads
+
+
+def _rest(missing: Sequence[str]) -> str:
+    return f" ({', '.join(missing[1:])} missing, too)" if len(missing) > 1 else ""
+
+
+def _check_units(text: DataText, line: int, heads: Sequence[Column]) -> None:
+    """Refuse a line below the heads that is not of their units.
+
+    The programs skip it unread, and take the numbers in their own units whatever stands there.
+    """
+    content = text.lines[line - 1] if line <= len(text.lines) else ""
+    units = _UNIT.findall(content)
+    if not units:
+        said = "expected the units of the columns in brackets, such as '(-) (deg) (kg/m)'"
+        raise text.refusal(min(line, len(text.lines)), f"{said}; the program skips this line unread")
+    if len(units) != len(heads):
+        raise text.refusal(line, f"expected {len(heads)} units for the heads above, found {len(units)}")
+    for column, unit in zip(heads, units, strict=True):
+        if column.unit != "?" and _plain_unit(unit) != _plain_unit(column.unit):
+            said = f"expected ({column.unit or '-'}) for {column.name}, found ({unit})"
+            raise text.refusal(line, f"{said}; the program takes the numbers in its own unit in any case")
+
+
+def _plain_unit(unit: str) -> str:
+    """A unit without what programs write differently: N-m^2 is Nm2."""
+    return re.sub(r"[\s^*·.-]", "", unit).lower().replace("²", "2")
+
+
+def _read_rows(
+    text: DataText, first: int, heads: Sequence[Column], count: NamedValue
+) -> tuple[np.ndarray, tuple[int, ...]]:
+    """The numbers, shape (rows, columns), and the line of each row."""
+    wanted = named_count(text, count)
+    said = f"{count.name} = {wanted} in line {count.line}"
+    rows: list[list[float]] = []
+    lines: list[int] = []
+    for line in range(first, len(text.lines) + 1):
+        words = _COMMENT.sub("", text.lines[line - 1]).replace(",", " ").split()
+        if not words:
+            continue
+        if len(rows) == wanted:
+            if len(words) >= len(heads) and all(to_number(word) is not None for word in words[: len(heads)]):
+                raise text.refusal(line, f"a row of numbers after the last of {wanted} stations: {said}")
+            break
+        if to_number(words[0]) is None and to_number(words[-1]) is None:
+            raise text.refusal(
+                line, f"expected row {len(rows) + 1} of the stations, found {quote(words[0])}: {said}"
+            )
+        rows.append(_read_row(text, line, words, heads))
+        lines.append(line)
+    if len(rows) < wanted:
+        raise text.lacking(f"expected row {len(rows) + 1} of the stations: {said}")
+    return np.array(rows), tuple(lines)
+
+
+def _read_row(text: DataText, line: int, words: Sequence[str], heads: Sequence[Column]) -> list[float]:
+    numbers = len(words) if len(words) > len(heads) and to_number(words[len(heads)]) is not None else 0
+    if len(words) < len(heads) or numbers:
+        comma = "; write decimal points: a comma separates numbers" if "," in text.lines[line - 1] else ""
+        found = numbers or len(words)
+        raise text.refusal(line, f"expected {len(heads)} numbers under the heads, found {found}{comma}")
+    return [number_at(text, line, word, column.name) for word, column in zip(words, heads, strict=False)]
+
+
+def check_order(text: DataText, lines: Sequence[int], name: str, stations: np.ndarray) -> None:
+    """Refuse stations that do not ascend from 0 at the root to 1 at the tip, each once."""
+    for k in range(1, len(stations)):
+        here, before = stations[k], stations[k - 1]
+        if here <= before:
+            what = "repeats the station" if here == before else f"follows {before:g}"
+            said = f"{name} = {here:g} {what} of line {lines[k - 1]}; expected stations that ascend"
+            raise text.refusal(lines[k], said)
+    if stations[0] != 0:
+        raise text.refusal(lines[0], f"expected {name} = 0, the root, found {stations[0]:g}")
+    if stations[-1] != 1:
+        raise text.refusal(lines[-1], f"expected {name} = 1, the tip, found {stations[-1]:g}")
+
+
+def _check_positive(text: DataText, lines: Sequence[int], column: Column, values: np.ndarray) -> None:
+    if column.positive and (bad := np.flatnonzero(values <= 0)).size:
+        found = f"{values[bad[0]]:g} {column.unit}"
+        raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")
+
+
+# What every deck says of a blade, in the words of this package, whateve ---------------------------
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,16 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
-from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
+from beamdyn.files.decks.blade import (
+    Blade,
+    Column,
+    IgnoredProperty,
+    Stations,
+    ignore,
+    ignore_columns,
+    read_stations,
+)
 from beamdyn.files.decks.elastodyn import named_file
-from beamdyn.files.decks.stations import Column, Stations, read_stations
 
 COLUMNS = (
     Column("sec_loc", "-", required=True),

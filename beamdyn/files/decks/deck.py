@@ -17,9 +17,8 @@ from beamdyn.common.results.files import check_writable, write_text
 from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
 from beamdyn.files.decks import bmodes, csv_table, elastodyn
-from beamdyn.files.decks.audit import DeckAudit, audit
+from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, audit, fit_mode_polynomials
 from beamdyn.files.decks.blade import Blade, IgnoredProperty
-from beamdyn.files.decks.mode_shapes import ModePolynomial, fit_mode_polynomials
 from beamdyn.files.decks.scene_file import tables_of, text_of
 from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene

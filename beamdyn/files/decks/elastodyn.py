@@ -24,9 +24,16 @@ from beamdyn.common.edge.data_text import (
     plain_name,
     read_data,
 )
-from beamdyn.files.decks import mode_shapes
-from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore, ignore_columns
-from beamdyn.files.decks.stations import Column, Stations, read_stations
+from beamdyn.files.decks.audit import SHAPE_NAMES
+from beamdyn.files.decks.blade import (
+    Blade,
+    Column,
+    IgnoredProperty,
+    Stations,
+    ignore,
+    ignore_columns,
+    read_stations,
+)
 
 COLUMNS = (
     Column("BlFract", "-", required=True),
@@ -63,7 +70,7 @@ _REASONS = {
 _FACTORS = {"AdjBlMs": "BMassDen", "AdjFlSt": "FlpStff", "AdjEdSt": "EdgStff"}
 _DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
 _TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
-_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in mode_shapes.NAMES.items()}
+_SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in SHAPE_NAMES.items()}
 _BLADE_NAMES = {
     plain_name(name): name
     for name in (

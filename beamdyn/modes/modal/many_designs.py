@@ -21,16 +21,16 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.rounding import BACKWARD
-from beamdyn.modes.modal.eigen import (
+from beamdyn.equations.equations_of_motion import BACKWARD
+from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,
-    explained,
     inverse_squares,
     rounding_of_matrices,
-    select_lowest,
     solve_diagonal,
 )
+from beamdyn.modes.modal.eigenproblem import explained
 from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_modes
+from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
 _MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
@@ -85,7 +85,7 @@ class ManyModes:
 class StackedSolver:
     """Eigensolver of a stack, in coordinates in which the stiffness of each is diagonal at every speed.
 
-    It does for each design what `beamdyn.modes.modal.eigen.Solver` does for one.
+    It does for each design what `beamdyn.modes.modal.eigenproblem.Solver` does for one.
 
     Parameters
     ----------

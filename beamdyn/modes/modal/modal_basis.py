@@ -13,7 +13,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import count
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.scene.motion import Motion
 
 FEWEST_MODES = 2  # size of the first basis where no number is given

@@ -10,8 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
@@ -109,12 +108,6 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
     """
     damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
     return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
-
-
-def leave_out_slowest(inverse: np.ndarray, y: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Leave out a number of the smallest eigenvalues of 1/s (m,) and vectors (n, m)."""
-    kept = np.sort(np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - number])
-    return inverse[kept], y[:, kept]
 
 
 def insert_free_turns(
@@ -232,17 +225,3 @@ def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
     except np.linalg.LinAlgError:
         return np.full(len(K), np.nan if speed else 0.0)
     return scipy.linalg.cho_solve(factor, speed**2 * pencil.f2)
-
-
-def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
-
-    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
-    """
-    n, zero = len(M), np.zeros_like(M)
-    A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
-    s, y = scipy.linalg.eig(A, B)
-    finite = np.isfinite(s)
-    s, y = s[finite], y[:, finite]
-    least = _EPS * np.abs(s).max()
-    return 1 / np.where(np.abs(s) < least, 1j * least, s), y

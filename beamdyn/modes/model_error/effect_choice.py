@@ -27,8 +27,7 @@ from beamdyn.modes.modal.static_load import bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.model_error.of_modes import EXCLUDED, left_out_of_modes, vibrate, without_large_deflection
-from beamdyn.scene.physics import Physics
-from beamdyn.scene.physics_choice import JudgedEffect, PhysicsChoice
+from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given

@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, Words, joined
-from beamdyn.scene.physics_choice import OfChosenPhysics
+from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so

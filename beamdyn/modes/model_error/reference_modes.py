@@ -18,10 +18,10 @@ import scipy.linalg
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from beamdyn.common.assignment import assign
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
-from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
-from beamdyn.modes.modal.eigen import Eigen
-from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene

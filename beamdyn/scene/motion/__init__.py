@@ -5,8 +5,7 @@ one turn: in double precision an angle of 1e8 rad, and any phase computed from i
 is accurate to 1.5e-8 rad.  At a jump, a motion takes the values after it.
 """
 
-from beamdyn.scene.motion.base import Line, Motion, MotionSample
-from beamdyn.scene.motion.checks import check_consistent, check_picklable
+from beamdyn.scene.motion.base import Line, Motion, MotionSample, check_consistent, check_picklable
 from beamdyn.scene.motion.records import SampledTranslation
 from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
 from beamdyn.scene.motion.rotations import (

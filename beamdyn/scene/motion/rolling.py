@@ -11,8 +11,14 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import function, kind, moderate, positive, real, refuse, set_fields, size
 from beamdyn.common.inputs.described import Described
-from beamdyn.scene.motion.base import Line, Motion, MotionSample, as_breakpoints, check_times
-from beamdyn.scene.motion.checks import check_consistent
+from beamdyn.scene.motion.base import (
+    Line,
+    Motion,
+    MotionSample,
+    as_breakpoints,
+    check_consistent,
+    check_times,
+)
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 
 _MOST_WAVES = 1e12  # of the road per turn; with more, the phase of the road has few right digits

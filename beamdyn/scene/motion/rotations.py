@@ -27,9 +27,9 @@ from beamdyn.scene.motion.base import (
     Motion,
     MotionSample,
     as_breakpoints,
+    check_consistent,
     check_times,
 )
-from beamdyn.scene.motion.checks import check_consistent
 
 if TYPE_CHECKING:  # scipy.interpolate is slow to import, and only tables need it
     from scipy.interpolate import PPoly

@@ -26,8 +26,14 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.crossings import LineCrossing, coincident, find_crossings
-from beamdyn.studies.campbell.margins import Margin, margins_at_rated, margins_in_range
+from beamdyn.studies.campbell.crossings import (
+    LineCrossing,
+    Margin,
+    coincident,
+    find_crossings,
+    margins_at_rated,
+    margins_in_range,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -131,7 +137,17 @@ class Campbell(StatesModelError):
             known = left_out_of_crossings(locus.model, speeds, pairs, modes) if own else None
             effects.append(known or nothing_known(locus.scene))
             sizes.append(len(own))
-        return _join(effects, sizes)
+        if not sum(sizes):
+            return effects[0]
+        changes = {
+            name: np.concatenate(
+                [e.changes.get(name, np.zeros(n)) for e, n in zip(effects, sizes, strict=True) if n]
+            )
+            for name in dict.fromkeys(name for e in effects for name in e.changes)
+        }
+        words = {part: {k: v for e in effects for k, v in getattr(e, part).items()} for part in _IN_WORDS}
+        not_modelled = tuple(dict.fromkeys(name for e in effects for name in e.not_modelled))
+        return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
@@ -404,18 +420,14 @@ def _all_lines(
     per_rev, others, unknown = [Line(f"{n}P", float(n)) for n in orders], [], []
     for label, locus in zip(labels, loci, strict=True):
         try:
-            others += _lines_of_motion(locus)
+            # Lines that force the beam, by the scene's motion and gravity.
+            motion = locus.scene.motion
+            system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
+            others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
     distinct = distinct_lines([*per_rev, *others])  # of two at one frequency the first
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
-
-
-def _lines_of_motion(locus: Locus) -> list[Line]:
-    """Lines that force the beam, by the scene's motion and gravity."""
-    motion = locus.scene.motion
-    system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
-    return excitation_lines(system, motion, 1)[0]
 
 
 def _bound(
@@ -443,21 +455,6 @@ def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence
 
 def _prefix(label: str) -> str:
     return label and f"{label}: "
-
-
-def _join(effects: Sequence[LeftOutEffects], sizes: Sequence[int]) -> LeftOutEffects:
-    """The effects left out of several models, each for some values: what a model includes changes nothing."""
-    if not sum(sizes):
-        return effects[0]
-    changes = {
-        name: np.concatenate(
-            [e.changes.get(name, np.zeros(n)) for e, n in zip(effects, sizes, strict=True) if n]
-        )
-        for name in dict.fromkeys(name for e in effects for name in e.changes)
-    }
-    words = {part: {k: v for e in effects for k, v in getattr(e, part).items()} for part in _IN_WORDS}
-    not_modelled = tuple(dict.fromkeys(name for e in effects for name in e.not_modelled))
-    return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
 
 
 _IN_WORDS = "not_known", "assumed", "reasons"

@@ -2,20 +2,246 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import TypeAlias
+from typing import Generic, TypeAlias, TypeVar
 
 import numpy as np
+import scipy.linalg
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.numbers import with_numbers
-from beamdyn.studies.sensitivities.interpolation import Nearby, evaluate_nearby
-from beamdyn.studies.sensitivities.perturbation import PencilChange
-from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
+from beamdyn.studies.sensitivities.result import SceneNumber
+
+PLACES = 8
+_STEPS = 9  # sizes of steps, over four decades: rounding counts by their inverse
+
+Evaluated = TypeVar("Evaluated")
+
+
+@dataclass(frozen=True)
+class Nearby(Generic[Evaluated]):
+    """What was evaluated around a number, and the weights that make derivatives of it.
+
+    Parameters
+    ----------
+    values : list
+        What was evaluated, at `PLACES` places.
+    weights : ndarray, shape (PLACES,)
+        The derivative is their sum times the values [1 / unit of the number].
+    last : ndarray, shape (PLACES,)
+        The same of the last term of the polynomial through the values, for what the polynomial misses.
+    width : float
+        Half of the interval [unit of the number].
+    """
+
+    values: list[Evaluated]
+    weights: np.ndarray
+    last: np.ndarray
+    width: float
+
+
+def evaluate_nearby(
+    number: SceneNumber, evaluate: Callable[[float], Evaluated]
+) -> Iterator[Nearby[Evaluated]]:
+    """Evaluate something around a number, in the widest interval that is not refused, then in narrower ones.
+
+    Where the values on one side are always refused, those on the other alone are taken.
+
+    Parameters
+    ----------
+    number : SceneNumber
+        The number.
+    evaluate : callable
+        Function of the number's value.
+
+    Yields
+    ------
+    Nearby
+
+    Raises
+    ------
+    InvalidValue
+        If the values on both sides are refused.
+    """
+    refused: InvalidValue | None = None
+    for intervals in _intervals(number):
+        found = False
+        for low, high in intervals:
+            try:
+                nearby = _evaluate_between(low, high, number.value, evaluate)
+            except InvalidValue as error:
+                refused = error
+            else:
+                found = True
+                yield nearby
+        if found:
+            return
+    assert refused is not None
+    raise refused
+
+
+def _evaluate_between(
+    low: float, high: float, at: float, evaluate: Callable[[float], Evaluated]
+) -> Nearby[Evaluated]:
+    """Evaluate something at the Chebyshev points of an interval, for derivatives at a place within."""
+    middle, half = (low + high) / 2, (high - low) / 2
+    points = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+    values = [evaluate(float(middle + half * t)) for t in points]
+    terms = np.polynomial.chebyshev.chebvander(points, PLACES - 1) * 2 / PLACES
+    terms[:, 0] /= 2
+    slopes = np.array([_slope(k, (at - middle) / half) for k in range(PLACES)]) / half
+    return Nearby(values, terms @ slopes, terms[:, -1] * slopes[-1], half)
+
+
+def _slope(degree: int, t: float) -> float:
+    """Derivative of a Chebyshev polynomial of some degree at t."""
+    return float(np.polynomial.Chebyshev.basis(degree).deriv()(t)) if degree else 0.0
+
+
+def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
+    """Intervals around the number, those above it, and those below it, each from wide to narrow."""
+    steps = [number.step * 10 ** (-k / 2) for k in range(_STEPS)]
+    lowest = [max(number.value - step, number.least) for step in steps]
+    yield [(low, number.value + step) for low, step in zip(lowest, steps, strict=True)]
+    yield [(number.value, number.value + step) for step in steps]
+    yield [(low, number.value) for low in lowest if low < number.value]
+
+
+# First-order change of eigenvalues and critical speeds, from the deriva ---------------------------
+
+
+@dataclass(frozen=True)
+class PencilChange:
+    """Derivatives of the matrices of a `SteadyPencil`, each of shape (n, n)."""
+
+    M: np.ndarray
+    C: np.ndarray
+    G: np.ndarray
+    K0: np.ndarray
+    K2: np.ndarray
+
+    @classmethod
+    def of(cls, pencils: Sequence[SteadyPencil], weights: np.ndarray) -> PencilChange:
+        """The weighted sum of some equations."""
+        return cls(*(_sum(weights, [getattr(p, f.name) for p in pencils]) for f in fields(cls)))
+
+    def at(self, s: complex, speed: float) -> np.ndarray:
+        """The derivative of P(s) at a speed [rad/s]."""
+        return s**2 * self.M + s * (self.C + speed * self.G) + self.stiffness(speed)
+
+    def stiffness(self, speed: float) -> np.ndarray:
+        """The derivative of the stiffness at a speed [rad/s]."""
+        return self.K0 + speed**2 * self.K2
+
+
+def _sum(weights: np.ndarray, matrices: list[np.ndarray]) -> np.ndarray:
+    return np.tensordot(weights, np.array(matrices), axes=1)
+
+
+@dataclass(frozen=True)
+class PerturbedModes:
+    """Modes at a speed, with what their eigenvalues' derivatives need.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        The equations.
+    speed : float
+        Speed [rad/s].
+    eigenvalue : ndarray, shape (k,)
+        Eigenvalues s [1/s].
+    right, left : ndarray, shape (n, k)
+        Eigenvectors v and w.
+    """
+
+    pencil: SteadyPencil
+    speed: float
+    eigenvalue: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+
+    @classmethod
+    def of(
+        cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
+    ) -> PerturbedModes:
+        """Add the left eigenvectors to modes."""
+        left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
+        return cls(pencil, speed, eigenvalue, right, np.array(left).T)
+
+    def derivatives(self, change: PencilChange) -> np.ndarray:
+        """Derivatives of the eigenvalues where the matrices change, shape (k,)."""
+        return np.array(
+            [
+                self._quotient(k, change.at(s, self.speed)) if s else _NONE
+                for k, s in enumerate(self.eigenvalue)
+            ]
+        )
+
+    def speed_derivatives(self) -> np.ndarray:
+        """Derivatives of the eigenvalues with respect to the speed, shape (k,)."""
+        p = self.pencil
+        changes = (s * p.G + 2 * self.speed * p.K2 for s in self.eigenvalue)
+        return np.array(
+            [self._quotient(k, dP) if self.eigenvalue[k] else _NONE for k, dP in enumerate(changes)]
+        )
+
+    def scales(self) -> np.ndarray:
+        """What P(s) would change the eigenvalues by if all its entries had one sign, shape (k,).
+
+        Rounding errors are relative to this.
+        """
+        p = self.pencil
+        whole = np.abs(p.K0) + self.speed**2 * np.abs(p.K2)
+        sums = [
+            np.abs(self.left[:, k]) @ (whole + abs(s) ** 2 * np.abs(p.M)) @ np.abs(self.right[:, k])
+            for k, s in enumerate(self.eigenvalue)
+        ]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.array(sums) / np.abs([self._slope(k) for k in range(len(self.eigenvalue))])
+
+    def _quotient(self, k: int, dP: np.ndarray) -> complex:
+        return -complex(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
+
+    def _slope(self, k: int) -> complex:
+        """The derivative of P(s) by s between both eigenvectors."""
+        p = self.pencil
+        dP = 2 * self.eigenvalue[k] * p.M + p.C + self.speed * p.G
+        return complex(self.left[:, k] @ dP @ self.right[:, k])
+
+
+_NONE = complex(np.nan, np.nan)  # a double eigenvalue 0 moves by the root of a change
+
+
+def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.ndarray:
+    """The left eigenvector of an eigenvalue.
+
+    Without gyroscopic terms all matrices are symmetric; without damping P(s)^T is the conjugate of P(s).
+    """
+    if not (speed * pencil.G).any():
+        return v
+    if not pencil.C.any():
+        return v.conj()
+    P = s**2 * pencil.M + s * (pencil.C + speed * pencil.G) + pencil.K0 + speed**2 * pencil.K2
+    scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))  # a hinge has no stiffness
+    return scipy.linalg.svd(P.T / np.outer(scale, scale))[2][-1].conj() / scale
+
+
+def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
+    """The shape in which the beam buckles at its critical speed, shape (n,)."""
+    return scipy.linalg.eigh(pencil.K0 + speed**2 * pencil.K2, pencil.K0, subset_by_index=[0, 0])[1][:, 0]
+
+
+def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
+    """Derivative of the critical speed where the matrices change."""
+    return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
+
+
+# Derivatives of the matrices of a model, and of its coarser one, by the ---------------------------
+
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
 _RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
@@ -76,7 +302,10 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
     """Evaluate the equations within the widest interval that resolves them, or else leaves rounding alone."""
     before, best = np.inf, None
     for nearby in evaluate_nearby(number, evaluate):
-        share = _missed_share(nearby)
+        # The last term of a model's matrices within an interval, relative to each of them: the largest.
+        last, whole = _last(nearby), nearby.values[0][0]
+        pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
+        share = max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)
         if best is not None and _CONVERGES * before < share < _ROUNDED:
             return best
         before, best = share, nearby
@@ -84,13 +313,6 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
             break
     assert best is not None
     return best
-
-
-def _missed_share(nearby: Nearby[_Pencils]) -> float:
-    """The last term of a model's matrices within an interval, relative to each of them: the largest."""
-    last, whole = _last(nearby), nearby.values[0][0]
-    pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
-    return max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)
 
 
 def _last(nearby: Nearby[_Pencils]) -> PencilChange:

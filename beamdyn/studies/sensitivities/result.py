@@ -2,19 +2,166 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import difflib
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Provenance, Result
+from beamdyn.scene.beam import PROPERTY_UNITS, Beam
+from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
+from beamdyn.scene.profile import mean
+from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_TOUCHING = 1e-6  # distance over the length at which a point stands beside another
+_STEP = 0.01  # of a value, or of the size of its kind
+_NEAR = 0.8  # similarity of a mistyped name: all begin alike
+
+
+@dataclass(frozen=True)
+class SceneNumber:
+    """A number of a scene.
+
+    Parameters
+    ----------
+    name : str
+        Its name in scene files, such as "beam.thickness"; "beam.scale.mass_per_length" is a factor of a
+        property that varies along the beam.
+    unit : str
+        Its SI unit.
+    value : float
+        Its value [unit].
+    step : float
+        Largest change within which the equations are evaluated for a derivative [unit].
+    least : float
+        Smallest value that it may have [unit].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> number = bd.frequency_sensitivities(bd.Scene(strip), modes=1, inputs=["beam.density"]).inputs[0]
+    >>> number.name, number.value
+    ('beam.density', 7850.0)
+    """
+
+    name: str
+    unit: str
+    value: float
+    step: float
+    least: float = -math.inf
+
+
+def check_names(inputs: object) -> tuple[str, ...] | None:
+    """The names of numbers as they were given to an analysis; None for all."""
+    if inputs is None:
+        return None
+    good = isinstance(inputs, list | tuple) and inputs and all(isinstance(name, str) for name in inputs)
+    if not good:
+        raise InvalidValue("inputs", inputs, 'give names in a list, such as ["beam.thickness"]')
+    assert isinstance(inputs, list | tuple)
+    return tuple(dict.fromkeys(inputs))
+
+
+def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneNumber, ...]:
+    """The numbers of a scene, all or those that are named.
+
+    Raises
+    ------
+    InvalidValue
+        If a name is none of theirs.
+    """
+    found = {each.name: each for each in _all(scene)}
+    if names is None:
+        return tuple(found.values())
+    for name in names:
+        if name == "speed":
+            bound = "a critical or resonance speed is an answer, and no input"
+            raise InvalidValue("inputs", name, bound, "leave it out")
+        if name not in found:
+            near = difflib.get_close_matches(str(name), found, n=1, cutoff=_NEAR)
+            remedy = f"give {near[0] if near else ', '.join(found)}"
+            raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
+    return tuple(found[name] for name in names)
+
+
+def _all(scene: Scene) -> Iterator[SceneNumber]:
+    """Yield the numbers on which frequencies depend, a factor in place of a property that varies."""
+    for path in paths_of(scene):
+        value = _value_of(scene, path)
+        if value is None or not _matters(scene, path, value):
+            continue
+        varies = math.isnan(value)
+        if path != "beam.twist" or not varies:
+            yield _number(scene, path.replace("beam.", SCALE) if varies else path, 1.0 if varies else value)
+
+
+def _value_of(scene: Scene, path: str) -> float | None:
+    """The number of a path among those that the physics models; None if there is none."""
+    name = path.removeprefix("beam.")
+    if name in SECTION_UNITS:
+        return number_at(scene, path) if _has_constant_section(scene) else None
+    if name in PROPERTY_UNITS or name == "twist":
+        unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
+        follows = name != "twist" and _has_constant_section(scene)
+        if follows or name in unused or getattr(scene.modelled_beam, name) is None:
+            return None
+    return number_at(scene, path)
+
+
+def _has_constant_section(scene: Scene) -> bool:
+    return not any(math.isnan(number_at(scene, f"beam.{side}") or math.nan) for side in SIDES)
+
+
+def _matters(scene: Scene, path: str, value: float) -> bool:
+    """Whether frequencies change with a number: not with one that is infinite, absent or not modelled."""
+    table, _, key = path.partition(".")
+    if table in ("motion", SPEED) or path.startswith(SCALE) or path == "model.gravity" or math.isinf(value):
+        return False
+    if table == "damping" or key in ("damping_ratio", "precone"):
+        return value != 0
+    if key.startswith("tip."):
+        return scene.beam.tip is not None
+    if path.endswith("].position"):
+        return _room_of(scene.beam, path) > 0
+    return (key != "poissons_ratio" or scene.physics.shear) and (
+        key != "second_root_stiffness" or scene.physics.planes == 2
+    )
+
+
+def _number(scene: Scene, path: str, value: float) -> SceneNumber:
+    """A number with the step to take of it: a share of its value, or of the beam's size if that is larger."""
+    unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
+    if unit == "rad" or path == "beam.poissons_ratio":
+        return SceneNumber(path, unit, value, _STEP)
+    if path.endswith("].position"):
+        return SceneNumber(path, unit, value, _room_of(beam, path), 0.0)
+    if path.startswith(("mount.", "beam.tip.", "beam.point_")):
+        mass, bending = mean(beam.mass_per_length) * beam.length, mean(beam.bending_stiffness)
+        sizes = {"m": beam.length, "kg": mass, "kg m2": mass * beam.length**2}
+        sizes |= {"N m/rad": bending / beam.length, "N/m": bending / beam.length**3}
+        step = _STEP * max(abs(value), sizes[unit])
+    return SceneNumber(path, unit, value, step, -math.inf if path == "beam.tip.offset" else 0.0)
+
+
+def _room_of(beam: Beam, path: str) -> float:
+    """How far a point may move along the beam for a derivative [m]; 0 where it stands beside another."""
+    field = "point_masses" if "point_mass" in path else "point_springs"
+    points, k = getattr(beam, field), int(path.partition("[")[2].partition("]")[0])
+    others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
+    apart = min(abs(points[k].position - xi * beam.length) for xi in others)
+    return min(_STEP / 10 * beam.length, apart / 3) if apart > _TOUCHING * beam.length else 0.0
+
+
+# The result of a sensitivity analysis -------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -91,7 +238,7 @@ class Sensitivities(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative change of each answer over that of each number, the most important on top."""
-        from beamdyn.common.plots.plots_over_inputs import plot_bars
+        from beamdyn.common.plots.curves import plot_bars
 
         names = [each.name for each in self.inputs]
         return plot_bars(names, self.relative, self.answers, "relative change over that of the number", ax)

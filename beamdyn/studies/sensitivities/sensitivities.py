@@ -23,15 +23,16 @@ from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
-from beamdyn.studies.sensitivities.changes import Changes, changes_of, steady_pencils
-from beamdyn.studies.sensitivities.perturbation import (
+from beamdyn.studies.sensitivities.changes import (
+    Changes,
     PencilChange,
     PerturbedModes,
+    changes_of,
     critical_derivative,
     critical_vector,
+    steady_pencils,
 )
-from beamdyn.studies.sensitivities.result import Sensitivities
-from beamdyn.studies.sensitivities.scene_numbers import SceneNumber, check_names, numbers_of
+from beamdyn.studies.sensitivities.result import SceneNumber, Sensitivities, check_names, numbers_of
 
 SPEED = "speed"
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross

@@ -5,12 +5,15 @@ budget; `frequencies`, `physics`, `transients` and `steady` list the settings to
 them.
 """
 
-from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit, Measurement, cost_per_digit, pareto_front
-from beamdyn.studies.tradeoffs.physics import physics_diagram
-from beamdyn.studies.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
+from beamdyn.studies.tradeoffs.responses import (
+    harmonics_diagram,
+    integrators_diagram,
+    steady_modes_diagram,
+    transient_modes_diagram,
+)
 from beamdyn.studies.tradeoffs.study import Tradeoff, tradeoff
-from beamdyn.studies.tradeoffs.transients import integrators_diagram, transient_modes_diagram
 
 __all__ = [
     "Diagram",

@@ -23,11 +23,14 @@ from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.periodic_system import check_steady_state
-from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
-from beamdyn.studies.tradeoffs.physics import physics_diagram
-from beamdyn.studies.tradeoffs.steady import harmonics_diagram, steady_modes_diagram
-from beamdyn.studies.tradeoffs.transients import integrators_diagram, transient_modes_diagram
+from beamdyn.studies.tradeoffs.responses import (
+    harmonics_diagram,
+    integrators_diagram,
+    steady_modes_diagram,
+    transient_modes_diagram,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +93,7 @@ class Tradeoff(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw all diagrams side by side, in place of the axes."""
-        from beamdyn.common.plots.plots import panels
+        from beamdyn.common.plots.axes_and_lines import panels
 
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):
@@ -189,12 +192,7 @@ def _end(scene: Scene) -> float:
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
     start = scene.motion.steady_start if scene.motion.steady_start <= _LONGEST_START * period else 0.0
-    return min(_round_to_two_digits(start + _DEFAULT_PERIODS * period), scene.motion.end)
-
-
-def _round_to_two_digits(value: float) -> float:
-    """Round to two significant digits."""
-    return float(f"{value:.1e}")
+    return min(float(f"{(start + _DEFAULT_PERIODS * period):.1e}"), scene.motion.end)
 
 
 def _list_diagrams(

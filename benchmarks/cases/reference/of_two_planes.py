@@ -10,8 +10,8 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.profile import Profile
-from beamdyn.studies.sensitivities.interpolation import evaluate_nearby
-from beamdyn.studies.sensitivities.scene_numbers import SceneNumber
+from beamdyn.studies.sensitivities.changes import evaluate_nearby
+from beamdyn.studies.sensitivities.result import SceneNumber
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
 from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies, solve_coned

@@ -3,68 +3,61 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from beamdyn.common.results.comparison import Comparison
-from beamdyn.common.results.pictures import save_figure
+from beamdyn.common.results.published import values_alone
 from brakes.calipers import CaliperStroke, EeBrake, stop
+from brakes.drawings.caliper import caliper_figure
+from brakes.drawings.mechanism import free_body_diagrams
 from brakes.published import load
 
-PAGE = "eeBrake page"
+PAPER = load("eebrake")
 _ERROR = 5e-10  # the reconstruction is given to ten digits
 _CABLE = 3.5e-3  # m of cable that close the reconstruction's pads
 
 
 def sections() -> dict[str, list[Comparison]]:
     """Compare the numbers, by the titles of their tables."""
-    return {
-        "eeBrake, open: forces for a force of 1 on the right pad": _statics(),
-        "eeBrake: travel, mechanical advantage, stop": _travel(),
-    }
-
-
-def _statics() -> list[Comparison]:
-    printed = {name: entry["value"] for name, entry in load("eebrake")["statics"].items()}
-    f_t, x_work = tangential_forces("equal work")
-    _, x_equal = tangential_forces("equal force")
-    difference = (x_work - f_t) / x_work
+    page, printed = "eeBrake page", values_alone(PAPER)
+    statics, travel, given = (printed[name] for name in ("statics", "travel", "stop"))
+    (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")
+    gap = (x_work - f_t) / x_work
+    percent, percent_error = 100 * gap, 100 * _ERROR
     equal = "with equal pads X = f_t follows from the mean pad travel; the page's tension is another"
-    return [
-        Comparison("f_t of the strut", PAGE, printed["f_t"], f_t, _ERROR, 3),
-        Comparison("X, tension 2 delta_R", PAGE, printed["X"], x_work, _ERROR, 3),
-        Comparison("X, equal pad forces", PAGE, printed["X"], x_equal, _ERROR, 3, equal),
-        Comparison("difference (X - f_t)/X", PAGE, printed["difference"], difference, _ERROR, 4),
-        Comparison(
-            "difference (X - f_t)/X [%]",
-            PAGE,
-            printed["difference_percent"],
-            100 * difference,
-            100 * _ERROR,
-            1,
-            "cut off, not rounded",
-        ),
-    ]
-
-
-def _travel() -> list[Comparison]:
-    data = load("eebrake")
-    travel = {name: entry["value"] for name, entry in data["travel"].items()}
-    given = {name: entry["value"] for name, entry in data["stop"].items()}
     run = _stroke("equal force", _CABLE)
+    finger, pad = 1e3 * float(run.finger[-1]), 1e3 * float(run.pad_travel[-1].mean())
     mean = float(run.finger[-1] / run.pad_travel[-1].sum())
-    force = mean * travel["finger_force"]
+    force, error = mean * travel["finger_force"], 1e-8 * mean
     stopped = stop(given["mass"], given["speed"] / 3.6, force, given["friction"])
-    error, finger = 1e-8 * mean, float(run.finger[-1])
-    pad = float(run.pad_travel[-1].mean())
-    return [
-        Comparison("travel of finger [mm]", PAGE, 1e3 * travel["finger"], 1e3 * finger, 1e-9, 0),
-        Comparison("mean travel of a pad [mm]", PAGE, 1e3 * travel["pad"], 1e3 * pad, 1e-8, 2),
-        Comparison("advantage, mean of the stroke", PAGE, travel["advantage"], mean, error, 1),
-        Comparison("force of each pad [N]", PAGE, travel["pad_force"], force, 40 * error, 0),
-        Comparison("stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], stopped.distance, 1e-6, 2),
-    ]
+    return {
+        "eeBrake, open: forces for a force of 1 on the right pad": [
+            Comparison("f_t of the strut", page, statics["f_t"], f_t, _ERROR, 3),
+            Comparison("X, tension 2 delta_R", page, statics["X"], x_work, _ERROR, 3),
+            Comparison("X, equal pad forces", page, statics["X"], x_equal, _ERROR, 3, equal),
+            Comparison("difference (X - f_t)/X", page, statics["difference"], gap, _ERROR, 4),
+            Comparison(
+                "difference (X - f_t)/X [%]",
+                page,
+                statics["difference_percent"],
+                percent,
+                percent_error,
+                1,
+                "cut off, not rounded",
+            ),
+        ],
+        "eeBrake: travel, mechanical advantage, stop": [
+            Comparison("travel of finger [mm]", page, 1e3 * travel["finger"], finger, 1e-9, 0),
+            Comparison("mean travel of a pad [mm]", page, 1e3 * travel["pad"], pad, 1e-8, 2),
+            Comparison("advantage, mean of the stroke", page, travel["advantage"], mean, error, 1),
+            Comparison("force of each pad [N]", page, travel["pad_force"], force, 40 * error, 0),
+            Comparison(
+                "stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], stopped.distance, 1e-6, 2
+            ),
+        ],
+    }
 
 
 def tangential_forces(split: str) -> tuple[float, float]:
@@ -100,16 +93,13 @@ def notes() -> tuple[str, ...]:
     )
 
 
-def draw(folder: Path) -> list[Path]:
-    """Draw the eeBrake with its curves, and its free bodies, into a folder."""
-    from brakes.drawings.caliper import caliper_figure
-    from brakes.drawings.mechanism import free_body_diagrams
-
-    folder.mkdir(parents=True, exist_ok=True)
+def _with_curves() -> Figure:
+    """Draw the closed brake with its curves over the stroke."""
     caliper = EeBrake().build()
-    closed = caliper.equilibrium(_CABLE)
-    pictures = {
-        "eebrake.png": caliper_figure(caliper, caliper.stroke(_CABLE), closed),
-        "eebrake_free_bodies.png": free_body_diagrams({"": closed}),
-    }
-    return [save_figure(figure, folder / name, force=True) for name, figure in pictures.items()]
+    return caliper_figure(caliper, caliper.stroke(_CABLE), caliper.equilibrium(_CABLE))
+
+
+PICTURES = {
+    "eebrake": _with_curves,
+    "eebrake_free_bodies": lambda: free_body_diagrams({"": EeBrake().build().equilibrium(_CABLE)}),
+}

@@ -1,0 +1,389 @@
+"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.accuracy.refinement import refine
+from beamdyn.common.results.statements import GROWING, NO_ANSWER, OUTSIDE, TOLERANCE, Statement, after
+from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.mass import moments_about_root
+from beamdyn.equations.ritz import Ritz
+from beamdyn.modes.modal.discretization_choice import (
+    DEFAULT_TARGET,
+    DiscretizationChoice,
+    list_models,
+    warn_of_missed_tolerance,
+    within_reach,
+)
+from beamdyn.modes.modal.many_designs import PencilStack, solve_many, speeds_of_meeting
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import (
+    LARGE_DEFLECTION,
+    LARGE_STRAIN,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
+from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
+from beamdyn.studies.similar import PencilFamily, SimilarDesigns
+
+_WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
+_ENTRIES = 300_000  # of matrices of one size at once, which fit into the processor's cache
+
+
+@dataclass(frozen=True)
+class BasisAnswers:
+    """Answers of R designs in a basis.
+
+    Parameters
+    ----------
+    arrays : tuple of ndarray, shape (R, ...)
+        The answers.
+    met : ndarray of bool, shape (R,)
+        Whether their errors meet the target, or rounding.
+    """
+
+    arrays: tuple[np.ndarray, ...]
+    met: np.ndarray
+
+
+Solve = Callable[[np.ndarray, Discretization], BasisAnswers]  # of designs (R,) in a basis
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The bases in which designs are solved in turn.
+
+    Parameters
+    ----------
+    reference : Scene
+        Their reference.
+    modes : int
+        Number of modes.
+    discretization : {"ritz"} or Ritz
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`.
+    """
+
+    reference: Scene
+    modes: int
+    discretization: DiscretizationChoice
+    tolerance: float | None
+
+    def bases(self) -> Iterator[Discretization]:
+        """Bases to try in turn."""
+        cheapest = self.tolerance is not None and self.reference.beam.tip is None
+        models = list_models(self.reference, self.discretization, self.modes, self._target, cheapest)
+        return (model.discretization for model in models)
+
+    @property
+    def _target(self) -> float:
+        """Relative error to aim at; with a body at the tip small enough to resolve a layer there."""
+        target = DEFAULT_TARGET if self.tolerance is None else self.tolerance
+        return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
+
+    def target_of(self, basis: Discretization) -> float:
+        """Relative error to be met in a basis."""
+        return within_reach(basis, self._target)
+
+    @property
+    def can_be_batched(self) -> bool:
+        """Whether the functions are the same in all designs."""
+        return self.discretization == "ritz" or isinstance(self.discretization, Ritz)
+
+    def solve(self, count: int, speeds: int, solve: Solve) -> tuple[list[np.ndarray], int]:
+        """Solve designs at so many speeds each, in finer and finer bases until all meet the target.
+
+        Returns
+        -------
+        answers : list of ndarray, shape (N, ...)
+            Of each design those of the last basis in which it has any; nan where it has none.
+        functions : int
+            Largest number of functions that was needed.
+        """
+        bases, answers, functions = self.bases(), list[np.ndarray](), 0
+
+        def solve_finer(pending: np.ndarray) -> np.ndarray | None:
+            """Solve designs in the next basis: those whose errors do not meet the target, None at the end."""
+            nonlocal answers, functions
+            if (basis := next(bases, None)) is None:
+                return None
+            unmet = [np.empty(0, dtype=int)]
+            most = max(1, _ENTRIES // (_size(basis) ** 2 * speeds))
+            for batch in np.split(pending, range(most, len(pending), most)):
+                for part, found in _solve_or_halve(solve, batch, basis):
+                    answers = answers or [_nothing(count, array) for array in found.arrays]
+                    for kept, array in zip(answers, found.arrays, strict=True):
+                        kept[part] = array
+                    functions = max(functions, _size(basis))
+                    unmet.append(part[~found.met])
+            return np.concatenate(unmet)
+
+        refine(np.arange(count), solve_finer, lambda pending: not pending.size)
+        return answers, functions
+
+
+def _solve_or_halve(
+    solve: Solve, batch: np.ndarray, basis: Discretization
+) -> Iterator[tuple[np.ndarray, BasisAnswers]]:
+    """Yield solved designs; those that rounding of so many functions leaves unsolved are left out."""
+    try:
+        yield batch, solve(batch, basis)
+    except np.linalg.LinAlgError:
+        if len(batch) > 1:
+            for half in np.array_split(batch, 2):
+                yield from _solve_or_halve(solve, half, basis)
+
+
+def _nothing(count: int, like: np.ndarray) -> np.ndarray:
+    return np.full((count, *like.shape[1:]), np.nan, dtype=like.dtype)
+
+
+def _size(basis: Discretization) -> int:
+    assert isinstance(basis, Ritz)
+    return basis.functions
+
+
+# Natural frequencies of designs that differ in numbers only, in one bas ---------------------------
+
+
+_LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
+
+
+@dataclass(frozen=True)
+class SolvedDesigns:
+    """Frequencies of R designs at S speeds each.
+
+    Parameters
+    ----------
+    eigenvalue : ndarray of complex, shape (R, S, k)
+        s in exp(s t) [1/s]; nan where there are none.
+    error : ndarray, shape (R, S, k)
+        Estimated relative error of the frequencies.
+    deflection : ndarray, shape (R, S)
+        Static tip deflection by rotation over the length, its size; nan from the critical speed on.
+    functions : int
+        Largest number of functions that was needed.
+    """
+
+    eigenvalue: np.ndarray
+    error: np.ndarray
+    deflection: np.ndarray
+    functions: int
+
+
+def solve_frequencies(
+    designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None = None
+) -> SolvedDesigns:
+    """Solve similar designs, each in the smallest basis that a single call would choose.
+
+    Parameters
+    ----------
+    designs : SimilarDesigns
+        N designs.
+    refinement : Refinement
+        The bases, and the number of modes.
+    speeds : ndarray, shape (N, S)
+        Speeds of each [rad/s].
+    ratio : ndarray, shape (N,), optional
+        Damping ratio of each; undamped if not given.
+    """
+
+    def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
+        stack, coarse, family, weights = stacks_of(designs, rows, basis)
+        damped = None if ratio is None else ratio[rows]
+        load = np.einsum("rt,tdn,rd->rn", weights, family.loads, designs.across[rows], optimize=True)
+        at, estimate = speeds[rows] * designs.time[rows, None], designs.estimate(basis)
+        found = solve_many(stack, coarse, at, refinement.modes, load, family.tips, damped, estimate)
+        target = np.maximum(refinement.target_of(basis), 3 * found.rounding)
+        met = np.all(found.error <= target, axis=(1, 2))
+        deflection = found.static / designs.reference.beam.length
+        return BasisAnswers((found.eigenvalue, found.error, deflection), met)
+
+    found, functions = refinement.solve(len(speeds), speeds.shape[1], solve)
+    shape = (*speeds.shape, refinement.modes)
+    nothing = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan), np.full(speeds.shape, np.nan)
+    eigenvalue, error, deflection = found or nothing
+    error = np.where(np.isnan(eigenvalue), np.inf, error)
+    return SolvedDesigns(eigenvalue / designs.time[:, None, None], error, deflection, functions)
+
+
+def frequencies_of(
+    designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None
+) -> DesignAnswers:
+    """The frequencies of similar designs, with what limits them; arguments as of `solve_frequencies`."""
+    found = solve_frequencies(designs, refinement, speeds, ratio)
+    s = found.eigenvalue
+    growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
+    words = [REFUSED, "flutter", "divergence", "stable", "neutral"]
+    status = np.select([none, growing & oscillating, growing, oscillating, s == 0], words, "overdamped")
+    frequency = np.where(np.isin(status, ("stable", "neutral")), np.imag(s) / (2 * np.pi), np.nan)
+    method = f"Ritz, at most {found.functions} functions, batched"
+    cautions = (
+        *_cautions_of_theory(designs, speeds, found.deflection, status),
+        *cautions_of_refused(status),
+        *cautions_of_error(found.error, refinement.tolerance),
+    )
+    return DesignAnswers(frequency, found.error, status, cautions, method)
+
+
+def _cautions_of_theory(
+    designs: SimilarDesigns, speeds: np.ndarray, deflection: np.ndarray, status: np.ndarray
+) -> Iterator[Caution]:
+    """Yield where linear theory ends, as `natural_modes` warns of it."""
+    unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
+    diverges = Statement(": the beam diverges; see status", kind=GROWING)
+    yield from caution_where(unstable, "a", 0.0, diverges)
+    strain = designs.strains(speeds)
+    large, bent = strain > LARGE_STRAIN, deflection > LARGE_DEFLECTION
+    if large.any():
+        said = after(": ", next(warn_of_strain(float(np.nanmax(strain)))))
+        yield from caution_where(large, "b", strain, said)
+    if bent.any():
+        at = np.unravel_index(np.nanargmax(deflection), bent.shape)
+        said = next(warn_of_static_deflection(deflection[at][None], 1.0, speeds[at][None]))
+        yield from caution_where(bent, "c", deflection, after(": ", said))
+
+
+def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
+    """A caution of designs whose answers (R, S, k) rounding leaves unsolved, if there are any."""
+    said = Statement(" there is no answer: rounding of the matrices leaves none", kind=NO_ANSWER)
+    return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
+
+
+def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
+    """Yield a caution of errors (R, S, k) past a tolerance, or past what is promised without one."""
+    worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
+    said: str = Statement(f" the estimated relative error is above {limit:g}: see error", kind=TOLERANCE)
+    if tolerance is not None and worst.max() > tolerance:
+        said = after(": ", next(warn_of_missed_tolerance(float(worst.max()), tolerance)))
+    yield from caution_where(worst > limit, "e", worst, said)
+
+
+def stacks_of(
+    designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
+) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
+    """Matrices of some designs in a basis and in the coarser one, of which family, and with which weights."""
+    family, weights = designs.family(basis), designs.weights(rows)
+    stack = family.stack(weights)
+    if family.coarse is not None:
+        return stack, stack.part(family.coarse), family, weights
+    return stack, designs.family(basis.coarser()).stack(weights), family, weights
+
+
+# Critical speeds of designs that differ in numbers only -------------------------------------------
+
+
+BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
+_SIZED_FOR = 5  # modes that suit the first basis, as for a single design
+_TO_HALF = 4  # steps from a basis to one of about half its size
+_ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
+_BENT = "rotation bends the beam at every speed, so that it does not buckle as a straight one does"
+
+
+def critical_speeds_of(
+    designs: SimilarDesigns, refinement: Refinement, single: Callable[[np.ndarray], DesignAnswers]
+) -> DesignAnswers:
+    """The critical speeds of similar designs, with what limits them.
+
+    Parameters
+    ----------
+    designs : SimilarDesigns
+        N designs.
+    refinement : Refinement
+        The bases; its number of modes is not used.
+    single : callable
+        Answers the designs of some rows one by one: where no argument and no basis decides.
+    """
+    shape = designs.count, 1, 1
+    value, error, status = np.full(shape, np.inf), np.zeros(shape), np.full(shape, DOES_NOT_BUCKLE)
+    sought = np.flatnonzero(~_stiffened(designs))
+    sized_for = _SIZED_FOR if isinstance(refinement.discretization, str) else 1
+    speed, relative, met = _search(designs, replace(refinement, modes=sized_for), sought)
+    found, left = sought[met], sought[~met]
+    value[found, 0, 0], error[found, 0, 0], status[found] = speed[met], relative[met], BUCKLES
+    bent = np.zeros((len(value), 1), dtype=bool)
+    bent[found] = (designs.across[found] != 0).any(axis=1)[:, None]
+    said = Statement(f": {_BENT}: the answer is {OUTSIDE}", kind=OUTSIDE)
+    cautions = [*cautions_of_error(error, refinement.tolerance), *caution_where(bent, "f", 0.0, said)]
+    if left.size:
+        alone = single(left)
+        status = status.astype(np.promote_types(status.dtype, alone.status.dtype))
+        value[left], error[left], status[left] = alone.value, alone.error, alone.status
+        cautions += alone.cautions
+    return DesignAnswers(value, error, status, tuple(cautions), "Ritz, batched")
+
+
+def _search(
+    designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Critical speeds, errors and whether these meet the target, (R,), of designs of some rows.
+
+    A basis is compared with one of about half its size, as for a single design.
+    """
+
+    def solve(batch: np.ndarray, basis: Discretization) -> BasisAnswers:
+        half = basis
+        for _ in range(_TO_HALF):
+            half = half.coarser()
+        weights, time = designs.weights(rows[batch]), designs.time[rows[batch]]
+        stack, coarse = (designs.family(each).stack(weights) for each in (basis, half))
+        top = np.full(len(batch), np.inf)
+        found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
+        speed, error, rounding = (values[:, 0, 0] for values in found)
+        met = np.isfinite(speed) & (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
+        # Where a basis softens at no speed, a single call decides whether there is one.
+        return BasisAnswers((speed / time, error, met.astype(float)), met | np.isinf(speed))
+
+    speed, error, met = refinement.solve(len(rows), 1, solve)[0] or [np.full(len(rows), np.nan)] * 3
+    return speed, error, met == 1.0
+
+
+def _stiffened(designs: SimilarDesigns) -> np.ndarray:
+    """Whether an argument says that rotation stiffens a design against every deflection, (N,)."""
+    two = designs.reference.physics.planes == 2
+    with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
+    if designs.reference.beam.point_masses:
+        return np.zeros(designs.count, dtype=bool)  # single calls know
+    tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
+    if not two:
+        return _is_stiffened(designs, designs.in_plane, tilting)
+    apart = ~np.any(with_inertia, axis=0)  # else the twist turns the body
+    return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
+
+
+def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
+    """Whether the form F of `beamdyn.modes.buckling` is positive without a look at its string, (N,).
+
+    Parameters
+    ----------
+    designs : SimilarDesigns
+        N designs.
+    cos2 : ndarray
+        Squared cosine of the angle of bending from the plane of rotation.
+    tilting : ndarray
+        J_e - J_1 of the tip body [kg m2].
+    """
+    L, a, sin2 = designs.reference.beam.length, designs.axial, 1 - cos2
+    m, eps = designs.tip["mass"], designs.tip["offset"]
+    mass, first, _ = moments_about_root(designs.reference.beam)
+    moment, tilt = m * eps, sin2 * tilting
+    at_root = _sum(first, m * L, moment, -a * (mass + m))
+    at_tip = _sum(m * L, moment, -m * a)
+    toppling = _sum(tilt, moment * L, -moment * a, moment * sin2 * eps)
+    reach = moment * (L + eps - a)
+    determinant = _sum(
+        *(tilt * v for v in (sin2 * L, eps, -a)), *(reach * v for v in (sin2 * L, sin2 * eps, -a))
+    )
+    upright = (at_root >= 0) & (at_tip >= 0) & (toppling >= 0) & ~((toppling == 0) & (cos2 * moment != 0))
+    return upright & ((cos2 == 0) | (a <= 0) & ((toppling == 0) | (determinant >= 0)))
+
+
+def _sum(*terms: np.ndarray | float) -> np.ndarray:
+    """Add terms; 0 where the sum is within their rounding errors."""
+    total, size = np.asarray(sum(terms)), np.asarray(sum(map(np.abs, terms)))
+    return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)

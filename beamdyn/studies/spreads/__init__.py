@@ -1,1 +1,0 @@
-"""Ranges of answers of a scene over tolerances of its inputs."""
