@@ -234,7 +234,7 @@ class _Products:
 
 @dataclass(frozen=True)
 class _Series:
-    """What the terms are made of, for H harmonics, n modes and S pairs of rates, these last.
+    """Parts of the terms, for H harmonics, n modes and S pairs of rates, these last.
 
     Parameters
     ----------

@@ -22,10 +22,9 @@ from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -410,6 +409,7 @@ def _warnings(
     error: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[Statement]:
+    """Yield what limits the response, by speeds (S,)."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
@@ -425,25 +425,9 @@ def _warnings(
             f", so that it does not move: {remedy}",
         )
         yield Statement(*said, kind=EXCITATION, remedy=remedy)
-    yield from warn_of_vibration(vibration, scene, speeds)
-    motion = check_steady_state(scene.motion)
-    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
-    if (at := error > tolerance).any():
-        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
-        yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
-    if undecided.any():
-        where = list_speeds(speeds, undecided)
-        end = ": growth_rate is within growth_rate_error"
-        yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")
-
-
-def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[Statement]:
-    """Yield a warning if the tip vibrates too far [m] for equations linear about the equilibrium."""
     if not scene.physics.large_deflection:
         yield from warn_of_deflection(vibration, scene.beam.length, speeds)
-        return
-    large = vibration > LARGE_DEFLECTION * scene.beam.length
-    if large.any():
+    elif (large := vibration > LARGE_DEFLECTION * scene.beam.length).any():
         ratio = vibration[large].max() / scene.beam.length
         yield Statement(
             f"the tip vibrates by {ratio:.2g} of the length about the equilibrium at ",
@@ -454,3 +438,12 @@ def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -
             value=ratio,
             limit=LARGE_DEFLECTION,
         )
+    motion = check_steady_state(scene.motion)
+    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
+    if (at := error > tolerance).any():
+        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
+        yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
+    if undecided.any():
+        where = list_speeds(speeds, undecided)
+        end = ": growth_rate is within growth_rate_error"
+        yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")

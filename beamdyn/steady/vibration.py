@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium
@@ -21,7 +20,13 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance
-from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics, periodic_system
+from beamdyn.steady.periodic_system import (
+    Pair,
+    PeriodicSystem,
+    generate_harmonics,
+    periodic_system,
+    split_uncoupled,
+)
 from beamdyn.steady.stability import fastest_growth
 
 UNSTABLE = "parametric instability"
@@ -95,18 +100,12 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
         lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
         free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(
-        parts=_split_uncoupled(periodic_system(equations, motion, speeds), equations),
+        parts=split_uncoupled(periodic_system(equations, motion, speeds), equations),
         tips=tips,
         static=np.zeros(tips.shape[:2]),
         without_rate=free,
         lost={_TURNING: free, _PAST: np.asarray(np.abs(speeds) >= model.solver.critical_speed)},
     )
-
-
-def _split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
-    """Split the equations into parts that no term couples, such as two planes, each with its coordinates."""
-    places = [equations.places(names) for names in equations.connected]
-    return [(system.part(each), each) for each in places]
 
 
 # About equilibria ---------------------------------------------------------------------------------
@@ -129,7 +128,7 @@ def _about_equilibria(
         along = elastica.points.tip(-state.sin * elastica.angles)
         (shape,) = equations[-1].shapes.values()
         tips.append([equations[-1].tip, along @ shape.matrix])
-    parts = _split_uncoupled(periodic_system(equations, motion, speeds), equations[0])
+    parts = split_uncoupled(periodic_system(equations, motion, speeds), equations[0])
     rate = np.zeros(len(missing))  # without the periodic coefficients
     if (known := ~missing).any():
         rate[known] = fastest_growth([replace(part[known], varying=()) for part, _ in parts])[0]

@@ -139,8 +139,12 @@ def distance_along_path(
         settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
         in a record that is rough from sample to sample.
     """
-    residual = _Residual.of(system, larger)
-    if residual is None or _grows(path, system):
+    residual, start = _Residual.of(system, larger), max(system.motion.steady_start, path.start)
+    times, coordinates, _ = path.samples
+    size = magnitude(coordinates[times >= start], system.tips)
+    quarter = len(size) // 4
+    grows = quarter > 0 and size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max()
+    if residual is None or grows:  # at steady speed, by parametric or other resonance
         return None
     (q0, v0), (e, rate) = np.split(y0, 2), np.split(y0_of_larger, 2)
     e, rate = e - residual.embedding @ q0, rate - residual.embedding @ v0
@@ -179,15 +183,6 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     amplitude = bends / w**3 * np.maximum(1.0, w * steps.piece_width.max())
     fast = w * steps.h.max() / SAMPLES > _RESOLVED
     return _BY_CHANCE * float(size_per_coordinate(residual.larger.tips @ modes) @ (amplitude * fast))
-
-
-def _grows(path: Trajectory, system: ModalSystem) -> bool:
-    """Whether the motion grows at steady speed, by parametric or other resonance."""
-    start = max(system.motion.steady_start, path.start)
-    t, q, _ = path.samples
-    size = magnitude(q[t >= start], system.tips)
-    quarter = len(size) // 4
-    return quarter > 0 and bool(size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max())
 
 
 def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_start: float) -> Iterator[slice]:

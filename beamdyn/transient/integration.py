@@ -10,12 +10,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.elastica_steps import attempt_elastica, rest_in_equilibrium
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.record_steps import (
     RecordSteps,
@@ -47,13 +48,13 @@ _CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundre
 
 
 def integrate(
-    system: ModalSystem | ElasticaSystem, y0: np.ndarray, t_end: float, tolerance: float
+    system: AnySystem, y0: np.ndarray, t_end: float, tolerance: float
 ) -> tuple[Trajectory, float, str]:
     """Integrate with the step size of the tolerance, refined while the estimated error exceeds it.
 
     Parameters
     ----------
-    system : ModalSystem or ElasticaSystem
+    system : AnySystem
         The equations.
     y0 : ndarray, shape (2 n,)
         Coordinates and velocities at time 0.
@@ -81,18 +82,27 @@ def integrate(
         path = rest_in_equilibrium(system, y0, t_end)
         attempt = partial(attempt_elastica, system, y0, t_end)
     else:
-        path = _rest_in_equilibrium(system, y0, t_end, tolerance)
+        start = _Start(system, y0, t_end, tolerance)
+        path = _rest_in_equilibrium(start)
         by_samples = is_record(system, t_end, StepSize.from_tolerance(tolerance))
-        attempt = partial(_attempt_record if by_samples else _attempt, system, y0, t_end, tolerance)
+        attempt = partial(_attempt_record if by_samples else _attempt, start)
     if path is not None:
         return path, 0.0, "no steps: the beam stays in equilibrium"
     return shorten_steps(attempt, tolerance)
 
 
-def _rest_in_equilibrium(
-    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float
-) -> Trajectory | None:
+class _Start(NamedTuple):
+    """A run of a straight beam: equations, coordinates and velocities at time 0, end [s] and tolerance."""
+
+    system: ModalSystem
+    y0: np.ndarray
+    t_end: float
+    tolerance: float
+
+
+def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
     """The path of a beam that stays at rest, by constant equations and an initial state in equilibrium."""
+    system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None
     _, K, f = system.coefficients(np.linspace(0, t_end, _TIMES_COMPARED))
@@ -105,19 +115,13 @@ def _rest_in_equilibrium(
     return Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
 
 
-def _attempt(
-    system: ModalSystem,
-    y0: np.ndarray,
-    t_end: float,
-    tolerance: float,
-    step_size: StepSize,
-    _: Attempt | None = None,
-) -> Attempt:
+def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
     """Integrate with equal steps in each segment.
 
     Neighbouring parts of one smooth piece are joined where steps of one size cost fewer steps more than
     the preparation of another segment is worth.
     """
+    system, y0, t_end, tolerance = start
     breakpoints = set(smooth_piece_ends(system.motion, t_end))
     edges, steps = [0.0], []
     parts = split_at_breakpoints(system.motion, t_end)
@@ -136,19 +140,13 @@ def _attempt(
     return _judged(system, step_size, path, ERROR_ORDER)
 
 
-def _attempt_record(
-    system: ModalSystem,
-    y0: np.ndarray,
-    t_end: float,
-    tolerance: float,
-    step_size: StepSize,
-    before: Attempt | None = None,
-) -> Attempt:
+def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) -> Attempt:
     """Integrate a motion given by samples, after another attempt if there was one.
 
     Loads without kinks are integrated so much better than those across samples that one step between two
     samples comes after steps over many.  Later it is at least one more: so many steps have been tried.
     """
+    system, y0, t_end, tolerance = start
     if before is not None:
         most, last = (most_steps_in_piece(system, t_end, size) for size in (step_size, before.step_size))
         wanted = None

@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import NoModelAnswer
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.directions import check_direction
+from beamdyn.equations.elastica import QUANTITIES
+from beamdyn.equations.root_motion import Quantity
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
+from beamdyn.modes.modal.eigenproblem import Solver
+from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.along_path import distance_along_path
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.gauss import growth_without_bound
-from beamdyn.transient.initial_state import initial_state
 from beamdyn.transient.integration import follow_steps, integrate
 from beamdyn.transient.step_size import TooManySteps
 from beamdyn.transient.system import ModalSystem
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 _LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as unbounded
+_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
+_REMEDY = "give 'rest' or an array"
 _FINER_MODEL = 1e-3  # error of the modes over the tolerance
 _Found = TypeVar("_Found")
 
@@ -39,7 +44,7 @@ _Found = TypeVar("_Found")
 class Solution(NamedTuple):
     """Motion in time: equations, path, errors of time integration [m], largest deflection [m] and method."""
 
-    system: ModalSystem | ElasticaSystem
+    system: AnySystem
     path: Path
     error: float
     largest: float
@@ -107,7 +112,7 @@ class TransientProblem(FieldsOnly):
         """The discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
-    def system(self) -> ModalSystem | ElasticaSystem:
+    def system(self) -> AnySystem:
         """Equations of the run, without the coordinates that stay at rest."""
         if self.scene.physics.large_deflection:
             return ElasticaSystem.of_model(self.model, self.basis, self.motion)
@@ -185,7 +190,7 @@ class TransientProblem(FieldsOnly):
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
     def _refined_of_same_functions(self) -> Self | None:
-        """As `refined`, of the functions of this problem if these suffice: no choice takes time."""
+        """Problem with more modes, of the functions of this one if these suffice: no choice takes time."""
         finer = self.refined()
         if finer is None or finer.basis.modes is None:
             return finer
@@ -193,7 +198,7 @@ class TransientProblem(FieldsOnly):
         same = ensure_size(self.scene, own, finer.basis.modes) is own
         return replace(finer, discretization=own) if same else finer
 
-    def follow_with_more_modes(self, path: Trajectory) -> tuple[ModalSystem | ElasticaSystem, Path] | None:
+    def follow_with_more_modes(self, path: Trajectory) -> tuple[AnySystem, Path] | None:
         """Integrate with the modes of `refined` in the steps of a path: equations and motion; or None.
 
         Two runs in the same steps differ by the modes of one of them; neither needs an error of its own.
@@ -219,3 +224,87 @@ class TransientProblem(FieldsOnly):
             return None
         states = (initial_state(each.initial, s) for each, s in ((self, own), (finer, system)))
         return distance_along_path(path, own, system, *states)
+
+
+# The beginning -------------------------------------------------------------------------------------
+
+
+def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
+    """Coordinates and velocities (2 n,) at "rest", in "equilibrium", or as given by an array.
+
+    Raises
+    ------
+    ValueError
+        If it is another word, an array of another shape, or there is no equilibrium.
+    """
+    n = system.size
+    if isinstance(initial, str):
+        if initial == "rest":
+            return np.zeros(2 * n)
+        if initial == "equilibrium":
+            found = _bent_equilibrium(system) if isinstance(system, ElasticaSystem) else _equilibrium(system)
+            return np.concatenate([found, np.zeros(n)])
+        raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
+    y0 = as_floats(initial)
+    if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
+        bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
+        raise InvalidValue("initial", initial, bound)
+    return y0
+
+
+def _equilibrium(system: ModalSystem) -> np.ndarray:
+    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    _, K, f = system.coefficients(np.zeros(()))
+    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
+        bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
+        raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
+    return np.linalg.solve(K, f)
+
+
+@dataclass(frozen=True)
+class LoadAtOnce(SteadyLoad):
+    """Equilibrium under all loads at one time, gravity and angular acceleration included.
+
+    The continuation parameter is the squared speed, and all other quantities grow in proportion to it; for a
+    beam that does not rotate it is the fraction of the loads.
+
+    Parameters
+    ----------
+    quantities : dict of str to float
+        Quantities of the root's motion, per unit of the parameter.
+    """
+
+    quantities: dict[Quantity, float] | None = None
+
+    @cached_property
+    def _values(self) -> dict[Quantity, float]:
+        """Quantities that differ from 0, with the push."""
+        values = dict(self.quantities or {})
+        values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
+        return {quantity: value for quantity, value in values.items() if value}
+
+    @property
+    def transverse(self) -> float:
+        """Transverse acceleration of the root, or what else bends the straight beam, per parameter."""
+        given = self._values.get("root_transverse", 0.0)
+        return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
+
+
+def _bent_equilibrium(system: ElasticaSystem) -> np.ndarray:
+    """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
+    root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
+    speed = abs(float(root.speed)) or 1.0
+    is_bent = system.branch == "bent"
+    if is_bent and not root.speed:
+        bound = "at time 0 the beam does not rotate, and no branch but that of the beam at rest exists"
+        raise InvalidValue(
+            "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
+        )
+    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
+    load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
+    try:
+        return find_bent(load, speed) if is_bent else follow_to(load, np.array([speed]))[0]
+    except NoEquilibrium as error:
+        bound = f"at time 0 there is none: {error}"
+        raise InvalidValue("initial", "equilibrium", bound, _REMEDY) from None

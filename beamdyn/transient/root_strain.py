@@ -10,7 +10,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
@@ -37,9 +37,7 @@ class RootStrain:
     per_moment: float
 
     @classmethod
-    def of_scene(
-        cls, scene: Scene, discretization: Discretization, system: ModalSystem | ElasticaSystem
-    ) -> RootStrain:
+    def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
         """Strain in the coordinates of the equations of a scene; a ValueError without an outer fibre."""
         if isinstance(system, ElasticaSystem):
             bound = "the root strain of a beam with large deflection is not computed"

@@ -13,10 +13,9 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver, solve_ivp
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.gauss import LinearSystem, Segment, StepMaps, step_maps, tableau
 from beamdyn.transient.integration import integrate
-from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import SAMPLES
 
 _KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
@@ -69,7 +68,7 @@ def check_method(method: object) -> None:
 
 
 def integrate_by_solve_ivp(
-    system: ModalSystem | ElasticaSystem,
+    system: AnySystem,
     y0: np.ndarray,
     t_end: float,
     method: str | type[OdeSolver],
@@ -80,7 +79,7 @@ def integrate_by_solve_ivp(
 
     Parameters
     ----------
-    system : ModalSystem or ElasticaSystem
+    system : AnySystem
         The equations.
     y0 : ndarray, shape (2 n,)
         Coordinates and velocities at time 0.

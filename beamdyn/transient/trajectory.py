@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem
 from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
@@ -191,7 +191,7 @@ def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -
 # The tip ------------------------------------------------------------------------------------------
 
 
-def sample_tip(system: ModalSystem | ElasticaSystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
+def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Samples of the tip's deflection: times (k,) [s] and deflections (k, 1 or 2) [m]."""
     if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
         t, deflections, _ = path.projected(system.tips).samples  # far fewer numbers than all coordinates

@@ -24,7 +24,7 @@ from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.problem import Solution, TransientProblem, unless_unbounded
 from beamdyn.transient.root_strain import RootStrain
@@ -89,7 +89,7 @@ class Transient(StatesModelError):
     largest: float
     warnings: tuple[str, ...]
     provenance: Provenance
-    system: ModalSystem | ElasticaSystem = field(repr=False)
+    system: AnySystem = field(repr=False)
     path: Path = field(repr=False)
     request: TransientRequest = field(repr=False)
 
@@ -122,7 +122,7 @@ class Transient(StatesModelError):
         return self.request.run_refined()
 
     @cached_property
-    def with_more_modes(self) -> tuple[ModalSystem | ElasticaSystem, Path] | None:
+    def with_more_modes(self) -> tuple[AnySystem, Path] | None:
         """Equations and motion with the modes of `refined`, where possible in the steps of this run.
 
         None if there is no larger model.
@@ -178,7 +178,7 @@ class Transient(StatesModelError):
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         return self.distance_from_path(other.system, other.path)
 
-    def distance_from_path(self, system: ModalSystem | ElasticaSystem, path: Path) -> float:
+    def distance_from_path(self, system: AnySystem, path: Path) -> float:
         """Largest difference of the tip deflection from that of another motion of the same scene [m]."""
         t, q, _ = self.path.samples
         own = self.system.deflections(q)
