@@ -130,10 +130,8 @@ def _solve(request: SweepRequest, speed: float) -> CaseResult:
             peak, largest = largest_in_each(lambda q: magnitude(q, outputs), tip, windows)
             largest, each = max(peak, largest), [peak]
             if len(outputs) > 1:
-                each = [
-                    largest_on(lambda q, one=one: magnitude(q, one[None]), tip, *request.window)
-                    for one in outputs
-                ]
+                alone = (tip.projected(output[None]) for output in outputs)
+                each = [largest_on(lambda q: np.abs(q[:, 0]), one, *request.window) for one in alone]
     except (ArithmeticError, np.linalg.LinAlgError) as stopped:
         peak, largest, error, each, reason = np.nan, np.nan, np.nan, [], reason_of(stopped)
     if not np.isfinite([peak, largest]).all():
