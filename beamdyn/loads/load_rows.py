@@ -116,6 +116,7 @@ class LoadRows:
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
+    """Differences of rows, of which those that are missing are 0."""
     names: dict[Quantity, None] = dict.fromkeys([*first, *second])
     return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
 

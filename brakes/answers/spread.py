@@ -11,9 +11,10 @@ import numpy as np
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.spread_options import OPTION, in_units_of, parse_spreads
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis
+from beamdyn.common.edge.varying import SPREAD as OPTION
+from beamdyn.common.edge.varying import in_units_of, parse_spreads
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
