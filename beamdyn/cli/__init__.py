@@ -1,7 +1,16 @@
 """The command ``beamdyn``."""
 
+from typing import Any
+
 from beamdyn.analyses.values import parse_speeds
 from beamdyn.cli.program import command_line, main
 from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
-__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "command_line", "main", "parse_speeds"]
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main", "parse_speeds"]
+
+
+def __getattr__(name: str) -> Any:
+    """The program with all its commands, `app`, which is made when somebody asks for it."""
+    if name != "app":
+        raise AttributeError(f"module 'beamdyn.cli' has no attribute {name!r}")
+    return command_line()

@@ -16,8 +16,8 @@ ROOT = Path(__file__).parents[2]
 PROGRAMS = {"beamdyn": beams, "brakes": brakes}
 COMMANDS = [
     (program, name)
-    for program, app in {"beamdyn": beams.command_line(), "brakes": brakes.app}.items()
-    for name in app.resolved_commands()
+    for program, module in PROGRAMS.items()
+    for name in module.app.resolved_commands()
     if not name.startswith("-")
 ]
 LONG = ("app", "reproduce", "tradeoff", "branches")  # that serve, or compute for many seconds
