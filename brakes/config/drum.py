@@ -144,16 +144,16 @@ class DrumInput(CoreSection):
     @cached_property
     def core(self) -> DrumBrake:
         """The brake."""
-        if self.brake.assembly == "single":
-            if self.second_shoe is not None:
-                raise ValueError('second_shoe does not go with assembly = "single"; leave it out')
-            return DrumBrake((self.shoe.core,), (True,))
         given = {key: value for key, value in self.second_shoe or () if value is not None}
         try:  # the second shoe is what [second_shoe] gives, and the rest of the first
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
             between = ": " if " " in error.field else "."  # which is no key
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
+        if self.brake.assembly == "single":
+            if self.second_shoe is not None:
+                raise ValueError('second_shoe does not go with assembly = "single"; leave it out')
+            return DrumBrake((self.shoe.core,), (True,))
         return (simplex if self.brake.assembly == "simplex" else duplex)(self.shoe.core, second)
 
     def solve(self) -> BrakeResult:

@@ -7,6 +7,7 @@ from functools import cached_property
 from os import PathLike
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
@@ -178,26 +179,22 @@ def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
     points = data.get("points")
     known = points if isinstance(points, dict) else {}
 
-    def place(value: Any) -> Any:
+    def place(value: Any, many: bool = False) -> Any:
+        if many and isinstance(value, list):
+            return [place(each) for each in value]
         return known.get(value, value) if isinstance(value, str) else value
 
     made = dict(data)
     for part in (*JOINTS, *LOADS):
-        hints = {
-            k: hint for k, hint in described_hints(part).items() if type(description(hint)) is DescribedPoint
-        }
-        tables = data.get(part.key())
-        for number, table in enumerate(tables if isinstance(tables, list) else ()):
-            if isinstance(table, dict):
-                replaced = {
-                    key: [*map(place, table[key])]
-                    if is_list(hint) and isinstance(table[key], list)
-                    else place(table[key])
-                    for key, hint in hints.items()
-                    if key in table
-                }
-                made[part.key()] = [*made[part.key()]]
-                made[part.key()][number] = table | replaced
+        hints = described_hints(part).items()
+        many = {key: is_list(hint) for key, hint in hints if isinstance(description(hint), DescribedPoint)}
+        if isinstance(tables := data.get(part.key()), list):
+            made[part.key()] = [
+                table | {key: place(table[key], many[key]) for key in many if key in table}
+                if isinstance(table, dict)
+                else table
+                for table in tables
+            ]
     return made
 
 
@@ -212,14 +209,13 @@ for _part in (*JOINTS, *LOADS):
         _required = SECTIONS[_part.key()].model_fields[_key].is_required()
         _keys[_required].append(f"{_key} ({_otherwise})" if _otherwise else _key)
     PARTS[_part.key()] = f"{_part.label}: {'; '.join(', '.join(some) for some in _keys.values() if some)}"
-_LISTED = ("points", *PARTS)
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
     """Inputs of the caliper or mechanism that the tables of a file describe.
 
-    Those of a caliper without dimensions where there is no such name; those of a mechanism are one for each of
-    its points, one for each list of parts, and the rest.
+    A caliper without dimensions has those that all have; a mechanism has one for each of its points, one for
+    each list of parts, and the rest.
     """
     name, points = tables.get("caliper"), tables.get("points")
     if isinstance(name, str):
@@ -262,11 +258,11 @@ def named_text(name: str) -> str:
     lines = [f"caliper = {show(named(name).caliper)}", "", "[dimensions]"]
     for entry in inputs_of_tables({"caliper": name}):
         if entry.path.startswith("dimensions."):
-            pair, value = isinstance(entry.default, tuple), show(entry.default)
-            if pair or entry.quantity.unit == "m":
-                lengths = [
-                    f'"{1e3 * part:.12g} mm"' for part in (entry.default if pair else (entry.default,))
-                ]
-                value = f"[{', '.join(lengths)}]" if pair else lengths[0]
+            default: Any = entry.default
+            if entry.quantity.unit == "m":
+                lengths = [f'"{1e3 * part:.12g} mm"' for part in np.ravel(default).tolist()]
+                value = f"[{', '.join(lengths)}]" if isinstance(default, tuple) else lengths[0]
+            else:
+                value = show(default)
             lines.append(f"{entry.name} = {value}")
     return "\n".join(lines) + "\n"
