@@ -61,7 +61,7 @@ READERS = {
     "beamdyn/common/screens/own_names.py",
     "beamdyn/common/screens/reading.py",
     "beamdyn/common/drawing/symbols.py",
-    "beamdyn/common/edge/columns.py",
+    "beamdyn/common/edge/toml_columns.py",
     "beamdyn/common/edge/csv_columns.py",
     "beamdyn/common/edge/data_text.py",
     "beamdyn/common/edge/units.py",

@@ -14,8 +14,14 @@ from matplotlib.figure import Figure
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen
-from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_cases
+from beamdyn.common.edge.input_sweep import (
+    MOST_ONE_BY_ONE,
+    InputSweep,
+    Output,
+    chosen,
+    one_by_one,
+    solve_cases,
+)
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import check_designs

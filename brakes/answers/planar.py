@@ -6,10 +6,9 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.edge.input_sweep import Output
@@ -25,6 +24,9 @@ from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROWS = 5  # of a stroke's table
 

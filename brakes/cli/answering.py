@@ -13,9 +13,7 @@ from cyclopts import App, Parameter
 from beamdyn.common.edge import program
 from beamdyn.common.edge.outputs import Outputs, write
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.spread_options import OPTION, SpreadOptions
-from beamdyn.common.edge.varying import OPTION as VARY
-from beamdyn.common.edge.varying import VaryOptions
+from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Question
@@ -96,7 +94,7 @@ def run_command(
     given = varying.options | spreading.options
     question = Question.of(f"brakes {command}", file, text, **options, **given, what=what)
     spreading.check(varying)
-    many = VARY if varying.vary else OPTION if spreading.spread else ""
+    many = OPTION if varying.vary else SPREAD if spreading.spread else ""
     for option, path in written.items():
         if many and path is not None:
             raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
@@ -106,7 +104,7 @@ def run_command(
         _answer_many(brake, tables, question, file, varying, spreading, what, outputs)
         return
     if what is not None:
-        raise ValueError(f"--what goes with --vary or {OPTION}: without them, all results are shown")
+        raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
     more = [(part.title, partial(part.in_report, answer)) for part in brake.more]
