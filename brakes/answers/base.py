@@ -37,8 +37,7 @@ from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.screens.folded_parts import FoldedPart
-from beamdyn.common.screens.screens import Handle, KeyResult, Slider
+from beamdyn.common.screens.screens import FoldedPart, Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
 
 if TYPE_CHECKING:
