@@ -1,4 +1,4 @@
-"""What a command, a screen and an HTML report show of each type of brake; the pattern is `base.BrakeType`.
+"""Contents of a command, a screen and an HTML report on each type of brake; the pattern is `base.BrakeType`.
 
 Types of brakes with no options of their own are listed in `STANDARD`: a command and a screen for each.
 """

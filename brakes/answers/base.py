@@ -75,7 +75,7 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What to look at although there is an answer: one sentence each."""
+        """Doubts although there is an answer: one sentence each."""
         return ()
 
     @property

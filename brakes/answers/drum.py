@@ -164,7 +164,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
         return DrumAnswer(design, design.solve())
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Explain the symbols of the form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

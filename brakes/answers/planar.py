@@ -1,4 +1,4 @@
-"""What answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
+"""Parts that answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
         yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
@@ -273,7 +273,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, its status first; see `Result.headline`."""
+        """The answer in one line, its status first; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -1,4 +1,4 @@
-"""What every joint and every load is, brings and is given; the base classes tell how to write a new one."""
+"""Joints and loads: what each is, brings and is given; the base classes tell how to write a new one."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ class Part:
 
     @classmethod
     def kind(cls) -> str:
-        """What it is in words, such as "rotation lock"."""
+        """Name of the kind, such as "rotation lock"."""
         return "".join(f" {c.lower()}" if c.isupper() else c for c in cls.__name__).strip()
 
     @classmethod
@@ -204,7 +204,7 @@ class Part:
         return f"{self.kind()} {self.name!r}"
 
     def rows(self) -> tuple[Row, ...]:
-        """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
+        """Rows that it forbids (a joint), or the coordinate on which it does its work (a load)."""
         raise NotImplementedError
 
     def shapes(self) -> tuple[Shape, ...]:
@@ -317,7 +317,7 @@ class Load(Part):
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:
-        """The same load of another magnitude [N, N m].
+        """The load with another magnitude [N, N m].
 
         Raises
         ------
@@ -347,5 +347,5 @@ class AppliedLoad(Load):
         return self.magnitude
 
     def with_magnitude(self, magnitude: float | None) -> Self:
-        """The same load of another magnitude [N, N m]."""
+        """The load with another magnitude [N, N m]."""
         return replace(self, magnitude=magnitude)
