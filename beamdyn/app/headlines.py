@@ -52,7 +52,7 @@ def of_numbers(modes: Modes) -> Iterator[KeyResult]:
 
 
 def of_modes(modes: Modes) -> Iterator[KeyResult]:
-    """Those of `of_numbers`, and the largest model error, which takes longer than the modes."""
+    """The numbers of `of_numbers`, and the largest model error, which takes longer than the modes."""
     yield from of_numbers(modes)
     if np.isfinite(modes.model_error).any():
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))

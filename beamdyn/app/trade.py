@@ -83,7 +83,7 @@ def solve(tables: Mapping[str, Any]) -> Trade:
 
 
 def _timed(run: Callable[[], Modes]) -> tuple[Modes, float]:
-    """What a function returns, and its shortest processor time [s]."""
+    """The last of several results of a function, and its shortest processor time [s]."""
     found, times = [], []
     for _ in range(_RUNS):
         start = process_time()
@@ -203,7 +203,7 @@ def _best(diagram: Diagram) -> str:
 
 
 def _chosen_table(answer: Trade) -> RenderableType:
-    """What the tolerance chooses, and its errors, mode by mode."""
+    """Table of the frequencies with the model that the tolerance chooses, and their errors, mode by mode."""
     modes, known = answer.modes, answer.modes.model_error
     rows = [
         (

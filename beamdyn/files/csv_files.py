@@ -89,7 +89,7 @@ class RecordedQuantity(Quantity):
 
 @cache
 def _si_value(unit: str, of: str) -> Decimal:
-    """What one of a unit is in SI."""
+    """Size of a unit in SI."""
     return Decimal(repr(quantity(f"1 {unit}", of)))
 
 

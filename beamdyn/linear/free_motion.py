@@ -87,7 +87,7 @@ class FreeMotion:
 
     @property
     def finite_poles(self) -> np.ndarray:
-        """Those of what has mass."""
+        """Poles of the coordinates that have mass."""
         inverse = self.inverse_poles[self.inverse_poles != 0]
         free = np.isinf(inverse)
         return np.where(free, 0.0, 1 / np.where(free, 1.0, inverse))

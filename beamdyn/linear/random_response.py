@@ -115,7 +115,7 @@ class RandomResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The output's rms and its error in one line; see `Result.headline`."""
         yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))

@@ -86,7 +86,7 @@ class RandomLoads(SpanLoads):
     case: ClassVar[Case] = Case("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Largest moment and strain to be expected, with errors, in one line; see `Result.headline`."""
         yield f"{counted(len(self.x), 'station')} at {self.say_speed(self.speed)}"
         for name in ("moment", "strain"):
             if np.isfinite(self.values(name)).any():
@@ -105,7 +105,7 @@ class RandomLoads(SpanLoads):
         return self._of(quantity, self.statistics_error.rms)
 
     def rms_in_turn(self, quantity: str = "strain") -> np.ndarray:
-        """The same at the angle of rotation at which it is largest, shape (S, k)."""
+        """Root mean square at the angle of rotation at which it is largest, shape (S, k)."""
         return self._of(quantity, self.statistics.rms_in_turn)
 
     def mean(self, quantity: str = "strain") -> np.ndarray:

@@ -148,7 +148,7 @@ class SpanLoads(Result):
     case: ClassVar[Case]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Largest moment and strain of all cases and stations in one line; see `Result.headline`."""
         yield f"{len(self.cases)} x {counted(len(self.x), 'station')}"
         for name in ("moment", "strain"):
             size = np.abs(self.values(name))

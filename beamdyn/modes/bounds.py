@@ -84,7 +84,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Upper bounds and relative width in one line; see `Result.headline`."""
         yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
         yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
 

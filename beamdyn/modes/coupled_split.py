@@ -78,7 +78,7 @@ class CoupledSplit(Enclosure):
 
     @property
     def _product_of_inertia(self) -> float:
-        """That of the tip body on which rotation works where it is turned about the beam."""
+        """The tip body's product of inertia, on which rotation works where it is turned."""
         beam, (d, n) = self.scene.beam, np.array(plane_components(self.scene))
         return -float(d @ centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist) @ n)
 

@@ -70,7 +70,7 @@ class SettingAngleLimits(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Both limits, the top speed and the error in one line; see `Result.headline`."""
         yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
         yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
 

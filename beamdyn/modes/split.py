@@ -130,7 +130,7 @@ class Enclosure(ABC):
         return self._lower_form(self._coefficients(z), self._absolute_coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """The same at z = 0 and another speed: without eigenvalues < 0, no slower speed is critical."""
+        """Lower form at z = 0 and a speed: without eigenvalues < 0, no slower speed is critical."""
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:

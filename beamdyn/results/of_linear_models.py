@@ -106,7 +106,7 @@ def squared(unit: str) -> str:
 
 
 def matrices_table(result: Matrices) -> Group:
-    """What each coordinate is, with the diagonals of mass and stiffness."""
+    """Table of the coordinates, with the diagonals of mass and stiffness."""
     columns = {
         "row": [str(k + 1) for k in range(len(result.coordinates))],
         "coordinate": result.coordinates,

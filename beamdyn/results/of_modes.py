@@ -86,7 +86,7 @@ def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
 
 
 def csv_directions(scene: Scene) -> tuple[str, ...]:
-    """What heads of files say of the two directions, at any bending angle; nothing where there is one."""
+    """Names of the two directions in heads of files, at any bending angle; none where there is one."""
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 

@@ -75,7 +75,7 @@ class RotorDrawing(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Radius, length and angles in one line; see `Result.headline`."""
         yield f"radius {self.say_length(self.radius)}, length {self.say_length(self.length)}"
         angles = "setting angle", "bending angle", "precone"
         for name in angles:
@@ -84,7 +84,7 @@ class RotorDrawing(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is not as drawn."""
+        """Warnings of parts that are not as drawn."""
         known = "" if self.section_known else "the beam's section is not known: it is drawn as a strip"
         return (known,) if known else ()
 

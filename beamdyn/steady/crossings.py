@@ -125,7 +125,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Number, speeds and error of the crossings in one line; see `Result.headline`."""
         yield f"{len(self)} up to {self.say_speed(self.speeds[-1])}"
         unit, factor = self.display_units.speed_unit()
         yield listed([c.speed * factor for c in self], unit)
@@ -139,7 +139,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
+        """Changes of the speed of each crossing by effects left out, shape (k,)."""
         return left_out_of_resonances(self.scene, self.crossings, self.frequency.shape[1])
 
     @property

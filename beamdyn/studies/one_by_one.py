@@ -225,7 +225,7 @@ def _read_crossings(asked: _Asked, found: Crossings) -> SpeedAnswer:
 
 
 def _effects_of_crossings(asked: _Asked, found: Crossings) -> LeftOutEffects:
-    """Those of the lowest crossing of each mode with each line; nan where there is none."""
+    """Changes of the lowest crossing of each mode with each line; nan where there is none."""
     keys = [crossing_key(each) for each in found]
     places = [keys.index(each.key) if each.key in keys else -1 for each in asked.question.resonances]
     effects = found.left_out_effects
@@ -294,7 +294,7 @@ _ANALYSES: dict[str, _SingleCall] = {
 def left_out_of_design(
     question: StudyQuestion, scene: Scene, design: Mapping[str, float]
 ) -> LeftOutEffects | None:
-    """What the effects left out would change in the answer of a design.
+    """Find how much effects left out would change the answer of a design.
 
     Parameters
     ----------

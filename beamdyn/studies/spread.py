@@ -86,7 +86,7 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 
 
 def _columns(values: np.ndarray, columns: Sequence[int | None]) -> np.ndarray:
-    """Those of the answers, in their order; nan for those that are missing."""
+    """Columns of the answers, in their order; nan for those that are missing."""
     none = np.full(len(values), np.nan)
     return np.stack([none if column is None else values[:, column] for column in columns], axis=1)
 
@@ -103,7 +103,7 @@ def _of_critical_speed(question: StudyQuestion, names: list[str]) -> tuple[Sensi
 
 
 def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
-    """Those of the lowest crossing of each mode with each line."""
+    """Sensitivities of the lowest crossing of each mode with each line, and their columns."""
     options = {"inputs": names, "discretization": question.discretization}
     found = crossing_sensitivities(question.scene, question.speed, question.modes, **options)
     wanted = [each.label for each in question.resonances]
@@ -245,7 +245,7 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """That of all designs so far: how many worst cases take is not known before."""
+        """Progress over all designs so far: the number that worst cases need is not known before."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 

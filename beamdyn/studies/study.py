@@ -257,7 +257,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
 
 
 def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
-    """What workers and executors run."""
+    """Answer the designs of a task; workers and executors run this."""
     return task.answers()
 
 
@@ -332,7 +332,7 @@ class _Request:
 
     @property
     def compared_with(self) -> str:
-        """By what the errors were estimated."""
+        """Name of the solution from whose difference the errors were estimated."""
         return "the coarser basis of each" if self.is_similar else "that of each call"
 
     def check(self) -> None:

@@ -65,7 +65,7 @@ class ElasticaSystem:
 
     @cached_property
     def straight(self) -> ModalSystem:
-        """The same system, linear about the straight beam."""
+        """The linear system about the straight beam, under the same motion."""
         return ModalSystem(self.equations, self.motion)
 
     def root(self, t: np.ndarray) -> RootMotion:

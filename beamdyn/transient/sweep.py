@@ -139,7 +139,7 @@ class Sweep(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Speeds, the largest peak and its error in one line; see `Result.headline`."""
         yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
         if np.isfinite(self.peaks).any():
             at = int(np.nanargmax(self.peaks))
@@ -164,7 +164,7 @@ class Sweep(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the largest peak (1,), by running its case again."""
+        """Changes of the largest peak (1,) by effects left out, found by running its case again."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
@@ -308,7 +308,7 @@ class _Chunk:
 
 
 def _solve(chunk: _Chunk) -> list[CaseResult]:
-    """What workers and executors run."""
+    """Solve the cases of a part of the sweep; workers and executors run this."""
     return solve_chunk(chunk.request, chunk.speeds)
 
 

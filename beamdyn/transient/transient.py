@@ -108,7 +108,7 @@ class Transient(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Duration, largest deflection and errors in one line; see `Result.headline`."""
         error = f"time {error_at_most(self.time_error / (self.largest or 1.0))}"
         yield from (f"{number(self.path.end, 's')}: up to {self.say_length(self.largest)}", error)
         yield warned(self.warnings)
@@ -172,12 +172,12 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the largest deflection: changes of shape ()."""
+        """Changes of the largest deflection by effects left out, of shape ()."""
         return left_out_of_transient(self)
 
     @property
     def relative_mode_error(self) -> float:
-        """The same as `mode_error`."""
+        """Relative error by the modes left out: `mode_error` under the name that results share."""
         return self.mode_error
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:

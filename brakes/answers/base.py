@@ -65,7 +65,7 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What to look at although there is an answer: one sentence each."""
+        """Warnings of an answer that was found nevertheless, one sentence each."""
         return ()
 
     @property

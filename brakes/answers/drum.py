@@ -174,7 +174,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
         return DrumAnswer(design, design.solve())
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Sketch that explains the symbols of the form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

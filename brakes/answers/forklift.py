@@ -360,7 +360,7 @@ class VehicleType(ForkliftType):
     stages = ("vehicle",)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Sketch that explains the symbols of the form."""
         return truck_sketch()
 
 
@@ -383,7 +383,7 @@ class KinematicsType(ForkliftType):
     stages = ("kinematics",)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Sketch that explains the symbols of the form."""
         return duo_servo_sketch()
 
 
@@ -406,7 +406,7 @@ class ForcesType(ForkliftType):
     stages = ("forces",)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Sketch that explains the symbols of the form."""
         return levers_sketch()
 
 

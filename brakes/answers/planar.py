@@ -139,7 +139,7 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The driver, the error and the status each way in one line; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
         yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
@@ -271,7 +271,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, its status first; see `Result.headline`."""
+        """The status, then the main results, in one line; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -142,7 +142,7 @@ class Kinematics(Result):
     interference: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Clearance, and the turn at each event, in one line; see `Result.headline`."""
         yield f"clearance {number(1e3 * self.clearance, 'mm')}"
         yield from (f"{each.name} at {number(np.degrees(each.turn), 'deg')}" for each in self.events)
         yield warned(self.interference)

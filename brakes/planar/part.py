@@ -72,7 +72,7 @@ class _Wanted(NamedTuple):
 
 @cache
 def _wanted(core: type) -> dict[str, _Wanted]:
-    """What is wanted of each input of a dataclass: told once, since designs are made by the thousand."""
+    """Requirements on each input of a dataclass: told once, since designs are made by the thousand."""
     hints = described_hints(core)
     return {name: _read(hints[name], described) for name, described in descriptions(core).items()}
 
@@ -201,7 +201,7 @@ class Part:
 
     @classmethod
     def kind(cls) -> str:
-        """What it is in words, such as "rotation lock"."""
+        """Kind of part in words, such as "rotation lock"."""
         return "".join(f" {c.lower()}" if c.isupper() else c for c in cls.__name__).strip()
 
     @classmethod
@@ -215,7 +215,7 @@ class Part:
         return f"{self.kind()} {self.name!r}"
 
     def rows(self) -> tuple[Row, ...]:
-        """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
+        """Motions that a joint forbids, or the coordinate on which a load does its work."""
         raise NotImplementedError
 
     def shapes(self) -> tuple[Shape, ...]:
@@ -328,7 +328,7 @@ class Load(Part):
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:
-        """The same load of another magnitude [N, N m].
+        """A copy with another magnitude [N, N m].
 
         Raises
         ------
@@ -358,5 +358,5 @@ class AppliedLoad(Load):
         return self.magnitude
 
     def with_magnitude(self, magnitude: float | None) -> Self:
-        """The same load of another magnitude [N, N m]."""
+        """A copy with another magnitude [N, N m]."""
         return replace(self, magnitude=magnitude)

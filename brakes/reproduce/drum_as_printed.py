@@ -210,7 +210,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """What follows for a brake engineer, a paragraph each."""
+    """The conclusions for a brake engineer, a paragraph each."""
     printed, right, pivot = table_1(), corrected(), corrected(pressure_zero="pivot")
     short, long = (float(printed.total[i] / right.torque[i]) for i in (0, -1))
     yield (

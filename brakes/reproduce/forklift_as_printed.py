@@ -43,7 +43,7 @@ class PrintedStop(Stop):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many do not stop."""
+        """Sentence that explains the status; of many cases, how many do not stop."""
         return _LIFTED.get(str(self.status)) or super().message
 
 

@@ -103,7 +103,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """What follows for a brake engineer, a paragraph each."""
+    """The conclusions for a brake engineer, a paragraph each."""
     printed, right = _stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)

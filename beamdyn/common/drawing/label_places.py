@@ -87,7 +87,7 @@ class Obstacles:
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
-        """The same sums over cells with symbols and ends of lines."""
+        """Sums from the upper left corner over cells with symbols or ends of lines, like `_covered`."""
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
         around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]

@@ -26,7 +26,7 @@ class Paper:
 
     @property
     def height(self) -> float:
-        """Of all rows."""
+        """Height of all rows together."""
         return sum(self.heights)
 
     @classmethod

@@ -212,7 +212,7 @@ def _wholes(field: str) -> Iterator[str]:
 
 
 def _found(given: Any, place: str) -> Any:
-    """What stands at a place of a table, such as "width.values[1]"; None if there is nothing."""
+    """The entry at a place of a table, such as "width.values[1]"; None if there is nothing."""
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
         try:
             given = given[int(index) if index else key]
@@ -239,7 +239,7 @@ def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: 
 
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
-    """What a refusal by the core says of what is given at a place of a file, as that has it."""
+    """The message of a refusal by the core, with the place in a file and the value as the file has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return str(_as_written(kind(**said), given))

@@ -157,7 +157,7 @@ def quote(word: str) -> str:
 
 
 def _advice(word: str) -> str:
-    """What is wrong with a word that is not a number."""
+    """The reason why a word is not a number, and how to write it."""
     if strange := next((c for c in word if not c.isascii()), ""):
         name = unicodedata.name(strange, "no name").lower()
         return f" with the character U+{ord(strange):04X} ({name}); write it in plain characters"

@@ -117,7 +117,7 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
 
 
 def _core_of(value: Any) -> Any:
-    """What the core takes for a value of a table."""
+    """The value as the core takes it: the object of a section, a tuple of a list, else itself."""
     if isinstance(value, CoreSection):
         return value.core
     return tuple(value) if isinstance(value, list) else value

@@ -77,7 +77,7 @@ class VaryOptions:
                 raise ValueError(f"--{name} goes with {OPTION}: there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """What runs the designs; `kind` and `versions` are as for `TaskRunner`."""
+        """The runner of the designs' tasks; `kind` and `versions` are as for `TaskRunner`."""
         from beamdyn.common.parallel.tasks import TaskRunner
 
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)

@@ -84,7 +84,7 @@ def rows_of(result: Result) -> Rows:
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:
-    """What draws the picture of a result, by its view or its `plot`; None if it has neither."""
+    """A function that draws the picture of a result, by its view or its `plot`; None if it has neither."""
     made = view_of(result).figure
     if made is not None:
         return lambda: made(result)

@@ -100,7 +100,7 @@ class Designs:
         return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
 
     def without(self, name: str) -> Designs:
-        """The same without an input."""
+        """A copy without one of the inputs."""
         return Designs([each for each in self.inputs if each.name != name], self.combine)
 
     def extremes(self) -> Iterator[dict[str, float]]:

@@ -18,7 +18,7 @@ _AXES = "xy"  # of points
 
 
 def part_at(whole: Any, path: str) -> Any:
-    """What stands at a path of an object; None if there is nothing."""
+    """The part of an object at a path; None if there is nothing."""
     for step in _steps(path):
         whole = _part(whole, step)
     return whole

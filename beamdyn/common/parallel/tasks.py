@@ -259,7 +259,7 @@ class _TaskRun:
                 self._report()
 
     def _key(self, made: Any) -> str:
-        """What names the result of a task: a hash of the versions, of the function and of the task."""
+        """The name of a stored result: a hash of the versions, of the function and of the task."""
         stored = self.runner.store is not None
         return fingerprint(self.runner.versions, self.solve, made) if stored else ""
 

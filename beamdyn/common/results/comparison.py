@@ -24,7 +24,7 @@ class Verdict:
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """The verdict as tables print it: "agrees", or "differs" with the reason."""
         if self.agrees:
             return "agrees" if not self.reason else "agrees, which is unexpected"
         return f"differs: {self.reason or 'unexpected'}"

@@ -26,7 +26,7 @@ class OneLine:
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
-        """What matters most, in parts: of a class that says nothing else, the fields that it was given."""
+        """Parts of the line that shows an object; a class that defines none shows the fields it was given."""
         return given_fields(self)
 
     def __repr__(self) -> str:

@@ -165,7 +165,7 @@ def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
 
 
 def _free_places(taken: set[int], own: set[int]) -> dict[int, int]:
-    """What each of our own colours becomes: one behind those taken, or a free one if these do not do."""
+    """New places in the row of colours for our own: behind those taken, or free ones if these do not do."""
     behind = {place: place + len(taken) for place in own}
     free = [place for place in range(len(COLOURS) - 1) if place not in taken]
     if max(behind.values()) < len(COLOURS) or len(free) < len(own):

@@ -178,7 +178,7 @@ def _below(chart: Chart, letters: int) -> int:
 
 
 def _tooltip(chart: Chart) -> dict[str, Any]:
-    """What is said at the pointer: all curves at its x; of curves over decades, one point."""
+    """Settings of the box at the pointer: all curves at its x; where x has decades, one point."""
     return {
         "trigger": "item" if chart.x.logarithmic else "axis",
         "renderMode": "richText",  # not HTML: names are shown as they are

@@ -128,7 +128,7 @@ class _TableRow(NamedTuple):
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """What rows of two tables are known by: words of their own, else places that both have, else numbers."""
+    """How to match rows of two tables: by words of their own, else by places in both, else by numbers."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}

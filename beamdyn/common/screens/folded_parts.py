@@ -21,7 +21,7 @@ class FoldedPart(Protocol):
 
     @property
     def title(self) -> str:
-        """What it shows."""
+        """Title of the part."""
         ...
 
     def on_page(self, answer: Any) -> str:

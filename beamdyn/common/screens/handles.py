@@ -164,7 +164,7 @@ def draw_sheet(
 
 
 def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:
-    """The same drawings; the first keeps room for its shapes at each mark of the slider."""
+    """Let the first drawing keep room for its shapes at each mark of the slider."""
     marks = len(screen.slider.marks) if screen.slider is not None else 0
     corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
     if not corners:

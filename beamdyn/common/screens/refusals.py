@@ -44,7 +44,7 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
 
 
 def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
-    """What is wrong on a screen, by the path of the field at fault.
+    """Mistakes on a screen, by the path of the field at fault.
 
     What is about no single field is about all that have changed since the last answer.  So is what is about
     others than these, if they are few: a top speed is refused since the beam has been made longer.

@@ -472,5 +472,5 @@ def _toggle(element: Any, name: str, on: bool) -> None:
 
 
 def _sentences(mistakes: Mapping[str, list[str]], of: Callable[[str], bool]) -> dict[str, None]:
-    """What is said about some paths, each sentence once."""
+    """Mistakes of the paths for which `of` holds, each sentence once."""
     return dict.fromkeys(sentence for path, said in mistakes.items() if of(path) for sentence in said)

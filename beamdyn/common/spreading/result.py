@@ -101,7 +101,7 @@ class Spread(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, of its first answer; see `Result.headline`."""
+        """The range of the first answer, and what matters most to it, in one line; see `Result.headline`."""
         k = next((k for k, share in enumerate(self.scatter.no_answer) if share < 1), 0)
         first, unit, names = self.first_order, f" {self.units[k]}".rstrip(), self.matters_most(k)
         error = first.error[k] + np.nan_to_num(self.error[k], posinf=np.inf) * abs(self.nominal[k])

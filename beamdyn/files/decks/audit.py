@@ -265,7 +265,7 @@ class DeckAudit(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Stations, mass, centre and steep steps of the blade in one line; see `Result.headline`."""
         yield f"{counted(self.stations, 'station')}, {number(self.mass, 'kg')}"
         yield f"centre at {number(self.centre, 'm')}"
         yield counted(len(self.steps), "steep step") if self.steps else ""

@@ -295,7 +295,7 @@ class Blade:
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:
-    """What is ignored of some values: nothing where all are zero."""
+    """The record of a property that is left out, with its range; none where all its values are zero."""
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if not array.any():
         return ()

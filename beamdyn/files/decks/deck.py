@@ -62,7 +62,7 @@ class Deck(Result):
     blade: Blade = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Kind and title of the deck, and length of its blade, in one line; see `Result.headline`."""
         yield self.kind
         yield repr(self.title) if self.title else ""
         yield f"{number(self.scene.beam.length, 'm')} long"

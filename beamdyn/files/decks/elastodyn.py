@@ -112,7 +112,7 @@ def read_openfast_file(text: DataText) -> Blade:
 
 
 def _other_elastic_model(text: DataText, found: Mapping[str, NamedValue]) -> tuple[IgnoredProperty, ...]:
-    """What to say where the turbine's blades are not those of ElastoDyn."""
+    """The remark that a turbine computes its blades by another module than ElastoDyn, if it does."""
     model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
     if model == _ELASTODYN:
         return ()
@@ -207,7 +207,7 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
 
 
 def _title(text: DataText) -> str:
-    """What the file says it is of: its second line, or that below two lines of dashes in FAST 7."""
+    """Title of a file: its second line, or the one below two lines of dashes in FAST 7."""
     plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
     return next(plain, "")
 

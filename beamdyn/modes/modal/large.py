@@ -45,19 +45,19 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """By the iteration."""
+        """Lowest eigenvalue at rest by iteration, or by full matrices if that fails."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """By full matrices."""
+        """Softening, found by full matrices."""
         return self.dense.softening
 
     @property
     def critical_rounding(self) -> float:
-        """By full matrices."""
+        """Rounding error of the softening, found by full matrices."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:

@@ -132,7 +132,7 @@ def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
 
 
 def _orthonormal_of_massless(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """The same for a mass that is singular, as that of bending and shear without rotary inertia is.
+    """Combine shapes as `_orthonormal`, for a singular mass: shear without rotary inertia.
 
     The mass does not tell how much of a deflection is shear: only combinations of the given shapes do.
     """

@@ -108,7 +108,7 @@ class Campbell(StatesModelError):
     scene: Scene = field(repr=False)  # the first one
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of crossings, lines and scenes, and the error, in one line; see `Result.headline`."""
         found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
         yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
         yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
@@ -127,7 +127,7 @@ class Campbell(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
+        """Changes of the speed of each crossing by effects left out, shape (k,)."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]

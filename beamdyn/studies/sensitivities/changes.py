@@ -190,7 +190,7 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """What P(s) would change the eigenvalues by if all its entries had one sign, shape (k,).
+        """Changes of the eigenvalues if all entries of P(s) had one sign, shape (k,).
 
         Rounding errors are relative to this.
         """

@@ -207,7 +207,7 @@ class Sensitivities(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of answers and inputs, and which input matters most, in one line; see `Result.headline`."""
         yield f"{counted(len(self.answers), 'answer')} by {counted(len(self.inputs), 'number')}"
         if self.derivative.size and np.isfinite(self.relative).any():
             size = np.nan_to_num(np.abs(self.relative))

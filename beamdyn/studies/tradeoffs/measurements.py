@@ -143,7 +143,7 @@ class Diagram(Result):
     skipped: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Title, number of measurements and resolved digits in one line; see `Result.headline`."""
         yield self.title
         yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
         yield f"reference to {number(self.resolved)}"

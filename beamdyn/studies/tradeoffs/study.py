@@ -86,7 +86,7 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of diagrams and measurements, and the speed, in one line; see `Result.headline`."""
         yield f"{counted(len(self.diagrams), 'diagram')} at {self.say_speed(self.speed)}"
         yield counted(sum(len(each.measurements) for each in self.diagrams), "measurement")
         yield warned(self.warnings)
