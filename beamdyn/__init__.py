@@ -117,7 +117,7 @@ _NAMES = {
     "studies.spread": ("spread",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
-    "studies.tradeoffs": ("Tradeoff", "tradeoff"),
+    "studies.tradeoffs.tradeoff": ("Tradeoff", "tradeoff"),
     "transient.gauss_solver": ("GaussCollocation",),
     "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
@@ -219,7 +219,7 @@ if TYPE_CHECKING:
     )
     from beamdyn.studies.spread import spread
     from beamdyn.studies.study import study
-    from beamdyn.studies.tradeoffs import Tradeoff, tradeoff
+    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff, tradeoff
     from beamdyn.transient.gauss_solver import GaussCollocation
     from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep

@@ -78,18 +78,16 @@ class Ritz:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
-
-    def _points(self, beam: Beam) -> int:
-        """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
+        # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree(beam) // 2
+        return RitzSpaces(self, tuple(beam.breakpoints), degree + 2 + weight_degree(beam) // 2)
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
-        if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.fewer).quadrature.cells
-        return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
+        spaces = self.spaces(beam)
+        if isinstance(spaces, MomentSpaces):
+            return spaces.quadrature.cells
+        return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""

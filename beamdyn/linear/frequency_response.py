@@ -86,7 +86,7 @@ class FrequencyResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """The largest response, its frequency and its error in one line; see `Result.headline`."""
+        """What it says in one line; see `Result.headline`."""
         at, size = self.peak
         names = [text.partition(" [")[0] for text in (self.output, self.input)]
         yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"
@@ -116,15 +116,10 @@ class FrequencyResponse(Result):
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
         from beamdyn.common.plots.plots import plot_frequency_response
 
-        labels = [_label(h) for h in self.harmonics.tolist()]
+        labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]
         return plot_frequency_response(curves, value, labels, ax)
-
-
-def _label(harmonic: int) -> str:
-    """Name of a harmonic of the rotation in the legend of a picture; empty if there is one only."""
-    return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
 
 
 @announced_of_plain_beam

@@ -112,14 +112,14 @@ class Modes(StatesModelError):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Number, frequencies and error of the modes in one line; see `Result.headline`."""
+        """What it says in one line; see `Result.headline`."""
         yield f"{len(self.frequency)} at {self.say_speed(self.speed)}: {listed(self.frequency, 'Hz')}"
         yield from (error_at_most(self.error), states(self.status, ("stable",)), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each frequency by effects that the model leaves out, shape (m,)."""
-        from beamdyn.modes.model_error.of_modes import (
+        """What the effects that the model leaves out would change in each frequency (m,)."""
+        from beamdyn.modes.model_error.left_out_changes import (
             left_out_of_modes,
         )  # here, for the time that it takes to import
 

@@ -119,7 +119,13 @@ class Scene(OneLine):
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
-        _check_damper(self)
+        # Refuse a damper that rounding does not tell from a support.
+        beam, damper = self.beam, self.damping.tip_damper
+        mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
+        mass += 0.0 if beam.tip is None else beam.tip.mass
+        most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
+        bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) with mass m: with more the tip does not move"
+        refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
     def headline(self) -> Iterator[str]:
         """Label, beam, mount, motion, and what else was given."""
@@ -243,16 +249,6 @@ def _check_point_springs(scene: Scene) -> None:
 
 # Damper over sqrt(EI m / L^3): with more, rounding errors exceed the decay rate of the tip.
 _MOST_DAMPING = 1e6
-
-
-def _check_damper(scene: Scene) -> None:
-    """Refuse a damper that rounding does not tell from a support."""
-    beam, damper = scene.beam, scene.damping.tip_damper
-    mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
-    mass += 0.0 if beam.tip is None else beam.tip.mass
-    most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
-    bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) with mass m: with more the tip does not move"
-    refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
 
 # Properties that the physics needs ----------------------------------------------------------------

@@ -10,8 +10,8 @@ import numpy as np
 
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.of_modes import left_out_of_modes, nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 

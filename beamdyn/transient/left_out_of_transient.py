@@ -19,9 +19,13 @@ from beamdyn.modes.backbone import SMALL, FreeVibration
 from beamdyn.modes.modal.discretization_choice import ensure_size
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
+from beamdyn.modes.model_error.left_out_changes import (
+    SolvedValues,
+    left_out_by_solving,
+    left_out_of_modes,
+    without_large_deflection,
+)
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.of_modes import left_out_of_modes, without_large_deflection
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.trajectory import Path
 

@@ -42,8 +42,8 @@ from beamdyn.modes.modal.modal_basis import (
     given_basis,
 )
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road

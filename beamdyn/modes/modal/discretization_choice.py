@@ -311,25 +311,20 @@ def split_layers(scene: Scene, speed: float, target: float) -> Scene:
 @lru_cache(maxsize=64)
 def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
     """Lengths (EI/N)^(1/2) over L at the root and at the tip, at 1 rad/s; inf where nothing pulls."""
-    ends = np.array([0.0, 1.0])
+    ends, (n_a, n_b) = np.array([0.0, 1.0]), axial_tension(beam)
+    tension = n_b(ends) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(ends)
     profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
     stiffness = np.min([each(ends) for each in profiles if each is not None], axis=0)
     with np.errstate(divide="ignore"):
-        root, tip = np.sqrt(stiffness / np.maximum(_tension(beam, mount, ends), 0.0)) / beam.length
+        root, tip = np.sqrt(stiffness / np.maximum(tension, 0.0)) / beam.length
     return float(root), float(tip)
 
 
 def split_tip(scene: Scene) -> Scene:
     """Add breakpoints that resolve a layer at the tip at any speed, where tension makes one."""
     beam = scene.beam
-    has_layer = beam.tip is not None and _tension(beam, scene.mount, np.ones(1))[0] > 0
+    has_layer = beam.tip is not None and _lengths_at_unit_speed(beam, scene.mount)[1] < np.inf
     return _split(scene, _TOWARD_TIP) if has_layer else scene
-
-
-def _tension(beam: Beam, mount: Mount, xi: np.ndarray) -> np.ndarray:
-    """Axial force at x/L over the squared speed [kg m]; negative where the beam is pressed."""
-    n_a, n_b = axial_tension(beam)
-    return n_b(xi) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(xi)
 
 
 def _split(scene: Scene, places: Sequence[float]) -> Scene:
