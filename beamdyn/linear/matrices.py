@@ -106,7 +106,7 @@ class Matrices(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Size, speed, inputs and error of the lowest pole in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
         yield f"lowest pole: {error_at_most(self.error[:1])}"
@@ -265,7 +265,7 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
 
 
 def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
-    """What each coordinate is: a mode, a nodal value, or the coefficient of a function."""
+    """Name each coordinate with its unit: a mode, a nodal value, or the coefficient of a function."""
     for name, place in model.equations.blocks.items():
         size = place.stop - place.start
         if model.modes is not None:
@@ -275,7 +275,7 @@ def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
 
 
 def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator[str]:
-    """What each coordinate of a field is: a deflection or a slope at a node, or else a coefficient."""
+    """Name the coordinates of a field: deflections and slopes at nodes, or else coefficients."""
     deflection = model.equations.deflections.get(field_name)
     nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
     nodal: list[np.ndarray] = []

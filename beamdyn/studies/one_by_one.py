@@ -242,7 +242,7 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
 def left_out_of_design(
     question: StudyQuestion, scene: Scene, design: Mapping[str, float]
 ) -> LeftOutEffects | None:
-    """What the effects left out would change in the answer of a design.
+    """Find how much effects left out would change the answer of a design.
 
     Parameters
     ----------

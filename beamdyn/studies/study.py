@@ -252,7 +252,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
 
 
 def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
-    """What workers and executors run."""
+    """Answer the designs of a task; workers and executors run this."""
     return task.answers()
 
 

@@ -221,7 +221,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """What the model assumes in place of each effect, and how to include it."""
+    """Assumption of the model in place of each effect, and how to include the effect, by name."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
