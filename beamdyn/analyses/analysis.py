@@ -30,7 +30,7 @@ Physics = Annotated[
         help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene."
     ),
 ]
-ANALYSES: dict[str, Analysis] = {}  # by the name of the command, in the order of the manual
+ANALYSES: dict[str, Analysis] = {}  # all analyses by the name of their command, in the order of the manual
 WRITTEN = "written"  # marks an option that names a file to write
 DRAWN = "drawn"  # marks an option that chooses what a picture shows
 

@@ -20,7 +20,7 @@ from beamdyn.common.screens.folded_parts import FoldedPicture
 from beamdyn.common.screens.screens import Screen
 from beamdyn.results.cautions import warnings_of
 
-_KINDS = (str, int, float)  # of options on a form
+_KINDS = (str, int, float)  # types of options that a form can have
 
 
 def analysis_screen(analysis: Analysis) -> Screen:

@@ -38,7 +38,7 @@ from beamdyn.scene.validity import warn_of_left_out
 if TYPE_CHECKING:
     from scipy.signal import StateSpace
 
-_NODAL = 1e-9  # by which a nodal value may differ from 1
+_NODAL = 1e-9  # difference from 1 that a nodal value may have
 _FEW = 5  # modes, of which the lowest loses its stability first
 
 
@@ -298,7 +298,7 @@ def _is_nodal(values: np.ndarray) -> bool:
 # The linear model at a steady speed as a state space, for scipy.signal  ---------------------------
 
 
-_MODES = 6  # by default
+_MODES = 6  # number of modes by default
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 
 

@@ -260,7 +260,7 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error beyond which the partner of a pole may be that of another mode
-_ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
+_ROUNDING = 4 * float(np.finfo(float).eps)  # rounding error of the matrices, relative
 
 
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:

@@ -28,7 +28,7 @@ from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 
-_FIRST_MODES = 4  # of a model that tells the sizes of the outputs
+_FIRST_MODES = 4  # modes of a model that tells the sizes of the outputs
 _OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors follow their logarithm
 _LEAST = math.e  # crossings that the formula is evaluated with, at least
 _TURN = 2 * np.pi

@@ -13,7 +13,7 @@ from beamdyn.accuracy.margins import MODES_OF_FORCES, MODES_OF_MOMENTS
 from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.modal_basis import ModalBasis
 
-_LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
+_LIMIT = 0.3  # distance over the largest along the span, up to which it bounds the error
 _ROUNDING = 1e-12  # relative to the largest along the span
 _BETWEEN = 21  # stations besides those asked for
 

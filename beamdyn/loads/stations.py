@@ -19,7 +19,7 @@ from beamdyn.scene.scene import Scene
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
 SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
 
-UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # of the quantities
+UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # units of loads
 
 _EVENLY = 21  # stations by default, besides both sides of each jump
 _MOST, _MOST_POINTS = 1001, 100

@@ -92,12 +92,12 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
-_ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
+_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
 _SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
 _RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
-_CELLS = 2000  # of the midpoint rule on all segments together
-_MARGIN = 1.01  # for its error
+_CELLS = 2000  # cells of the midpoint rule on all segments together
+_MARGIN = 1.01  # factor that allows for the error of the midpoint rule
 _LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
 _ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 

@@ -53,7 +53,7 @@ _BENT = (
     "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
     "equilibrium turns back"
 )
-_FUNCTIONS = 5  # of a model of which only the loads are read
+_FUNCTIONS = 5  # functions of a model of which only the loads are read
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FINE = 0.05  # arc length of a step, for smooth curves in a picture
-_MOST_POINTS = 2000  # of a branch
+_MOST_POINTS = 2000  # points of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
 _ROUNDING = 1e-13  # error of a position over the length
 

@@ -32,7 +32,7 @@ from beamdyn.scene.profile import (
 )
 from beamdyn.scene.rectangle import Rectangle
 
-_ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
+_ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
 
 
 @dataclass(frozen=True)

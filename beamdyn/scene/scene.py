@@ -19,7 +19,7 @@ from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, Ph
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.profile import mean
 
-_SLENDER = Physics(), Physics(stretch=True)  # in one plane
+_SLENDER = Physics(), Physics(stretch=True)  # physics of a slender beam in one plane
 
 
 @dataclass(frozen=True)
@@ -253,7 +253,7 @@ _MOST_DAMPING = 1e6
 
 # Properties that the physics needs ----------------------------------------------------------------
 
-_SECOND = "second_"  # of the properties of bending in the second direction of the section
+_SECOND = "second_"  # prefix of the properties of bending in the second direction of the section
 _BENDING = "bending_stiffness"
 # Properties of the beam for each effect, of bending in either direction.
 _NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}

@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.steady.interaction_series import sum_interactions
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, select_harmonics
 
-_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
+_MOST_ENTRIES = 10**7  # entries of the matrices that are solved at once: 80 MB
 
 
 def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:

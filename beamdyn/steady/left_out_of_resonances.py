@@ -15,8 +15,8 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 
-_STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
-_FURTHER_MODES = 2  # with which those that are sought may exchange their order
+_STEP = 1e-4  # relative step of the speed for the slope of the frequencies
+_FURTHER_MODES = 2  # modes with which those that are sought may exchange their order
 
 
 class CrossingOfLine(Protocol):

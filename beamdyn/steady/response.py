@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOST_HARMONICS = 20  # most interactions that may be asked for: they take half a minute
-_HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
-_MOST_MODES = 13  # of "auto", at each of two speeds
+_HIGHEST_SPEED = 0.99  # highest speed of the modal basis, over the critical speed
+_MOST_MODES = 13  # modes of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
 _MOST_JUDGED = 4  # speeds of the model error, beside that of the largest amplitude
 _LINEAR = "vibration about the equilibrium being linear"

@@ -8,8 +8,8 @@ from beamdyn.scene.motion import Motion
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
 
-_MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
-_MOST_UNKNOWNS = 2**17  # that are solved for at once: they fit the processor's cache
+_MOST_INTERACTIONS = 5  # interactions with the periodic coefficients, for the response
+_MOST_UNKNOWNS = 2**17  # unknowns that are solved for at once: they fit the processor's cache
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 
 

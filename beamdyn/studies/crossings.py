@@ -32,7 +32,7 @@ from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
 _NOTHING_EXCITES = Statement(" nothing excites the beam", kind=EXCITATION)
-_FEW = Ritz(6)  # in which the lines of a scene are found: they do not depend on the functions
+_FEW = Ritz(6)  # basis in which the lines of a scene are found: they do not depend on the functions
 _PROBED = 16  # designs whose lines are looked for, beside the extremes
 _MOST_EXTREMES = 4  # inputs of which all extremes are looked at
 

@@ -113,7 +113,7 @@ def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivit
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # of units
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 

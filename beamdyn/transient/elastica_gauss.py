@@ -19,7 +19,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, tableau
 
-_ITERATIONS = 30  # of Newton's method
+_ITERATIONS = 30  # iterations of Newton's method
 _CONVERGED = 1e-13  # error of the accelerations, over their size, with which the iteration ends
 _LEAST_REDUCTION = 1e-3  # least ratio of errors by an iteration that the last two changes may show
 _STALLED = 1e-9  # error of the accelerations over their size below which a stalled iteration has converged
@@ -93,7 +93,7 @@ def _drives(system: ElasticaSystem, t0: float, h: float, steps: int, table: Tabl
         yield from (Drive(*each) for each in zip(*block, strict=True))
 
 
-Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # of a matrix, and the pivots
+Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and the pivots
 
 
 class Tangent(NamedTuple):

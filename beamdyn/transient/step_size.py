@@ -33,18 +33,18 @@ from beamdyn.transient.weakly_modulated import propagate_modulated
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
-_LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
-_PARTS = 4  # of a segment in which the speed changes, each with its own step size
+_LOOSEST_TOLERANCE = 0.01  # tolerance of the free vibration of a mode whose phase is resolved
+_PARTS = 4  # parts of a segment in which the speed changes, each with its own step size
 _WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
-_MOST_STEPS = 3_000_000  # of a run
+_MOST_STEPS = 3_000_000  # steps of a run
 _MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
 _TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
-_SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
-_ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
+_SERIES_SHARE = 0.1  # share of the tolerance for the truncated series of weakly modulated steps
+_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps in which the acceleration has kinks
 _FEW_STEPS = 4  # samples in a step, from which on it is one over many
-_CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundreds
+_CEILED = 1.02  # factor by which whole numbers of steps exceed those wanted, of hundreds
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 

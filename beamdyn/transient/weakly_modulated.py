@@ -29,10 +29,10 @@ from beamdyn.transient.gauss import (
 
 _POINTS = (25, 37)  # Chebyshev points of a segment of changing speed that are tried; odd
 _FEWEST_STEPS = 6  # steps for each point, below which solving every step costs no more
-_MOST_VALUES = 4_000_000  # of the expanded maps of changing speed, some 30 MB
-_LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
-_SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
-_SAMPLES = 257  # of e, for its largest value
+_MOST_VALUES = 4_000_000  # values of the expanded maps of changing speed, some 30 MB
+_LARGEST_SAMPLED = 1.5  # largest e anywhere, over the largest of some samples
+_SQUARINGS = 3  # squarings of a matrix, whose norm then bounds the spectral radius closely
+_SAMPLES = 257  # samples of e, for its largest value
 _NEGLIGIBLE = 1e-3  # share of an accuracy
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision

@@ -13,8 +13,8 @@ from beamdyn.common.screens.screens import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # of the position at rest of a moved point [m], [rad]
-_ITERATIONS = 30  # at most
+_TOLERANCE = 1e-7  # tolerance of the position at rest of a moved point [m], [rad]
+_ITERATIONS = 30  # most iterations
 _GROUND = 1.9  # end of the drawn ground, in wheelbases
 _REAR_AXLE = 0.75  # its drawn height, in radii of the front wheel
 Values = Callable[[float, float], dict[str, float]]

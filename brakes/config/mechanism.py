@@ -87,7 +87,7 @@ class PartSection(MadeSection):
             raise ValueError(in_small_units(str(error))) from None
 
 
-SECTIONS = {  # by table
+SECTIONS = {  # sections by the name of their table
     part.key(): section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
 }
 

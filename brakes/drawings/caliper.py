@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-_HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # of the charts over the stroke, relative to one another
+_HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # heights of the charts over the stroke, relative to one another
 
 
 def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> Drawing:

@@ -31,7 +31,7 @@ from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 
-_STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60
+_STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
 _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
 

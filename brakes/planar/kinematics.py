@@ -32,7 +32,7 @@ from brakes.planar.system import (
     times,
 )
 
-MOST_POSITIONS = 100_000  # of a stroke: some seconds for the smallest mechanisms
+MOST_POSITIONS = 100_000  # positions of a stroke: some seconds for the smallest mechanisms
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
 
 

@@ -30,7 +30,7 @@ from brakes.reproduce.common import Erratum, errata_of
 
 VEHICLE, BRAKE = ("table_2", "table_3", "table_4"), ("table_5", "table_6", "table_7")
 FORCES = ("A", "B", "Q", "P_L")
-Tables = dict[tuple[str, str], np.ndarray]  # by table and quantity, e.g. ("table_4", "torque")
+Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g. ("table_4", "torque")
 
 
 @dataclass(frozen=True)

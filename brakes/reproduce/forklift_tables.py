@@ -31,7 +31,7 @@ INTRODUCTION = (
     "0.3019 rad (17.3 deg), 20 km/h, friction 0.7 on the ground, front wheels of 0.40 m radius."
 )
 _INPUT = values_alone(PAPER["input"])
-_HEADS = {  # of inputs and quantities of the tables
+_HEADS = {  # headings of inputs and quantities of the tables
     "friction": "friction",
     "speed": "V [km/h]",
     "slope": "slope [rad]",

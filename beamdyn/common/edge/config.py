@@ -148,7 +148,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
         raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
-_LONGEST_KEY = 60  # that is shown whole
+_LONGEST_KEY = 60  # length of the longest key that is shown whole
 _WORDS = {
     "bool_type": "give true or false",
     "dict_type": "give a table",

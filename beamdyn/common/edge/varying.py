@@ -26,7 +26,7 @@ def folder(_: object, tokens: Sequence[Token]) -> Path:
 
 
 Folder = Annotated[Path | None, Parameter(converter=folder)]
-SomeFolder = Annotated[Path, Parameter(converter=folder)]  # of an option that has one by default
+SomeFolder = Annotated[Path, Parameter(converter=folder)]  # folder of an option that has one by default
 
 
 def _check_workers(_: object, value: object) -> None:

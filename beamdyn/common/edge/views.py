@@ -33,7 +33,7 @@ _WIDTH = 120  # characters of a table as text
 _NOT_SHOWN = ("provenance", "warnings")
 _DEEPEST = 1  # deepest level of objects within a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]  # or columns, which are in display units, too
+Rows = Iterable[Sequence[object]]  # rows, or columns, which are in display units, too
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, one_of
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 1_000_000  # whose answers fit into memory
+MOST_DESIGNS = 1_000_000  # number of designs whose answers fit into memory
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any, get_type_hints
 from beamdyn.common.inputs.described import description
 
 _STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
-_AXES = "xy"  # of points
+_AXES = "xy"  # names of the coordinates of points
 
 
 def part_at(whole: Any, path: str) -> Any:

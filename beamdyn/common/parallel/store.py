@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.common.results.files import ASIDE, write_text
 from beamdyn.common.results.records import DamagedRecord, seal, unseal
 
-_PACKAGES = ("beamdyn", "brakes")  # in whose classes fields that equality leaves out change no result
+_PACKAGES = ("beamdyn", "brakes")  # fields of their classes that equality leaves out change no result
 _MARKER = "store.json"  # tells a store from a folder with other content
 _RECORD = re.compile(r"[0-9a-f]{32}\.json")  # the file of a record: see `fingerprint`
 _REMEDY = "name a folder that does not exist yet, or an earlier store"

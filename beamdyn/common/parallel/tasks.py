@@ -35,7 +35,7 @@ class RunInterrupted(RuntimeError):
         Whether those that are done are in a store.
     """
 
-    parts = "designs"  # as the message calls them
+    parts = "designs"  # name of the parts in messages
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
         super().__init__(done, total, stored)

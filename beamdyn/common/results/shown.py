@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 Units = DisplayUnits | Mapping[str, str] | None
-_MOST_PARTS = 6  # of a headline that nobody wrote
+_MOST_PARTS = 6  # most parts of a headline that nobody wrote
 
 
 class Shown(OneLine, InDisplayUnits):

@@ -23,7 +23,7 @@ from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, 
 from beamdyn.common.screens.screens import Handle, Screen
 
 Place = tuple[float, float]
-_UNITS = {"m": "mm", "rad": "deg"}  # of fields that have none
+_UNITS = {"m": "mm", "rad": "deg"}  # units of fields that have none
 _NARROW = 400.0  # width of the paper on a narrow page [pt]
 _ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
 

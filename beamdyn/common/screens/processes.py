@@ -24,7 +24,7 @@ _SPARE = 0.5  # time after which a task that still runs has an idle process star
 _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
-Task = Callable[..., Any]  # of a document, one of its screens, and what else is submitted
+Task = Callable[..., Any]  # function of a document, one of its screens, and what else is submitted
 
 
 class TakesTooLong(Exception):

@@ -23,7 +23,7 @@ from beamdyn.scene.scene import Scene
 SHAPE_NAMES: Mapping[str, str] = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
 PLACES = np.linspace(0, 1, 401)  # x/L at which shapes are compared and fitted
 _POWERS = np.arange(2, 7)
-_TOLERANCE = 1e-6  # of the frequencies of the shapes
+_TOLERANCE = 1e-6  # tolerance of the frequencies of the shapes
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
 
 
 STEEP = 3.0  # factor between neighbouring stations from which a step is named
-_SUM_ERROR = 1e-3  # of the coefficients of a mode shape, which ElastoDyn lets pass
+_SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn lets pass
 _SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}

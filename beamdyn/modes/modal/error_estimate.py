@@ -23,11 +23,11 @@ _OF_ENTRIES = 3 * np.finfo(float).eps  # three deviations of the rounding of the
 _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
 _SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
 _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
-_ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
+_ROUNDING = 1.5  # factor on rounding errors: two models with the same matrices have the same, unseen
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-_ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
+_ABOVE = 0.99  # share of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
 

@@ -33,7 +33,7 @@ from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
-_MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
+_MOST_SPEEDS = 1000  # speeds of each design at once, which bounds the memory
 
 
 @dataclass(frozen=True)

@@ -36,9 +36,9 @@ from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_SMALL = 0.1  # of the tolerance, below which no effect is added
-_SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
-_MODES = 3  # of which a motion consists
+_SMALL = 0.1  # share of the tolerance below which no effect is added
+_SOLVED = 0.1  # share of the tolerance to which the modes are solved that the effects change
+_MODES = 3  # modes of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
 _BENDING = LARGE_DEFLECTION.name

@@ -244,7 +244,7 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
 
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
-_RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
+_RESOLVED = 1e-13  # share of the matrices within an interval: what the last term of a polynomial may be
 _ROUNDED = 1e-10  # what rounding alone may be, as of damping by modes
 _CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TOUCHING = 1e-6  # distance over the length at which a point stands beside another
-_STEP = 0.01  # of a value, or of the size of its kind
+_STEP = 0.01  # step, as a share of a value or of the size of its kind
 _NEAR = 0.8  # similarity of a mistyped name: all begin alike
 
 

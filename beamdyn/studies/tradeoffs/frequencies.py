@@ -216,7 +216,7 @@ def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is left aside
-_BETTER = 0.5  # of the error of the model as given: what is not below it has gained nothing by more physics
+_BETTER = 0.5  # share of the error of the model as given: more physics that stays above it has gained nothing
 _COMPARED = (STRETCH.name,)  # effects that are modelled to compare with papers only
 
 
