@@ -122,7 +122,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
     speed = np.abs(scene.motion.at(t).speed)
     try:
         found = resonance_speeds(scene, float(speed.max()), _MODES)
-    except ValueError:  # at rest, or excited by no lines
+    except ValueError:  # the scene is at rest, or excited by no lines
         return
     for c in found:
         over = speed - c.speed

@@ -236,7 +236,7 @@ def _build_forces(
     caused = []
     for name, order, weight in causes:
         force = weight * displaced[name][order]
-        for _ in range(derivatives - order):  # from each node to the tip
+        for _ in range(derivatives - order):  # integrates from each node to the tip
             integral = spaces.nodes.integrate(force)
             force = integral[:, -1:] - integral[:, :-1]
         caused.append(force)

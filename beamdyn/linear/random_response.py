@@ -254,7 +254,7 @@ def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Ex
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # without resonances all are overdamped
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, about_resonances(poles)
     between = about[(about > bottom) & (about < top)]

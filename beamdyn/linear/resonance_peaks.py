@@ -117,7 +117,7 @@ def find_peaks(
 def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
     """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
     own = np.array(peak[:3])
-    with np.errstate(invalid="ignore"):  # of a magnitude that is inf
+    with np.errstate(invalid="ignore"):  # a magnitude may be inf
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
         error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
         for margin, others in compared:

@@ -182,7 +182,7 @@ class LoadPath(FieldsOnly):
             error = estimate_time_error(system, path.segments, np.diag(largest))
             contributions = np.empty(system.size)
             contributions[rank] = error.modes
-            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # of each station
+            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # share of each station
             totals = shares @ contributions + shares.max(axis=1) * error.interpolation
             errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
         return errors

@@ -353,7 +353,7 @@ def equilibrium_branches(
         stable = np.array([np.linalg.eigvalsh(load.jacobian(rest, v**2))[0] >= 0 for v in speeds])
         tips = np.tile(_in_space(load.elastica.tip(rest), scene), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
-    try:  # that beside it, from the top speed down and through its turning points
+    try:  # follows the branch beside it, from the top speed through its turning points
         start_of_bent = start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top, scene))
         warnings = ()

@@ -102,7 +102,7 @@ class Locus(StatesModelError):
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
     ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
-    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
+    place: np.ndarray = field(repr=False)  # place of each mode in `ascending` (S, m)
 
     def headline(self) -> Iterator[str]:
         """Numbers of modes and speeds, and the range of frequencies, in one line; see `Result.headline`."""

@@ -141,7 +141,7 @@ def random_loads_table(result: RandomLoads) -> Group:
             continue
         if name == "moment":
             shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
-        else:  # of the point that is largest there
+        else:  # the load of the point that is largest there
             shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
         for k, head in shown:
             rms, error = (scale * each(name)[at, k] for each in (result.rms, result.rms_error))

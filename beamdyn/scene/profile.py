@@ -87,7 +87,7 @@ class Profile(FieldsOnly):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # of many segments, for each look into a cache
+    def _hash(self) -> int:  # hashed once: it has many segments, and caches ask often
         return hash((self.breakpoints, self.coefficients))
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
@@ -413,7 +413,7 @@ def check_positive(name: str, profile: Profile, power: int = 1) -> None:
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])
-    if profile.degree > 1:  # else the least value is at an end
+    if profile.degree > 1:  # a linear one is least at an end
         inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1]
         where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     least = zero * np.abs(profile.series).sum(axis=0)

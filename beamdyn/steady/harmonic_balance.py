@@ -95,7 +95,7 @@ def _assemble(
     A = np.zeros((S, H, n, H, n))
     diagonal = np.arange(H)
     A[:, diagonal, :, diagonal] = np.moveaxis(K[:, None] - (omega**2)[..., None, None] * M[:, None], 1, 0)
-    D = ((T.conj().T * 1j) @ (h.T[:, :, None] * T)).real  # of d/dtheta and d/dchi, shape (2, H, H)
+    D = ((T.conj().T * 1j) @ (h.T[:, :, None] * T)).real  # matrices of d/dtheta and d/dchi, shape (2, H, H)
     rate = np.einsum("sp,pab->sab", system.rates, D)
     if C.any():
         A += np.einsum("sab,sij->saibj", rate, C)

@@ -48,7 +48,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     except np.linalg.LinAlgError:
         return response, settled
     half = [h for h in harmonics if h >= (0, 0)]  # those of the others are conjugate
-    with np.errstate(all="ignore"):  # where it diverges, and where a harmonic is in resonance
+    with np.errstate(all="ignore"):  # it may diverge, or a harmonic be in resonance
         y, settled = _sum(_Series.of_system(system, mean, half))
     q = np.einsum("snm,hms->shn", mean.shapes, y)
     index = {h: i for i, h in enumerate(half)}

@@ -94,7 +94,7 @@ def _distance(finer: np.ndarray, coarser: np.ndarray) -> np.ndarray:
 def sizes_of(c: np.ndarray) -> np.ndarray:
     """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi: the longer semi-axes of ellipses."""
     along, across = along_bending(c), 1j * across_bending(c)
-    return (np.abs(along + across) + np.abs(along - across)) / 2  # of circles in either sense
+    return (np.abs(along + across) + np.abs(along - across)) / 2  # radii of circles in either sense
 
 
 def along_bending(c: np.ndarray) -> np.ndarray:

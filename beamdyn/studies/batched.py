@@ -350,7 +350,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    apart = ~np.any(with_inertia, axis=0)  # else the twist turns the body
+    apart = ~np.any(with_inertia, axis=0)  # otherwise the twist turns the body
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JUDGED = 8  # designs at which the model error is computed, beside the extremes
-_DIGITS = 4  # of the inputs of a design in words
+_DIGITS = 4  # digits of a design's inputs in words
 _MOST_AXES = 3  # inputs of which all extremes are combined
 
 

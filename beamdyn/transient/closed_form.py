@@ -302,7 +302,7 @@ def propagate_in_closed_form(
     for order in _ORDERS:
         try:
             motion = _solve(harmonics, C, K + harmonics.mean, order, q0, v0)
-        except np.linalg.LinAlgError:  # at resonance, without damping
+        except np.linalg.LinAlgError:  # singular at resonance without damping
             return None
         if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
             return None

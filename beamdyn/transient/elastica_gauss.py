@@ -69,7 +69,7 @@ def propagate_elastica(
     state, acceleration = allocate_steps(steps, stages, q0, v0)
     known = None if like is None else at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
-    with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused
+    with np.errstate(over="ignore", invalid="ignore"):  # a step that is too long overflows, and is refused
         for k, drive in enumerate(_drives(system, t0, h, steps, step.table)):
             guess = None if like is None or known is None else known @ like.acceleration[k]
             q, v, a = step.advance(drive, q, v, guess)

@@ -74,7 +74,7 @@ def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -
             return SolvedValues(np.array(largest))
         return _run_again(request, straight.scene, window)
 
-    without = find_without()  # of the straight beam: effects are not compared with a bent one
+    without = find_without()  # the straight beam: effects are not compared with a bent one
 
     def solve(scene: Scene, name: str) -> SolvedValues:
         if scene.physics == straight.scene.physics:

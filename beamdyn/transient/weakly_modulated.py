@@ -240,7 +240,7 @@ class _Expansion:
         maps = _expand_maps(point, scales, largest, accuracy / steps)
         if maps is None:
             return None
-        change = float(ratio @ largest)  # by the first order, over the order before it
+        change = float(ratio @ largest)  # change by the first order, over the order before it
         X0, Y = _expand_accelerations(point, scales, change, accuracy)
         return cls(maps, X0, Y, ratio, point)
 
@@ -276,7 +276,7 @@ def _expand_accelerations(
     """Expand X0, and Y, which counts by the relative change that e makes."""
     rows, columns = scales
     X0, Y = _chebyshev_coefficients(point.X0), _chebyshev_coefficients(point.Y)
-    forces = np.tile(rows[point.size :] ** 2, len(point.table.c))  # of accelerations, to displacements
+    forces = np.tile(rows[point.size :] ** 2, len(point.table.c))  # from accelerations to displacements
     size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
     terms = _Polynomials(X0, size, min(_NEGLIGIBLE * accuracy, 1.0) * size.max())
     size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
@@ -300,7 +300,7 @@ class _Block:
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
         rows, columns = self.maps[0].shape[2:]
-        sums: dict[np.dtype, np.ndarray] = {}  # of single precision where that suffices
+        sums: dict[np.dtype, np.ndarray] = {}  # sums by precision: single where that suffices
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)

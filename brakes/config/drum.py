@@ -159,7 +159,7 @@ class DrumInput(CoreSection):
         try:
             return _Shoe.model_construct(**dict(self.shoe) | given).core
         except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # which is no key
+            between = ": " if " " in error.field else "."  # text with a space is no key
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
 
     def solve(self) -> BrakeResult:

@@ -81,7 +81,7 @@ class PartSection(MadeSection):
         """The joint or load."""
         try:
             return super().core
-        except InvalidValue:  # which is put into the file's words where its key is known
+        except InvalidValue:  # it is put into the file's words where its key is known
             raise
         except ValueError as error:
             raise ValueError(in_small_units(str(error))) from None
@@ -158,7 +158,7 @@ class MechanismInput(CoreSection):
         if run.friction and not made.friction:
             bound = "it is that of pins, and there is none; give friction at the slot or contact"
             raise InvalidInput("run.friction", run.friction, bound)
-        rubs = made.friction or "friction" in run.model_fields_set  # which may be 0 in a sweep
+        rubs = made.friction or "friction" in run.model_fields_set  # friction may be 0 in a sweep
         if run.driver is not None and run.travel is None and not rubs:
             raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
 

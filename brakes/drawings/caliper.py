@@ -198,7 +198,7 @@ def _symbols() -> Drawing:
         x, y = 2.6 * (i % 2), -0.8 * (i // 2)
         draw(s, x, y)
         s.labels.append(Label(words, (x + 0.4, y), "text", (1.0, 0.0), size=_LETTERS))
-    s.room = [(5.0, 0.0)]  # of the words on the right
+    s.room = [(5.0, 0.0)]  # room for the words on the right
     return s.drawing("Signs of joints", "How pins, bars, cables, springs, slots and contacts are drawn")
 
 

@@ -256,7 +256,7 @@ def collect_result(
         "dropped": forces.dropped,
         "multiplier": shown * system.unit,
     }
-    shape = position.coordinates.shape[:-1]  # without an axis where there is one position alone
+    shape = position.coordinates.shape[:-1]  # a single position has no axis
     return Equilibrium(
         position=position,
         **verdict,

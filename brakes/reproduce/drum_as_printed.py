@@ -35,7 +35,7 @@ _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining
 _R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
 _B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
 PressureZero = Literal["axis", "pivot"]
-_AXIS: PressureZero = _INPUT["pressure_zero"]  # where the pressure in (2) is 0
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # place where the pressure in (2) is 0
 _WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 

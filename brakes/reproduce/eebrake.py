@@ -66,7 +66,7 @@ def tangential_forces(split: str) -> tuple[float, float]:
     pivot, pin = np.array(design.pivot), np.array(design.upper_pin)
     radial = (pin - pivot) / np.linalg.norm(pin - pivot)
     inboard_right, inboard_left = np.array((-radial[1], radial[0])), np.array((radial[1], radial[0]))
-    strut = -run.reactions["strut end"][0]  # on the right lever
+    strut = -run.reactions["strut end"][0]  # force on the right lever
     unit = float(run.pad_force[0, 0])
     return -float(strut @ inboard_right) / unit, float(run.reactions["pin O"][0] @ inboard_left) / unit
 

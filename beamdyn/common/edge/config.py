@@ -116,7 +116,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
             source, ["its lists or tables are nested too deeply; give a file of tables"]
         ) from None
     except ValueError as error:
-        if "set_int_max_str_digits" in f"{error}":  # of Python, to its programmers
+        if "set_int_max_str_digits" in f"{error}":  # Python's advice is one to programmers
             raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
         remedy = 'a quantity stands in quotes: length = "50 mm"'
         if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):

@@ -30,7 +30,7 @@ _PLAIN = str.maketrans(
     {"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*", "\uff0e": "."}
     | dict.fromkeys(_MINUS_SIGNS, "-")
     | dict.fromkeys(_SPACES, " ")
-    | {0xFF10 + digit: str(digit) for digit in range(10)}  # of full width
+    | {0xFF10 + digit: str(digit) for digit in range(10)}  # digits of full width
 )
 _KNOWN_SIGNS = "°µμΩ"  # signs of units that are no letters
 

@@ -156,7 +156,7 @@ def _parts(value: Any) -> list[Any]:
         return [getattr(value, f.name) for f in dataclasses.fields(value) if f.compare or not ours]
     try:
         return [pickle.dumps(value, protocol=4)]
-    except Exception as error:  # which one depends on the object
+    except Exception as error:  # the kind of exception depends on the object
         raise ValueError(f"{value!r} cannot be stored: it cannot be pickled ({error})") from None
 
 

@@ -23,7 +23,7 @@ NO_ANSWER = "no answer"  # no answer to some of many cases, or to a part of the 
 INPUT = "input"  # something given has no effect, or is doubtful
 EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
 IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
-LIMITS = "limits"  # limits of validity other than these: large strain, few vibrations
+LIMITS = "limits"  # limits of other validity: large strain, few vibrations
 
 
 class _Unit(Protocol):

@@ -117,7 +117,7 @@ class DraggableDrawing:
         self._how.set_visibility(bool(sheet.handles))
         for element in self._handles:
             element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
-        if sheet.handles:  # else the last ones stay, hidden: one of them may be held
+        if sheet.handles:  # without new ones the last stay, hidden: one may be held
             self._make([handle.label for handle in sheet.handles])
             self._sheet = sheet
             for element, handle in zip(self._handles, sheet.handles, strict=True):

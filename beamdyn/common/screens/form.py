@@ -74,7 +74,7 @@ class Form:
         self._units: dict[str, str] = {}  # units of bare numbers, by path
         self._headings = headings
         self._tables: dict[str, Any] = {}
-        self._places: dict[str, Any] = {}  # of the fields
+        self._places: dict[str, Any] = {}  # places of the fields
         self._changed = changed
         self._hold, self._held = hold, False
         self._drags = {drag.path: drag for drag in drags}
@@ -119,7 +119,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # else it has followed the field
+            if at is not None and at != place():  # otherwise it has followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def follow(at: float, done: bool) -> None:

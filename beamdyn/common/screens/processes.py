@@ -62,7 +62,7 @@ class Processes:
         self._all: set[_Worker] = set()
         self._waiting: deque[asyncio.Future[_Worker]] = deque()
         self._starts: set[asyncio.Task[None]] = set()
-        self._count = 0  # of processes, with those that are being started
+        self._count = 0  # number of processes, with those that are being started
 
     @property
     def ids(self) -> set[int]:

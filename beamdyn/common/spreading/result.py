@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DIGITS, _MOST_DIGITS = 4, 10  # of the one line
+_DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline
 _APART = 3.0  # standard errors by which two indices differ for sure
 
 

@@ -151,7 +151,7 @@ class _FurtherAnswers:
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # which answers some design has
+    wanted: Any  # answers that some design has
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)

@@ -82,7 +82,7 @@ def fit_mode_polynomials(scene: Scene, speed: float) -> tuple[ModePolynomial, ..
 def _fit(scene: Scene, mode: str, speed: float) -> ModePolynomial:
     shape, frequency = shape_of(scene, mode, speed)
     last = PLACES ** _POWERS[-1]
-    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]  # of each 0 at the tip: the sum stays 1
+    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]  # each is 0 at the tip: the sum stays 1
     first = np.linalg.lstsq(others, shape - last, rcond=None)[0].round(6)  # as many digits as are written
     coefficients = (*map(float, first), round(1 - float(first.sum()), 6))
     difference = float(np.abs(polynomial(coefficients) - shape).max())

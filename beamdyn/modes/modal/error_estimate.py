@@ -82,13 +82,13 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # of moments some may depend on others
+    if model.solver.size < modes:  # some moments may depend on others
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
-    compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
+    compared = coarse.shape[1]  # there may be fewer independent moments than modes
     s = fine.eigenvalue[:, :compared]
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order

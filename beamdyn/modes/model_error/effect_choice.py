@@ -112,7 +112,7 @@ def choose_physics(
         counts = vibrate(s)
         if (
             candidate.physics.large_deflection
-        ):  # then others are judged on the straight beam, where it is stable
+        ):  # others are then judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
         return _judged_by(candidate, effects, counts, _rough_size(found.model, some))
 
@@ -274,7 +274,7 @@ class _Candidate:
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
-            size = judged.sizes.get(other, math.nan)  # as before where it is not known any more
+            size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
@@ -314,7 +314,7 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(_BENDING, judge)  # and what it is combined with
+            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
             best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:

@@ -150,7 +150,7 @@ class Campbell(StatesModelError):
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # without their model error
+        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # model errors are left out
         return super().to_dict() | {"loci": loci}
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -425,7 +425,7 @@ def _all_lines(
             others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
-    distinct = distinct_lines([*per_rev, *others])  # of two at one frequency the first
+    distinct = distinct_lines([*per_rev, *others])  # the first of two at one frequency is kept
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
 
 

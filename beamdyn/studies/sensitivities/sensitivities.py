@@ -95,7 +95,7 @@ def frequency_sensitivities(
     if names is None or SPEED in names:
         numbers = (*numbers, SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
-        with np.errstate(invalid="ignore"):  # of a mode that does not vibrate
+        with np.errstate(invalid="ignore"):  # a mode may not vibrate
             of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
         derivative = np.vstack([derivative, rate])
         error = np.vstack([error, np.abs(rate - other) + of_shapes])

@@ -144,9 +144,7 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
-    if (
-        not scene.physics.stretch
-    ):  # with it modes may cross: a tracked locus then differs from the lowest modes
+    if not scene.physics.stretch:  # modes may cross then: a tracked locus differs from the lowest modes
         cases = (Setting(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
 
