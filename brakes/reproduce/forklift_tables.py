@@ -66,22 +66,13 @@ def _table(name: str, ours: as_printed.Tables, right: as_printed.Tables) -> Prin
     for place in np.ndindex(*(len(values) for values in inputs.values())):
         cells = []
         for quantity in quantities:
-            printed = str(np.array(data[quantity]["printed"])[place])
-            unit = data[quantity].get("step") or step(
-                printed, padded["digits"] if printed in padded["value"] else None
-            )
-            unit = float(np.broadcast_to(unit, ours[name, quantity].shape)[place])
+            printed, computed = str(np.array(data[quantity]["printed"])[place]), ours[name, quantity]
+            digits = padded["digits"] if printed in padded["value"] else None
+            unit = np.broadcast_to(data[quantity].get("step", step(printed, digits)), computed.shape)[place]
             there = misfit["where"].startswith(f"Table {number}, {quantity}") and misfit["printed"] == printed
-            corrected = right.get((name, quantity))
-            cells.append(
-                Cell(
-                    printed,
-                    float(ours[name, quantity][place]),
-                    unit,
-                    "the one misfit (1)" if there else "",
-                    None if corrected is None else float(corrected[place]),
-                )
-            )
+            reason, corrected = "the one misfit (1)" if there else "", right.get((name, quantity))
+            true = None if corrected is None else float(corrected[place])
+            cells.append(Cell(printed, float(computed[place]), float(unit), reason, true))
         given = zip(inputs.values(), place, strict=True)
         rows.append((tuple(f"{values[i]:g}" for values, i in given), cells))
     fixed = data["fixed"].replace("clearance 0.0106", "clearance 0.0106 m")
