@@ -25,7 +25,7 @@ def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
     effects : LeftOutEffects
         The effects.
     of : str
-        What they change, such as "frequencies".
+        Name of the numbers that they change, such as "frequencies".
     """
     sizes = {name: _largest(change) for name, change in effects.changes.items()}
     known = sorted((n for n in sizes if np.isfinite(sizes[n])), key=lambda name: -abs(sizes[name]))

@@ -66,7 +66,7 @@ class FreeMotion:
     shapes : ndarray of complex, shape (n, m)
         Coordinates q of each free motion.
     states : ndarray of complex, shape (2 n, m)
-        The same in balanced coordinates, u and then w.
+        Each free motion in balanced coordinates, u and then w.
     coordinates : BalancedCoordinates
         These.
     damping : ndarray, shape (n, n)

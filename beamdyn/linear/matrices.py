@@ -71,12 +71,12 @@ class Matrices(Result):
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str
-        What each coordinate q and each equation is, with units.
+        Meaning of each coordinate q and each equation, with units.
     error : ndarray, shape (2 n,)
         Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
         discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
     warnings : tuple of str
-        What limits the validity of the matrices.
+        Limits of the validity of the matrices.
     provenance : Provenance
         How the matrices were computed.
 

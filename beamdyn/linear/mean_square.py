@@ -85,9 +85,9 @@ class PoleIntegrals:
     Parameters
     ----------
     whole : float
-        Of g S.
+        Integral of g S.
     by_pole : ndarray of complex, shape (m,)
-        Of g S / (f - mu_k).
+        Integrals of g S / (f - mu_k).
     """
 
     whole: float

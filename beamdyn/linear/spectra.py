@@ -43,9 +43,9 @@ class SpectrumPiece:
     start, end : float
         Its ends [Hz].
     constant, slope : float
-        Of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
+        Numbers of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
     power : float
-        Of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
+        Exponent of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
     """
 
     start: float

@@ -44,7 +44,7 @@ class LoadCycles(Result):
     start, end : float
         The time window [s].
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was computed.
 

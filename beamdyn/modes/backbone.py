@@ -45,7 +45,7 @@ class Backbone(Result):
     error : float
         Estimated absolute error of the coefficient, which is nondimensional as that is.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

@@ -77,7 +77,7 @@ class CriticalPoint(StatesModelError):
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

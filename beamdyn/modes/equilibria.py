@@ -65,7 +65,7 @@ class Equilibrium(Result):
     growth_rate : float
         Largest growth rate of a small motion [1/s]; 0 if it is stable.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -274,7 +274,7 @@ class EquilibriumBranches(Result):
     critical_speed : float
         Speed at which the straight beam buckles [rad/s]; inf where rotation bends it from rest on.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How they were found.
 

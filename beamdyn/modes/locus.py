@@ -75,7 +75,7 @@ class Locus(StatesModelError):
     axial_strain : ndarray, shape (S,)
         Largest static axial strain; nan if it is unknown.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

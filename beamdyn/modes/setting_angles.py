@@ -48,7 +48,7 @@ class SettingAngleLimits(Result):
     static_deflection : float
         Static tip deflection at the second limit and the top speed, as a fraction of the length.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

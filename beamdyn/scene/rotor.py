@@ -43,9 +43,9 @@ class RotorDrawing(Result):
     radius : float
         Distance of the root from the axis of rotation [m].
     setting_angle, bending_angle, precone : float
-        Of the mount [rad].
+        Angles of the mount [rad].
     length : float
-        Of the beam [m].
+        Length of the beam [m].
     magnification : float
         By how much depth and width of the beam are drawn larger than its length.
     section_known : bool

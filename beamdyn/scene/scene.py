@@ -46,7 +46,7 @@ class Scene(OneLine):
     damping : Damping
         Further damping: ratios mode by mode, Rayleigh's factors, a damper at the tip.
     label : str
-        What the scene is called in pictures that show several.
+        Name of the scene in pictures that show several.
     units : DisplayUnits or dict
         Units in which its results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
         nevertheless.  A scene from a file has those of the file.

@@ -48,7 +48,7 @@ class Crossing:
     plane_share : tuple of float
         Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
     second_plane_share : tuple of float or None
-        The same of the other mode of a combination resonance.
+        Shares of the other mode of a combination resonance.
 
     Examples
     --------

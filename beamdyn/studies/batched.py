@@ -101,7 +101,7 @@ class Refinement:
         Returns
         -------
         answers : list of ndarray, shape (N, ...)
-            Of each design those of the last basis in which it has any; nan where it has none.
+            Answers of each design in the last basis that has any; nan where none has.
         functions : int
             Largest number of functions that was needed.
         """

@@ -71,7 +71,7 @@ class SingleDesigns(FieldsOnly):
     Parameters
     ----------
     question : StudyQuestion
-        What is asked of them.
+        Question that is asked of the designs.
     columns : mapping of str to ndarray, shape (N,)
         Their inputs, but for the speed.
     speeds : ndarray, shape (N, S)
@@ -247,7 +247,7 @@ def left_out_of_design(
     Parameters
     ----------
     question : StudyQuestion
-        What is asked.
+        The question.
     scene : Scene
         The scene of the design.
     design : mapping of str to float

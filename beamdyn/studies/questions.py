@@ -22,7 +22,7 @@ class Kind:
     Parameters
     ----------
     word : str
-        What one number is.
+        Name of one number.
     unit : str
         Its unit.
     has_speed : bool

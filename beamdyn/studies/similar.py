@@ -101,7 +101,7 @@ class SimilarDesigns(FieldsOnly):
     first : mapping of str to float
         Inputs of the reference.
     columns : mapping of str to ndarray, shape (N,)
-        The same inputs of each design.
+        Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
         Values of each quantity between which the matrices are interpolated, where designs are some of many.
     """

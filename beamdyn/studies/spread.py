@@ -51,7 +51,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) ->
     Parameters
     ----------
     question : StudyQuestion
-        What is asked; crossings with their resonances.
+        The question; one of crossings with their resonances.
     inputs : sequence of SpreadInput
         The inputs.
     """
@@ -156,7 +156,7 @@ def spread(
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
         128, else the next is used.
     seed : int
-        What the random designs follow from.
+        Seed from which the random designs follow.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
 

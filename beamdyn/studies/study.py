@@ -263,7 +263,7 @@ class SimilarTask:
     Parameters
     ----------
     question : StudyQuestion
-        What is asked of them.
+        Question that is asked of the designs.
     designs : SimilarDesigns
         N designs.
     columns : mapping of str to ndarray, shape (N,)

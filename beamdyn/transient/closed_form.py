@@ -325,7 +325,7 @@ def _missed(
 ) -> tuple[np.ndarray, float]:
     """Error of each coordinate (n,) by what the motion misses in the equations, and the largest coordinate.
 
-    What is missed counts as if it were in resonance all the time.
+    The part that is missed counts as if it were in resonance all the time.
     """
     tau = (t1 - t0) * (_GOLDEN * np.arange(1, _CHECKED + 1) % 1)
     e, g = system.scalars(t0 + tau)

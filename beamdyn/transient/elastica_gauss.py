@@ -57,7 +57,7 @@ def propagate_elastica(
     stages : int
         Stages s of each step; the order is 2 s.
     like : Segment, optional
-        The same steps with another number of stages, from which the iteration starts.
+        Steps with another number of stages, from which the iteration starts.
 
     Raises
     ------

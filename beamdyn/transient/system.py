@@ -194,7 +194,7 @@ def excited_equations(equations: Equations, motions: Sequence[Motion], t_end: fl
     Returns
     -------
     Equations
-        The same if all coordinates are excited, or none.
+        The given equations if all coordinates are excited, or none.
     """
     if len(equations.connected) == 1:
         return equations

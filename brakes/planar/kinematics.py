@@ -52,7 +52,7 @@ class Toggle:
     still : tuple of str
         Bodies that stand still there while others move.
     message : str
-        The same as a sentence.
+        Sentence that explains the status.
 
     Examples
     --------

@@ -300,7 +300,7 @@ def is_answer(status: str, forces: ArrayLike) -> bool:
     status : str
         As in `Equilibrium`.
     forces : array_like
-        What equilibrium gives [N, N m].
+        Forces and moments that equilibrium gives [N, N m].
     """
     return status in ("determined", "self-locking") and bool(np.isfinite(forces).all())
 

@@ -99,7 +99,7 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     design : ForkliftInput
         The file.
     stages : tuple of str
-        Of "vehicle", "kinematics", "forces".
+        Stages among "vehicle", "kinematics", "forces".
 
     Returns
     -------

@@ -40,7 +40,7 @@ class NewtonResult(Result):
     residual : float
         Largest left-hand side, in units of T/r and r.
     condition_number : float
-        Of the Jacobian at the end, in the units of the iteration.
+        Condition number of the Jacobian at the end, in the units of the iteration.
     """
 
     field_units: ClassVar[dict[str, str]] = {"N": "unknowns"}

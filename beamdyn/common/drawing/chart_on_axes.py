@@ -32,7 +32,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
     Returns
     -------
     Axes
-        The same.
+        The axes that were given.
     """
     for curve, colour in zip(chart.curves, _colours(chart), strict=True):
         style, width = "--" if curve.dashed else "-", 1.0 if curve.pale else 1.8

@@ -317,7 +317,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     requests : sequence of LabelRequest
         The labels.
     obstacles : Obstacles
-        What is drawn already.
+        Shapes that are drawn already.
 
     Returns
     -------
@@ -353,9 +353,9 @@ def keep_places(
     before : sequence of Place
         Where the labels stood.
     requests : sequence of LabelRequest
-        The same labels now.
+        Labels as they are now.
     obstacles : Obstacles
-        What is drawn now.
+        Shapes that are drawn now.
 
     Returns
     -------

@@ -329,7 +329,7 @@ def check_used(what: str, options: Mapping[str, Collection[str]], **given: objec
     what : str
         Name of the answer.
     options : mapping of str to collection of str
-        Of each answer that there is, the options on which it depends.
+        Options on which each answer depends, by the answer.
     **given : object
         The options; None is one that is not given.
 

@@ -127,7 +127,7 @@ def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "var
     most : int
         Largest number of them.
     option : str
-        What the inputs are called in the message.
+        Name of the inputs in the message.
 
     Raises
     ------

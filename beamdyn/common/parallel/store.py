@@ -33,7 +33,7 @@ class Store:
     path : str or Path
         The folder; its parents must exist.
     kind : str
-        What is stored: a store of another kind is refused.
+        Kind of results: a store of another kind is refused.
 
     Raises
     ------

@@ -93,9 +93,9 @@ class TaskRunner:
     store : str or Path, optional
         Folder in which results are kept; those found there are not computed again.
     kind : str
-        What the store holds.
+        Kind of results in the store.
     versions : tuple of str
-        Of the programs on which the bits of a result depend.
+        Versions of the programs on which the bits of a result depend.
     progress : callable, optional
         Called as progress(done, total) with the numbers of designs, at the start and after each task.
     interrupted : type

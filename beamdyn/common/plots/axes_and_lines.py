@@ -150,7 +150,7 @@ def note_below(figure: Figure, sentences: Sequence[str]) -> Figure:
     Returns
     -------
     Figure
-        The same.
+        The figure that was given.
     """
     width = int(_LETTERS * figure.get_size_inches()[0])
     lines = [line for sentence in sentences for line in textwrap.wrap(sentence, width)]

@@ -51,7 +51,7 @@ class Curves:
     solid : ndarray of bool, shape (S, m), optional
         Where a mode is drawn solid, else dashed.
     directions : tuple of str, optional
-        What is drawn solid and dashed, for the legend.
+        Names of the solid and the dashed lines, for the legend.
     """
 
     speeds: np.ndarray

@@ -18,7 +18,7 @@ class Column:
     Parameters
     ----------
     name : str
-        What it holds, as in the heads of files: "relative_error".
+        Name as in the heads of files: "relative_error".
     values : sequence
         Numbers in the unit, or words.
     unit : str

@@ -37,7 +37,7 @@ class Comparison(Verdict):
     Parameters
     ----------
     what : str
-        What is compared.
+        Name of the value.
     source : str
         Who published it.
     published : float or pair of floats

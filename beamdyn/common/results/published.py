@@ -15,7 +15,7 @@ def load(package: str, name: str) -> dict[str, Any]:
     package : str
         The package, e.g. ``"beamdyn.published"``.
     name : str
-        Of the file, without its ending, e.g. ``"lee_yoo_2019"``.
+        Name of the file without its ending, e.g. ``"lee_yoo_2019"``.
 
     Returns
     -------

@@ -158,13 +158,13 @@ class Statement(Words):
     *parts : str
         Parts of the sentence.
     kind : str
-        What it is about; one of the kinds in `beamdyn.common.results.statements`.
+        Subject; one of the kinds in `beamdyn.common.results.statements`.
     quantity : str
         The quantity that it is about, such as "tip deflection over the length"; empty if it is about none.
     value, limit : float
         The quantity, and what it should not pass; nan where there is no such number.
     remedy : str
-        What to do about it; empty where the sentence has no advice.
+        Advice; empty where there is none.
 
     Examples
     --------

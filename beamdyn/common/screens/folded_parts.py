@@ -40,7 +40,7 @@ class FoldedDrawings:
     Parameters
     ----------
     title : str
-        What they show.
+        Title of the drawings.
     rows : callable
         ``rows(answer)``: rows of drawings.
     """
@@ -67,7 +67,7 @@ class FoldedPicture:
     Parameters
     ----------
     title : str
-        What it shows.
+        Title of the part.
     draw : callable
         ``draw(answer)``: the figure.
     """
@@ -91,7 +91,7 @@ class FoldedTable:
     Parameters
     ----------
     title : str
-        What it shows.
+        Title of the part.
     table : callable
         ``table(answer)``: the table.
     """

@@ -66,9 +66,9 @@ class Page:
     Parameters
     ----------
     program : Program
-        What it is.
+        The program that the page belongs to.
     solver : TaskTaker
-        What makes the answers.
+        Solver that makes the answers.
     """
 
     def __init__(self, program: Program, solver: TaskTaker) -> None:

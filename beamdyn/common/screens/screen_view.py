@@ -57,7 +57,7 @@ class ScreenView:
     edited : callable
         Called after a field of this screen has changed.
     solver : TaskTaker
-        What makes the answers.
+        Solver that makes the answers.
     """
 
     def __init__(

@@ -114,7 +114,7 @@ class FirstOrderRange:
     mean, deviation : ndarray, shape (k,)
         Mean and standard deviation [units of the answers].
     error : ndarray, shape (k,)
-        What the errors of the slopes make at most of these four [units of the answers].
+        Largest effect of the errors of the slopes on these four [units of the answers].
     share : ndarray, shape (d, k)
         Share of each input in the variance.
     slope, slope_error : ndarray, shape (d, k)

@@ -35,9 +35,9 @@ class Spread(Result):
     Parameters
     ----------
     what : str
-        What was asked for.
+        The question.
     answers, units : tuple of str, length k
-        What each answer is, such as "mode 1", and its unit.
+        Name of each answer, such as "mode 1", and its unit.
     inputs : tuple of SpreadInput, length d
         Each with its `name`, `unit`, `nominal` value, `distribution` and the `text` of its tolerance.
     nominal : ndarray, shape (k,)
@@ -69,7 +69,7 @@ class Spread(Result):
     sampled_answers : ndarray, shape (2 n, k)
         Their answers [`units`]; not finite where there is none.
     warnings : tuple of str
-        What limits the answers.
+        Limits of the answers.
     provenance : Provenance
         How it was found.
 
@@ -180,7 +180,7 @@ def draw_scatter(
     values : ndarray, shape (n,)
         Answers of random designs; those that are not finite count, but are not drawn.
     label : str
-        Of the axis.
+        Label of the axis.
     marks : sequence of (label, style, colour, places)
         Vertical lines at places.
     ax : Axes, optional

@@ -54,7 +54,7 @@ class SpreadDesigns:
     samples : int
         Number n of designs of each random sample.
     seed : int
-        What the samples follow from.
+        Seed from which the samples follow.
     """
 
     inputs: Sequence[SpreadInput]
@@ -113,7 +113,7 @@ class SpreadDesigns:
         nominal : ndarray, shape (k,)
         beside : ndarray, shape (d, 4, k)
         random : ndarray, shape (2 + d, n, k)
-            Of A, of B, and of A with each input of B.
+            Answers of the samples A, of B, and of A with each input of B.
         """
         k, slopes = answers.shape[1], 1 + 4 * self.count
         beside = answers[1:slopes].reshape(self.count, 4, k)

@@ -35,7 +35,7 @@ class ModePolynomial:
     mode : str
         Such as "flap 1".
     coefficients : tuple of float
-        Those of the powers 2 to 6; they add up to 1, the deflection at the tip.
+        Coefficients of the powers 2 to 6; they add up to 1, the deflection at the tip.
     difference : float
         Largest difference from the mode shape with the same deflection at the tip, relative to it.
     frequency : float
@@ -235,7 +235,7 @@ class DeckAudit(Result):
     shape_speed : float
         Speed at which shapes are compared [rad/s].
     warnings : tuple of str
-        What looks like a mistake in the deck.
+        Signs of mistakes in the deck.
 
     Examples
     --------

@@ -158,7 +158,7 @@ class StackedSolver:
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
 
-        Of the multiple 0: at which the stiffness is singular.  Modes ascend; a value that is not positive
+        At the multiple 0 the stiffness is singular.  Modes ascend; a value that is not positive
         says that the mode meets the line at no speed.  The rounding error is that of the value.
         """
         n = self.growth.shape[1]

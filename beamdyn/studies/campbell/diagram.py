@@ -80,7 +80,7 @@ class Campbell(StatesModelError):
     unit : {"rad/s", "rpm"}
         Unit of speeds in the picture and the tables.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

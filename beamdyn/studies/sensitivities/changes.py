@@ -29,11 +29,11 @@ class Nearby(Generic[Evaluated]):
     Parameters
     ----------
     values : list
-        What was evaluated, at `PLACES` places.
+        Matrices at `PLACES` places.
     weights : ndarray, shape (PLACES,)
         The derivative is their sum times the values [1 / unit of the number].
     last : ndarray, shape (PLACES,)
-        The same of the last term of the polynomial through the values, for what the polynomial misses.
+        Weights of the last term of that polynomial, which bounds what it misses.
     width : float
         Half of the interval [unit of the number].
     """
@@ -257,7 +257,7 @@ class Changes:
     Parameters
     ----------
     of : tuple of list of PencilChange
-        Those of the model, and those of the coarser one.
+        Changes of the model, and those of the coarser one.
     missed : list of PencilChange
         What those of the model may lack, as their dependence on a number is not resolved.
     rounding : ndarray, shape (n,)

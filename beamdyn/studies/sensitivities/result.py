@@ -171,7 +171,7 @@ class Sensitivities(Result):
     Parameters
     ----------
     answers : tuple of str
-        What each answer is, such as "mode 1", shape (k,).
+        Name of each answer, such as "mode 1", shape (k,).
     unit : str
         Unit of the answers.
     value : ndarray, shape (k,)
