@@ -31,7 +31,7 @@ _DASHED = (5.0, 3.0)
 _DEGREES = 180 / np.pi
 
 
-Part: TypeAlias = "DrawnShape | Label"
+Part: TypeAlias = DrawnShape | Label
 
 
 @dataclass(frozen=True)
