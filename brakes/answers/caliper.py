@@ -24,8 +24,7 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.screens.folded_parts import FoldedDrawings
-from beamdyn.common.screens.screens import Slider
+from beamdyn.common.screens.screens import FoldedPart, Slider
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -294,7 +293,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     example_sweep = "points.C.x=17:20:13 mm"
     sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
-    more = (FoldedDrawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
+    more = (FoldedPart.of_drawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file, or of the caliper of a name."""

@@ -14,9 +14,9 @@ from cyclopts import App, Parameter
 from beamdyn.common.edge import program
 from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
 from beamdyn.common.edge.program import NoAnswer, examples
-from beamdyn.common.edge.spread_options import NO_SPREAD, OPTION, SpreadOptions
-from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SpreadOptions, VaryOptions
 from beamdyn.common.edge.varying import OPTION as VARY
+from beamdyn.common.edge.varying import SPREAD as OPTION
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Question

@@ -9,8 +9,7 @@ from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs
 from beamdyn.common.edge.program import examples
-from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
-from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SpreadOptions, VaryOptions
 from brakes.cli.answering import What, app, run_command
 
 
