@@ -179,7 +179,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     ]
 
     def effects() -> LeftOutEffects:
-        """Those of the crossings of the answer; nan where there is none."""
+        """Changes of the crossings of the answer; nan where there is none."""
         places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
         known = found.left_out_effects
         changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}

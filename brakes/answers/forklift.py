@@ -305,7 +305,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Sketch that explains the symbols of the form."""
         return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
