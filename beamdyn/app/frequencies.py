@@ -28,7 +28,7 @@ from beamdyn.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
-from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
+from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses

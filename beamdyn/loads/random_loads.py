@@ -17,9 +17,9 @@ from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
 from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, random_input, warn_of_band
-from beamdyn.loads.load_fractions import LoadFractions
 from beamdyn.loads.load_statistics import (
     InputAndOutputs,
+    LoadFractions,
     RandomStatistics,
     error_of_largest,
     expected_factor,
