@@ -269,7 +269,7 @@ def mode_error(
         Infinite where the distance exceeds 0.3 of the largest value along the span, and rounding: then it
         does not bound the error.
     """
-    modes = np.inf if basis.modes is None else basis.modes  # of a field
+    modes = np.inf if basis.modes is None else basis.modes  # number of modes of each field
     near = np.abs(stations.xi[:, None] - with_neighbours(stations).xi) <= 1 / (modes + 0.5)
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     planes = (distance.shape[-1] - 1) // 2

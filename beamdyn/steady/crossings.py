@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
-_FURTHER_MODES = 2  # with which those that are sought may exchange their order
+_FURTHER_MODES = 2  # modes with which those that are sought may exchange their order
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Crossing:
     plane_share : tuple of float
         Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
     second_plane_share : tuple of float or None
-        The same of the other mode of a combination resonance.
+        Shares of the other mode of a combination resonance.
 
     Examples
     --------

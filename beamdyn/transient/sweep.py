@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 
 _DIGITS = 4  # most of the headline
 _KIND = "beamdyn sweep"
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # on which the stored bits depend
+_VERSIONS = (__version__, np.__version__, scipy.__version__)  # stored bits depend on these
 
 
 class SweepInterrupted(RunInterrupted):
@@ -164,7 +164,7 @@ class Sweep(StatesModelError):
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        with unannounced():  # of a run that `warnings` speaks of
+        with unannounced():  # `warnings` has told what the run warns of
             run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-_OF_TIME_ERROR = 0.1  # of the path, that is part of a distance found along it
+_OF_TIME_ERROR = 0.1  # share of the path's time error that is part of a distance found along it
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"  # what a copy with further warnings keeps
 
 
