@@ -91,7 +91,7 @@ def steady(
 # Motion in time --------------------------------------------------------------------------------------
 
 
-_PERIODS, _FRAMES = 3, 60  # of a close-up
+_PERIODS, _FRAMES = 3, 60  # periods and frames of a close-up
 Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text), field="t_end")]
 

@@ -172,11 +172,11 @@ class Analysis:
 
     @property
     def question(self) -> str:
-        """What it asks, in a sentence."""
+        """The question that the analysis answers, in a sentence: the first line of its docstring."""
         return (self.function.__doc__ or "").partition("\n")[0]
 
     def meaning(self, name: str) -> str:
-        """What an option means."""
+        """Explanation of an option: that of this analysis if it has one, else that of the option's type."""
         from docstring_parser import parse
 
         notes = [note.help for note in _notes(self.options[name].annotation) if isinstance(note, Parameter)]

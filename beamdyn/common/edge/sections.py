@@ -22,7 +22,7 @@ class MadeSection(CoreSection):
     """A table made from a core class; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
-    key_of: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
+    key_of: ClassVar[Mapping[str, str]]  # keys by argument; those of a pair are named "tip[0]" and "tip[1]"
 
     @property
     def given(self) -> dict[str, Any]:

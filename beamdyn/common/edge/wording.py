@@ -89,14 +89,14 @@ def _decades(number: float) -> float:
 
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
-    """The same error, about an angle, in degrees."""
+    """Convert the numbers of an error about an angle to degrees."""
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
 
 
 def in_millimetres(error: InvalidValue) -> InvalidValue:
-    """The same error in mm, if it is about a length below a metre; else unchanged."""
+    """Convert the numbers of an error about a length below a metre to mm; others are unchanged."""
     if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
         return error
     limit = None if error.limit is None else 1e3 * error.limit
@@ -104,7 +104,7 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
 
 
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
-    """The same in the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
+    """Convert an error to the unit at the end of a text, as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
     if not isinstance(error.value, float):
         return error
     written, convert = unit_as_written(last_quantity(text), error.unit)

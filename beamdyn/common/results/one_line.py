@@ -26,14 +26,14 @@ class OneLine:
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
-        """What matters most, in parts: of a class that says nothing else, the fields that it was given."""
+        """Parts of the line that shows an object; a class that defines none shows the fields it was given."""
         return given_fields(self)
 
     def __repr__(self) -> str:
         name = type(self).__name__
         try:
             parts = [" ".join(part.split()) for part in self.headline() if part]
-        except Exception:  # of an object that is not complete, in a debugger or in the middle of an error
+        except Exception:  # an incomplete object may raise anything, in a debugger or amid an error
             parts = ["..."]
         line = f"{name}({', '.join(parts)})"
         for kept in range(len(parts) - 1, 0, -1):  # as many parts as a line takes
@@ -96,7 +96,7 @@ def number(value: Any, unit: str = "") -> str:
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"
-    size += 0.0  # of a negative zero
+    size += 0.0  # a negative zero becomes 0
     text = f"{size:.0f}" if 1e3 <= abs(size) < 1e6 else f"{size:.{_DIGITS}g}"
     return f"{text}{unit and ' ' + unit}"
 

@@ -52,7 +52,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
         If it cannot be written.
     """
     path = check_writable(path, SUFFIXES, force)
-    figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
+    figure: Any = drawn.figure  # that of axes may be a subfigure, that of a figure is itself
     content = BytesIO()  # matplotlib does not close a file that it cannot write
     figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
     with replacing(path) as aside:

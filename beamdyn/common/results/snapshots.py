@@ -19,7 +19,7 @@ import numpy as np
 
 from beamdyn.common.results.statements import Words
 
-_PACKAGES = ("beamdyn", "brakes")  # whose classes may be named in a file
+_PACKAGES = ("beamdyn", "brakes")  # packages whose classes may be named in a file
 
 
 class LeftOut:
