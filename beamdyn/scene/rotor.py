@@ -93,7 +93,9 @@ class RotorDrawing(Result):
 
         Between them the beam by itself, to a scale of its own, where it is short beside the radius.
         """
-        apart = [[_beam_alone(self)]] if self.length < _SHORT * self.radius else []
+        title, about = "The beam by itself, to a larger scale", "The beam of the rotor by itself"
+        alone = Drawing(*_beam_parts(self, 0.12 * self.length), title, about)
+        apart = [[alone]] if self.length < _SHORT * self.radius else []
         return [[_plan(self)], *apart, [_section_view(self)]]
 
     def svg(self) -> str:
@@ -208,10 +210,7 @@ def _corners(sides: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _plan(rotor: RotorDrawing) -> Drawing:
-    r, L = rotor.radius, rotor.length
-    along, aside = _directions(rotor.setting_angle)
-    root, tip = np.array([r, 0.0]), np.array([r, 0.0]) + L * np.cos(rotor.precone) * along
-    size = max(r, L)
+    r, size = rotor.radius, max(rotor.radius, rotor.length)
     shapes: list[DrawnShape] = [Symbol("cross", (0, 0), "axis", 12.0)]
     labels = [Label("axis of rotation", (0, 0), "dimension", (-0.3, -1.0))]
     turn = 0.12 * size
@@ -219,110 +218,72 @@ def _plan(rotor: RotorDrawing) -> Drawing:
     shapes += [Outline(turned[:-6], "axis", 1.2), Arrow(turned[-9], turned[-1], "axis", width=1.2)]
     labels.append(Label("positive rotation", (0, turn), "axis", (0.0, 1.0)))
     if r > 0:
-        shapes += [
-            Outline([(0, 0), root], "axis", 1.0, _DASHED),
-            Arrow((0, 0), root, "dimension", "r", 1.0, both=True),
-        ]
+        root = np.array([r, 0.0])
+        shapes.append(Outline([(0, 0), root], "axis", 1.0, _DASHED))
+        shapes.append(Arrow((0, 0), root, "dimension", "r", 1.0, both=True))
         labels.append(Label(f"= {length_text(r)}", [(r / 2, 0), (r / 3, 0)], "dimension", (0, -1), "r"))
-    shapes += [
-        Outline(rotor.outline, "beam", 1.2, closed=True, filled=True),
-        *_supports(rotor, root, 0.06 * size),
-    ]
-    labels += [*_angle_labels(rotor, root, tip, along, aside)]
-    shapes += [*_angle_shapes(rotor, root)]
-    shapes += [*_bodies(rotor, root, along)]
-    labels += [*_body_labels(rotor, root, along)]
+    of_beam, said = _beam_parts(rotor, 0.06 * size)
     seen = f"; depth and width drawn {rotor.magnification:g} times larger" if rotor.magnification > 1 else ""
-    seen = seen if rotor.section_known else "; section not known"
-    title = f"Plane of rotation{seen}"
-    return Drawing(shapes, labels, title, "A rotating beam seen along the axis of rotation")
+    title = f"Plane of rotation{seen if rotor.section_known else '; section not known'}"
+    about = "A rotating beam seen along the axis of rotation"
+    return Drawing([*shapes, *of_beam], [*labels, *said], title, about)
 
 
-def _beam_alone(rotor: RotorDrawing) -> Drawing:
-    """The beam of the plane of rotation, to a scale of its own."""
+def _beam_parts(rotor: RotorDrawing, half: float) -> tuple[list[DrawnShape], list[Label]]:
+    """The beam in the plane of rotation; its root is clamped in a wall of half this length, or is a hinge."""
     along, aside = _directions(rotor.setting_angle)
-    root = np.array([rotor.radius, 0.0])
-    tip = root + rotor.length * np.cos(rotor.precone) * along
-    shapes = [
-        Outline(rotor.outline, "beam", 1.2, closed=True, filled=True),
-        *_supports(rotor, root, 0.12 * rotor.length),
-        *_angle_shapes(rotor, root),
-        *_bodies(rotor, root, along),
-    ]
-    labels = [*_angle_labels(rotor, root, tip, along, aside), *_body_labels(rotor, root, along)]
-    return Drawing(shapes, labels, "The beam by itself, to a larger scale", "The beam of the rotor by itself")
-
-
-def _supports(rotor: RotorDrawing, root: np.ndarray, half: float) -> list[DrawnShape]:
-    """The root: clamped in a wall of half this length, or a hinge with its spring."""
-    along, aside = _directions(rotor.setting_angle)
-    if np.isfinite(rotor.scene.mount.root_stiffness):
-        return [Symbol("pin", root, "pin", 8.0)]
-    wall = np.array([root - half * aside, root + half * aside])
-    ticks = wall[0] + np.linspace(0, 1, 6)[:, None] * (wall[1] - wall[0])
-    back = -0.35 * half * (along + 0.6 * aside)
-    hatches: list[DrawnShape] = [Outline([tick, tick + back], "ground", 0.9) for tick in ticks]
-    return [Outline(wall, "ground", 2.4), *hatches]
-
-
-def _angle_shapes(rotor: RotorDrawing, root: np.ndarray) -> Iterator[DrawnShape]:
-    """Arc of the setting angle, from the direction inward to the beam."""
-    phi = rotor.setting_angle
-    size = 0.3 * rotor.length
-    yield Outline([root, root - np.array([1.2 * size, 0.0])], "axis", 0.9, _DOTTED)
+    root, c = np.array([rotor.radius, 0.0]), np.cos(rotor.precone)
+    phi, size, stiffness = rotor.setting_angle, 0.3 * rotor.length, rotor.scene.mount.root_stiffness
+    shapes: list[DrawnShape] = [Outline(rotor.outline, "beam", 1.2, closed=True, filled=True)]
+    if np.isfinite(stiffness):
+        shapes.append(Symbol("pin", root, "pin", 8.0))
+    else:
+        wall = np.array([root - half * aside, root + half * aside])
+        ticks = wall[0] + np.linspace(0, 1, 6)[:, None] * (wall[1] - wall[0])
+        back = -0.35 * half * (along + 0.6 * aside)
+        shapes.append(Outline(wall, "ground", 2.4))
+        shapes += [Outline([tick, tick + back], "ground", 0.9) for tick in ticks]
+    # The setting angle, from the direction inward to the beam.
+    shapes.append(Outline([root, root - np.array([1.2 * size, 0.0])], "axis", 0.9, _DOTTED))
     if phi:
         turned = arc(root, size, np.pi, np.pi - phi)
-        yield Outline(turned[:-2], "dimension", 1.0)
-        yield Arrow(turned[-4], turned[-1], "dimension", "phi", 1.0)
-
-
-def _angle_labels(
-    rotor: RotorDrawing, root: np.ndarray, tip: np.ndarray, along: np.ndarray, aside: np.ndarray
-) -> Iterator[Label]:
-    phi, size = rotor.setting_angle, 0.3 * rotor.length
+        shapes.append(Outline(turned[:-2], "dimension", 1.0))
+        shapes.append(Arrow(turned[-4], turned[-1], "dimension", "phi", 1.0))
     middle = arc(root, size, np.pi - phi / 2, np.pi - phi / 3, 2)
     way = middle[0] - root
-    yield Label(f"= {phi * _DEGREES:.4g}°", middle, "dimension", (way[0], way[1]), "φ")
-    places = root + np.array([0.55, 0.75, 0.35])[:, None] * (tip - root)
-    beside = 0.5 * _SEEN * rotor.length
-    yield Label(
-        f"beam, L = {length_text(rotor.length)}", places - beside * aside, "beam", (-aside[0], -aside[1])
-    )
+    labels = [Label(f"= {phi * _DEGREES:.4g}°", middle, "dimension", (way[0], way[1]), "φ")]
+    tip = root + rotor.length * c * along
+    places, beside = root + np.array([0.55, 0.75, 0.35])[:, None] * (tip - root), 0.5 * _SEEN * rotor.length
+    text = f"beam, L = {length_text(rotor.length)}"
+    labels.append(Label(text, places - beside * aside, "beam", (-aside[0], -aside[1])))
     if rotor.precone:
         text = f"leaves the plane by η = {rotor.precone * _DEGREES:.4g}°"
-        yield Label(text, places + beside * aside, "dimension", (aside[0], aside[1]))
-    stiffness = rotor.scene.mount.root_stiffness
-    root_words = "root, clamped" if np.isinf(stiffness) else f"root, {stiffness:.4g} N m/rad"
-    yield Label(root_words, root, "ground", (-along[0] + 0.3, -along[1] - 0.5))
+        labels.append(Label(text, places + beside * aside, "dimension", (aside[0], aside[1])))
+    text = "root, clamped" if np.isinf(stiffness) else f"root, {stiffness:.4g} N m/rad"
+    labels.append(Label(text, root, "ground", (-along[0] + 0.3, -along[1] - 0.5)))
+    bodies, said = _bodies(rotor, root, c * along)
+    return [*shapes, *bodies], [*labels, *said]
 
 
-def _bodies(rotor: RotorDrawing, root: np.ndarray, along: np.ndarray) -> Iterator[DrawnShape]:
-    """Tip body and point masses, as signs without scale."""
-    beam, c = rotor.scene.beam, np.cos(rotor.precone)
-    tip = root + rotor.length * c * along
+def _bodies(rotor: RotorDrawing, root: np.ndarray, along: np.ndarray) -> tuple[list[DrawnShape], list[Label]]:
+    """Point masses, springs and tip body, as signs without scale; `along` is a unit of the beam on paper."""
+    beam, shapes, labels, up = rotor.scene.beam, list[DrawnShape](), list[Label](), (0.0, 1.0)
     for mass in beam.point_masses:
-        yield Symbol("dot", root + mass.position * c * along, "weight", 9.0)
+        shapes.append(Symbol("dot", root + mass.position * along, "weight", 9.0))
+        labels.append(Label(_mass(mass.mass), root + mass.position * along, "weight", up))
     for spring in beam.point_springs:
-        yield Symbol("diamond", root + spring.position * c * along, "support", 9.0)
+        place = root + spring.position * along
+        shapes.append(Symbol("diamond", place, "support", 9.0))
+        labels.append(Label(f"spring {spring.stiffness:.4g} N/m", place, "dimension", up))
     if beam.tip is not None:
-        centre = tip + beam.tip.offset * c * along
-        yield Disc(centre, 0.035 * rotor.length, "body", 1.4, filled=True)
-        yield Outline([tip, centre], "neutral", 1.4)
-        yield Symbol("dot", centre, "weight", 4.0)
-
-
-def _body_labels(rotor: RotorDrawing, root: np.ndarray, along: np.ndarray) -> Iterator[Label]:
-    beam, c = rotor.scene.beam, np.cos(rotor.precone)
-    for mass in beam.point_masses:
-        yield Label(_mass(mass.mass), root + mass.position * c * along, "weight", (0.0, 1.0))
-    for spring in beam.point_springs:
-        yield Label(
-            f"spring {spring.stiffness:.4g} N/m", root + spring.position * c * along, "dimension", (0.0, 1.0)
-        )
-    if beam.tip is not None:
-        centre = root + (rotor.length + beam.tip.offset) * c * along
-        far = centre + 0.035 * rotor.length * along
-        yield Label(f"tip body {_mass(beam.tip.mass)}", far, "weight", (along[0], along[1]), priority=1)
+        tip, on_paper = root + rotor.length * along, _directions(rotor.setting_angle)[0]
+        centre = tip + beam.tip.offset * along
+        shapes.append(Disc(centre, 0.035 * rotor.length, "body", 1.4, filled=True))
+        shapes += [Outline([tip, centre], "neutral", 1.4), Symbol("dot", centre, "weight", 4.0)]
+        far = root + (rotor.length + beam.tip.offset) * along + 0.035 * rotor.length * on_paper
+        said = f"tip body {_mass(beam.tip.mass)}"
+        labels.append(Label(said, far, "weight", (on_paper[0], on_paper[1]), priority=1))
+    return shapes, labels
 
 
 # Section, seen from the tip -----------------------------------------------------------------------
