@@ -228,7 +228,8 @@ class Equations:
             turning = _sum_over_quantities(moving, rotating, shape)
             parts.append((matrices.get("unity", np.zeros(shape)), turning))
         (K0, K2), (C, G), (M, _) = parts
-        return SteadyPencil(M, C, G, K0, K2, self.load(rotating), self.shift, self.planes)
+        load = _sum_over_quantities(self.vectors, rotating, (self.size,))
+        return SteadyPencil(M, C, G, K0, K2, load, self.shift, self.planes)
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:

@@ -19,6 +19,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_MOST_ACROSS = 40  # functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
@@ -78,18 +79,16 @@ class Ritz:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
-
-    def _points(self, beam: Beam) -> int:
-        """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
+        # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree(beam) // 2
+        return RitzSpaces(self, tuple(beam.breakpoints), degree + 2 + weight_degree(beam) // 2)
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
-        if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.fewer).quadrature.cells
-        return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
+        spaces = self.spaces(beam)
+        if isinstance(spaces, MomentSpaces):
+            return spaces.quadrature.cells
+        return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
@@ -138,6 +137,16 @@ class RitzSpaces:
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean: as many as along a segment."""
+        return max(2, min(self.ritz.functions, _MOST_ACROSS))
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser basis."""
+        return max(2, min(self.ritz.fewer, _MOST_ACROSS - 2))
 
     def shares_functions(self, other: RitzSpaces) -> bool:
         """Whether the basis and the segments are the same."""

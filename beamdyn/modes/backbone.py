@@ -18,7 +18,7 @@ from beamdyn.common.inputs.checks import InvalidValue, count, real
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.elastica import DeflectedState
-from beamdyn.equations.root_motion import RootMotion, root_motion
+from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
@@ -193,13 +193,10 @@ class FreeVibration:
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
         """Dynamic stiffness (n, n) at a multiple of the frequency."""
-        state, w = self.state, harmonic * self.omega
-        return self._stiffness + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
-
-    @property
-    def _stiffness(self) -> np.ndarray:
-        pencil = self.state.linearized().steady()
-        return pencil.K0 + self.speed**2 * pencil.K2
+        state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
+        return (
+            pencil.K0 + self.speed**2 * pencil.K2 + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
+        )
 
     def _shift(self, eps: float) -> float:
         """Change of the angular frequency over eps^2 [rad/s]."""
@@ -219,13 +216,9 @@ class FreeVibration:
             np.real(np.sum([(1j * h * self.omega) ** k * wave for h, wave in waves.items()], axis=0))
             for k in range(3)
         )
-        elastica = self.state.elastica
-        return elastica.at(self.state.q + q).work(rate, acceleration, self._root)
-
-    @property
-    def _root(self) -> RootMotion:
-        sample = MotionSample.steady(np.full(_SAMPLES, self.speed))
-        return root_motion(self.state.elastica.linear.mount, sample)
+        elastica, sample = self.state.elastica, MotionSample.steady(np.full(_SAMPLES, self.speed))
+        root = root_motion(elastica.linear.mount, sample)
+        return elastica.at(self.state.q + q).work(rate, acceleration, root)
 
 
 def _harmonic(samples: np.ndarray, harmonic: int) -> np.ndarray:

@@ -24,8 +24,8 @@ from beamdyn.modes.modal.model import Model, plane_share
 from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,

@@ -119,7 +119,7 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects that the model leaves out would change in each frequency (m,)."""
-        from beamdyn.modes.model_error.of_modes import (
+        from beamdyn.modes.model_error.left_out_changes import (
             left_out_of_modes,
         )  # here, for the time that it takes to import
 

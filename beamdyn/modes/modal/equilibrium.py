@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -216,18 +217,13 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
         bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
     except (NotConverged, NoEquilibrium):
         bent = None
-    if bent is None or _is_on_branch_from_rest(load, speed, bent):
+    with suppress(NoEquilibrium):  # the branch from rest may turn back before
+        from_rest = follow_to(load, np.array([speed]))[0] if bent is not None else None
+        if from_rest is not None and np.abs((bent - from_rest) @ load.angles).max() < _SAME:
+            bent = None
+    if bent is None:
         raise NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
     return bent
-
-
-def _is_on_branch_from_rest(load: SteadyLoad, speed: float, q: np.ndarray) -> bool:
-    """Whether an equilibrium is on the branch from rest, which may turn back before."""
-    try:
-        from_rest = follow_to(load, np.array([speed]))[0]
-    except NoEquilibrium:
-        return False
-    return bool(np.abs((q - from_rest) @ load.angles).max() < _SAME)
 
 
 def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.assembly import assemble_equations
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.eigenproblem import Eigensolver
@@ -44,7 +44,7 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam."""
-        return assemble_equations(self.scene, self.discretization)
+        return assemble_over(self.scene, self.discretization.spaces(self.scene.modelled_beam))
 
     @cached_property
     def solver(self) -> Eigensolver:
