@@ -51,7 +51,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) ->
     Parameters
     ----------
     question : StudyQuestion
-        What is asked; crossings with their resonances.
+        The question; one of crossings with their resonances.
     inputs : sequence of SpreadInput
         The inputs.
     """
@@ -96,7 +96,7 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # of units
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 
@@ -139,7 +139,7 @@ def spread(
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
         128, else the next is used.
     seed : int
-        What the random designs follow from.
+        Seed from which the random designs follow.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
 
@@ -228,7 +228,7 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """That of all designs so far: how many worst cases take is not known before."""
+        """Progress over all designs so far: the number that worst cases need is not known before."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
