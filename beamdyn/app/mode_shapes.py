@@ -15,7 +15,7 @@ from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.screens.screens import Drag, Slider
-from beamdyn.equations.directions import words_of_directions
+from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.modes import Modes
 
 _PLACES = 41  # along the beam

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample

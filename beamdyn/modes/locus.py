@@ -20,9 +20,8 @@ from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.model import Model, plane_share
+from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
-from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

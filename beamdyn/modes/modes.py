@@ -17,7 +17,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
-from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -25,8 +25,7 @@ from beamdyn.modes.modal.discretization_choice import (
     warn_of_missed_tolerance,
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model, plane_share
-from beamdyn.modes.modal.static_load import static_load, warn_of_straight
+from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (

@@ -21,8 +21,7 @@ from beamdyn.modes.modal.discretization_choice import (
     choose_model,
 )
 from beamdyn.modes.modal.eigenproblem import Solver
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import static_load
+from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds

@@ -19,7 +19,7 @@ from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Statement
-from beamdyn.equations.directions import check_direction, modelled_directions
+from beamdyn.equations.effects import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model

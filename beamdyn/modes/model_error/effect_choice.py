@@ -23,7 +23,7 @@ from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_changes import (
     EXCLUDED,
