@@ -55,7 +55,7 @@ class Effect:
         return not self.is_in(scene) and (self is not TWIST or scene.beam.twist is not None)
 
     def reason(self, scene: Scene) -> str:
-        """What the model of a scene assumes in place of the effect, and how to include that."""
+        """Say what the model of a scene assumes in place of the effect, and how to include that."""
         assumed = self.assumed.format(across=name_directions(scene)[1][0])
         return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
 
@@ -206,5 +206,5 @@ def modelled_directions(scene: Scene) -> tuple[str, ...]:
 
 
 def words_of_directions(scene: Scene) -> tuple[str, ...]:
-    """The same, each in a word; none where one plane is modelled, which needs no telling apart."""
+    """Names of the directions in a word each; none where one plane is modelled, as there is no other."""
     return tuple(word for _, word in name_directions(scene) if scene.physics.planes == 2)

@@ -138,7 +138,7 @@ class Sampler:
 
     @classmethod
     def on_cells(cls, cells: Cells) -> Sampler:
-        """That of cells one after the other."""
+        """Sample on cells that follow one another."""
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:

@@ -83,7 +83,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
         yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
 

@@ -98,7 +98,7 @@ class CriticalPoint(StatesModelError):
     model: Model | None = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         found = np.isfinite(self.speed)
         yield self.say_speed(self.speed) if found else f"none below {self.say_speed(self.none_below)}"
         yield error_at_most(self.error) if found else ""
@@ -106,7 +106,7 @@ class CriticalPoint(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects that the model leaves out would change in the critical speed, of shape ()."""
+        """Changes of the critical speed by the effects that the model leaves out, of shape ()."""
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)

@@ -104,7 +104,7 @@ class Locus(StatesModelError):
     place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         count, modes = self.frequency.shape
         yield f"{counted(modes, 'mode')}, {counted(count, 'speed')}, {self.say_speed(self.speeds)}"
         yield spanned(self.frequency, "Hz")
@@ -116,7 +116,7 @@ class Locus(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
+        """Changes of the frequencies at the `left_out_speeds` by the effects left out (k, m)."""
         return self.left_out_at(self._judged)
 
     @property
@@ -136,7 +136,7 @@ class Locus(StatesModelError):
         return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
+        """Changes by the effects left out at the speeds of some indices (k,): (k, m)."""
         at = np.asarray(indices, dtype=int)
         return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
 

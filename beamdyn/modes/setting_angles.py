@@ -68,7 +68,7 @@ class SettingAngleLimits(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
         yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
 

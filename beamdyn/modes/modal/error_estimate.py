@@ -138,7 +138,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def extrapolation_error(
     distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
 ) -> np.ndarray:
-    """What extrapolation leaves of the error of a number, by its distances over three meshes.
+    """Estimate the error of a number that extrapolation leaves, by its distances over three meshes.
 
     Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
     of the one before; where they are longer than a layer, or cross a steep change, it falls less.

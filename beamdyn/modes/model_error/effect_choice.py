@@ -253,7 +253,7 @@ class _Candidate:
         return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
-        """The same, with a reason why an effect cannot be added."""
+        """Give a reason why an effect cannot be added."""
         return replace(self, reasons={name: reason} | self.reasons)
 
     def add(self, name: str, judge: Judge) -> _Candidate:
@@ -341,7 +341,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
-    """What was chosen, in numbers: each effect by its size, and what the choice costs."""
+    """Describe the choice in numbers: each effect by its size, and what it costs."""
     without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without

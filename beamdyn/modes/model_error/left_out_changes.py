@@ -220,7 +220,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """What the model assumes in place of each effect, and how to include it."""
+    """Reasons: what the model assumes in place of each effect, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
