@@ -118,9 +118,8 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of each frequency by the effects that the model leaves out (m,)."""
-        from beamdyn.modes.model_error.left_out_changes import (
-            left_out_of_modes,
-        )  # here, for the time that it takes to import
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 
         return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
@@ -218,9 +217,8 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     if scene.chooses_physics:
-        from beamdyn.modes.model_error.effect_choice import (
-            choose_physics,  # here, for the time that it takes to import
-        )
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.model_error.effect_choice import choose_physics
 
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)

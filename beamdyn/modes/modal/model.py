@@ -60,9 +60,8 @@ class Model(FieldsOnly):
     @cached_property
     def _deflected(self) -> DeflectedSolver:
         """Solver of equations for deflections of any size."""
-        from beamdyn.modes.modal.equilibrium import (
-            DeflectedSolver,  # here, for the time that it takes to import
-        )
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
         assert self.elastica is not None
         return DeflectedSolver(self.elastica, self.scene.physics.branch)

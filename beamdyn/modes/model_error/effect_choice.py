@@ -106,22 +106,16 @@ def choose_physics(
         return solve_to_tolerance(candidate, "ritz", some, modes, target)
 
     def judge(candidate: Scene) -> EffectSizes:
-        found = solve(candidate)
+        found, bent, rough = solve(candidate), candidate.physics.large_deflection, math.nan
         s = found.eigen.eigenvalue[:, :modes]
-        effects = left_out_of_modes(found.model, some, s)
-        counts = vibrate(s)
-        if (
-            candidate.physics.large_deflection
-        ):  # then others are judged on the straight beam, where it is stable
+        effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
+        if bent:  # then others are judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        rough = (
-            math.nan
-        )  # a generous size of large deflection, by the static one, if the beam does not stay straight
-        if not candidate.physics.large_deflection and bends(found.model):
+        elif bends(found.model):  # a generous size of large deflection is known by the static one
             # Where the straight beam is unstable, though rotation bends it before, nothing of it is right.
             ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
             rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
-        return _judged_by(candidate, effects, counts, rough)
+        return _sizes_in_modes(candidate, effects, counts, rough)
 
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
@@ -146,7 +140,7 @@ def plain_physics(scene: Scene) -> Scene:
     return replace(scene, physics=Physics()) if scene.chooses_physics else scene
 
 
-def _judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
+def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
     """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
 
     An effect that turns modes into others can be added: that its size is not known is no reason against it.
