@@ -92,15 +92,11 @@ class DrumAnswer(Answer):
         """The brake as a whole, and shoe by shoe."""
         brake, shoes = self.result, self.result.shoes
         direction = "reverse" if brake.reverse else "forward"
+        title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
         return [
             outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
-            table(
-                "Shoes (components: x to the shoe's side, y upward)",
-                ("", *names, "unit"),
-                list_outputs(_SHOE, shoes),
-                (0, len(names) + 1),
-            ),
+            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes), (0, len(names) + 1)),
         ]
 
     def rows(self) -> Iterable[Sequence[object]]:
@@ -124,12 +120,12 @@ class DrumAnswer(Answer):
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
-        start, end = (_on_rim(r, float(angle)) for angle in shoe.lining)
+        start, end = ((float(r * np.sin(angle)), float(-r * np.cos(angle))) for angle in shoe.lining)
         return (
             Handle("drum radius", (0.0, r), lambda x, y: {"shoe.drum_radius": y}),
             Handle("start of the lining", start, lambda x, y: {"shoe.lining_start": _from_bottom(x, y)}),
             Handle("end of the lining", end, lambda x, y: {"shoe.lining_end": _from_bottom(x, y)}),
-            Handle("pin of the shoe", pivot, _pivot_at),
+            Handle("pin of the shoe", pivot, lambda x, y: {"shoe.pivot_offset": x, "shoe.pivot_depth": -y}),
             Handle("height of the force", (0.55 * r, force), lambda x, y: {"shoe.force_arm": y}),
         )
 
@@ -142,17 +138,9 @@ class DrumAnswer(Answer):
         return self.result.to_dict()
 
 
-def _on_rim(r: float, angle: float) -> tuple[float, float]:
-    return float(r * np.sin(angle)), float(-r * np.cos(angle))
-
-
 def _from_bottom(x: float, y: float) -> float:
     """Angle of a point from straight down [rad]."""
     return float(np.arctan2(x, -y))
-
-
-def _pivot_at(x: float, y: float) -> dict[str, float]:
-    return {"shoe.pivot_offset": x, "shoe.pivot_depth": -y}
 
 
 class DrumType(ArrayBrakeType[DrumInput]):

@@ -72,16 +72,12 @@ def spread_of_brake(
     with in_units_of(given):
         for each in given:
             _check_reach(inputs[each.name], each)
-    _check_count(brake, count_designs(len(given), used), samples)
+    if (designs := count_designs(len(given), used)) > brake.most_cases:
+        bound = f"these are {designs} designs, and at most {brake.most_cases} are solved"
+        raise InvalidValue("--samples", samples, bound, "give fewer samples")
     units = {each.name: each.unit for each in given}
     answers = _BrakeAnswers(brake, SweepRequest(design, tables, (), "zip", run), inputs, units, wanted)
     return solve_spread(named, given, used, check_seed(seed), answers, cautions=cautions)
-
-
-def _check_count(brake: BrakeType[Any], designs: int, samples: int) -> None:
-    if designs > brake.most_cases:
-        bound = f"these are {designs} designs, and at most {brake.most_cases} are solved"
-        raise InvalidValue("--samples", samples, bound, "give fewer samples")
 
 
 def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
