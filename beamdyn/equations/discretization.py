@@ -43,12 +43,15 @@ class Functions(Protocol):
     @property
     def size(self) -> int:
         """Number n of functions."""
+        ...
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives of phi_i at the tip: shape (n,)."""
+        ...
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate the `order`-th derivatives of phi_i at xi of shape (k,): shape (n, k)."""
+        ...
 
 
 class Space(Functions, Protocol):
@@ -57,12 +60,15 @@ class Space(Functions, Protocol):
     @property
     def coarse(self) -> np.ndarray | None:
         """Indices of functions that span those of the coarser discretization; None where no few do."""
+        ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
+        ...
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
         """Integrate over xi the weight times the `order`-th derivative of phi_i: shape (n,)."""
+        ...
 
 
 class Spaces(Protocol):
@@ -73,14 +79,17 @@ class Spaces(Protocol):
 
         Those of `HINGED` are one with a slope at the root, then those of `CLAMPED`.
         """
+        ...
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
+        ...
 
     def shares_functions(self, other: Self) -> bool:
         """Whether the functions are those of other spaces of the same kind, but for the quadrature."""
+        ...
 
 
 class Discretization(Protocol):
@@ -116,26 +125,34 @@ class Discretization(Protocol):
     @property
     def order(self) -> int | None:
         """Order p of convergence of eigenvalues, whose error is as size^-p; None if it is not a power."""
+        ...
 
     @property
     def converges_regularly(self) -> bool:
         """Whether further functions change an eigenvalue ever less, rather than by fits and starts."""
+        ...
 
     @property
     def rounding(self) -> float:
         """Relative rounding error of eigenvalues due to the integrals of the discretization."""
+        ...
 
     def spaces(self, beam: Beam) -> Spaces:
         """The function spaces on a beam."""
+        ...
 
     def cells(self, beam: Beam) -> Cells:
         """Parts of the beam on which the functions are smooth, for integrals of large deflections."""
+        ...
 
     def coarser(self) -> Discretization:
         """A coarser discretization, from whose results those of this one differ by about their error."""
+        ...
 
     def finer(self) -> Discretization | None:
         """The next finer discretization; None at the largest."""
+        ...
 
     def fits(self, modes: int) -> bool:
         """Whether the coarser discretization has functions enough for a number of modes."""
+        ...

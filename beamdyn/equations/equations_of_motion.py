@@ -224,7 +224,7 @@ class Equations:
     def _steady(self) -> SteadyPencil:
         rotating, shape, parts = root_motion(self.mount, MotionSample.steady(1.0)), (self.size, self.size), []
         for matrices in self.matrices:  # what is there at rest, and what motion of the root adds to it
-            moving = {quantity: matrix for quantity, matrix in matrices.items() if quantity != "unity"}
+            moving: dict[Quantity, np.ndarray] = {q: A for q, A in matrices.items() if q != "unity"}
             turning = _sum_over_quantities(moving, rotating, shape)
             parts.append((matrices.get("unity", np.zeros(shape)), turning))
         (K0, K2), (C, G), (M, _) = parts

@@ -283,12 +283,12 @@ class MomentSpace(SampledSpace):
     spaces: MomentSpaces
     conditions: RootConditions
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """Points of the Gauss rule on [0, 1], shape (k,)."""
         return self.spaces.quadrature.xi
 
-    @property
+    @cached_property
     def rule(self) -> np.ndarray:
         """Weights of the Gauss rule, shape (k,)."""
         return self.spaces.quadrature.weights
@@ -325,7 +325,7 @@ class MomentSpace(SampledSpace):
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return coarse, at_points.reshape(len(on_cells), -1)
 
-    @property
+    @cached_property
     def coarse(self) -> np.ndarray | None:
         """The first functions."""
         return np.arange(self._turns + self._quotients[0]) if self._quotients[0] else None

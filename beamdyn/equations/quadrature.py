@@ -170,12 +170,12 @@ class Sampler:
 class SampledSpace(FieldsOnly, ABC):
     """Base class of spaces of functions that are smooth between the points of a Gauss rule on cells."""
 
-    @property
+    @cached_property
     @abstractmethod
     def points(self) -> np.ndarray:
         """Points of the rule on [0, 1], shape (k,)."""
 
-    @property
+    @cached_property
     @abstractmethod
     def rule(self) -> np.ndarray:
         """Weights of the rule, shape (k,)."""
@@ -190,7 +190,7 @@ class SampledSpace(FieldsOnly, ABC):
         """Number n of functions."""
         return len(self.samples[0])
 
-    @property
+    @cached_property
     @abstractmethod
     def coarse(self) -> np.ndarray | None:
         """Indices of functions that span those of the coarser discretization; None where none do."""

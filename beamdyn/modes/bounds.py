@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import TypeAlias
 
 import numpy as np
 
@@ -277,13 +278,15 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
+_Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]  # bounds, size, and the width before
+
+
 def _narrow(
     enclosure: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Bounds of z from growing bases, until they hardly narrow, and the size of the last."""
-    Found = tuple[np.ndarray, np.ndarray, int, np.ndarray]  # with the width before
 
-    def finer(found: Found) -> Found | None:
+    def finer(found: _Found) -> _Found | None:
         lower, upper, _, _ = found
         with suppress(StopIteration, np.linalg.LinAlgError):  # rounding of so many functions at such a speed
             size = next(sizes)
@@ -291,7 +294,7 @@ def _narrow(
             return np.fmax(lower, low), np.fmin(upper, high), size, upper - lower
         return None
 
-    def meets(found: Found) -> bool:
+    def meets(found: _Found) -> bool:
         lower, upper, _, before = found
         width = upper - lower
         return bool((width <= narrow * np.abs(upper)).all() or (width > before / 2).all())

@@ -29,19 +29,24 @@ class Problem(Protocol):
     @property
     def angles(self) -> np.ndarray:
         """Slope angles per coordinate (n, k), by which coordinates are measured."""
+        ...
 
     @property
     def scale(self) -> float:
         """Change of the parameter that counts as an angle of 1."""
+        ...
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
         """The residual r (n,)."""
+        ...
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
         """The derivative of r by q, shape (n, n)."""
+        ...
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
         """The derivative of r by p, shape (n,)."""
+        ...
 
 
 class NotConverged(ArithmeticError):
