@@ -325,7 +325,7 @@ class MomentSpace(SampledSpace):
         at_points = on_cells @ _interpolation(self.spaces.quadrature.cells.points).T
         return coarse, at_points.reshape(len(on_cells), -1)
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray | None:
         """The first functions."""
         return np.arange(self._turns + self._quotients[0]) if self._quotients[0] else None

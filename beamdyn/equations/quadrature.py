@@ -185,12 +185,12 @@ class SampledSpace(FieldsOnly, ABC):
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points, each of shape (n, k)."""
 
-    @cached_property
+    @property
     def size(self) -> int:
         """Number n of functions."""
         return len(self.samples[0])
 
-    @cached_property
+    @property
     @abstractmethod
     def coarse(self) -> np.ndarray | None:
         """Indices of functions that span those of the coarser discretization; None where none do."""

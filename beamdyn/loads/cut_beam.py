@@ -93,7 +93,7 @@ class CutSpace(SampledSpace):
         """Weights of the rule, and 1 at the stations."""
         return self.quadrature.weights
 
-    @cached_property
+    @property
     def coarse(self) -> None:
         """None: nothing is solved in this space."""
         return None
