@@ -89,6 +89,16 @@ class MomentSpaces(FieldsOnly):
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return self.forces
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser basis."""
+        return self.coarse
+
     def shares_functions(self, other: MomentSpaces) -> bool:
         """Whether beam and numbers are the same: cells and forces follow every stiffness."""
         return self == other

@@ -36,7 +36,7 @@ REMEDIES = {
 
 
 class Case(NamedTuple):
-    """What the first axis of the arrays is, its unit, and the field that has its values."""
+    """First axis of the arrays: its name, its unit, and the field that has its values."""
 
     name: str
     unit: str
@@ -257,7 +257,7 @@ def with_unit(quantity: str) -> str:
 
 @dataclass(frozen=True)
 class AskedLoads:
-    """What is asked for along the span of a scene, from which the results of all kinds are made.
+    """Stations and outputs that are asked for along the span, from which results of all kinds are made.
 
     Parameters
     ----------

@@ -29,9 +29,9 @@ from beamdyn.modes.critical_search import (
 )
 from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
-    FEM_TARGET,
     TOLERANCES,
     DiscretizationChoice,
+    affordable_target,
     check_discretization,
     warn_of_missed_tolerance,
 )
@@ -200,7 +200,7 @@ def critical_point(
         return _argued(scene, Buckling(False, _BENT), start)
     # Large deflection does not change when a straight beam buckles.
     scene = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
-    target = max(target, FEM_TARGET) if discretization == "fem" else target
+    target = affordable_target(scene, discretization, target)
     models = partial(models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):

@@ -157,6 +157,11 @@ class Profile(FieldsOnly):
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
+    def derivative(self) -> Profile:
+        """Derivative by x/L on each segment; jumps are left out."""
+        series = legendre.legder(self.series) if self.degree else np.zeros_like(self.series)
+        return _of_series(self.breakpoints, 2 / np.diff(self._ends) * series)
+
     def stepped(self, xi: np.ndarray, steps: np.ndarray) -> Profile:
         """Add to the property at all places inboard of each xi (k,) the step (k,) there."""
         if not len(xi):

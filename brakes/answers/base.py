@@ -7,10 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
-from matplotlib.figure import Figure
 from pydantic import BaseModel
 from rich.console import RenderableType
 
@@ -18,9 +17,18 @@ from beamdyn._version import __version__
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
-from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, swept
+from beamdyn.common.edge.input_sweep import (
+    MOST_ONE_BY_ONE,
+    CaseTask,
+    InputSweep,
+    Output,
+    SolvedCases,
+    chosen,
+    one_by_one,
+    solve_cases,
+    swept,
+)
 from beamdyn.common.edge.inputs import Input, describe
-from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
@@ -29,9 +37,11 @@ from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.screens.folded_parts import FoldedPart
-from beamdyn.common.screens.screens import Handle, KeyResult, Slider
+from beamdyn.common.screens.screens import FoldedPart, Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
@@ -65,7 +75,7 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What to look at although there is an answer: one sentence each."""
+        """Doubts although there is an answer: one sentence each."""
         return ()
 
     @property

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -24,8 +23,7 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.screens.folded_parts import FoldedDrawings
-from beamdyn.common.screens.screens import Slider
+from beamdyn.common.screens.screens import FoldedPart, Slider
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -60,6 +58,9 @@ from brakes.drawings.caliper import (
 from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _AT_STOPS = 11  # positions of a stroke at which the slider stops
@@ -294,7 +295,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     example_sweep = "points.C.x=17:20:13 mm"
     sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
-    more = (FoldedDrawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
+    more = (FoldedPart.of_drawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file, or of the caliper of a name."""

@@ -1,4 +1,4 @@
-"""What answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
+"""Parts that answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.edge.input_sweep import Output
@@ -25,6 +24,9 @@ from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROWS = 5  # of a stroke's table
 
@@ -139,7 +141,7 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
         yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
@@ -271,7 +273,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, its status first; see `Result.headline`."""
+        """The answer in one line, its status first; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -167,7 +167,7 @@ class StoppingDistance(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
         yield f"limited by {self.limited_by}"
         yield self.status

@@ -135,7 +135,7 @@ class BrakeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)

@@ -122,7 +122,7 @@ class InternalForces(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
@@ -130,7 +130,7 @@ class InternalForces(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many of each."""
+        """Meaning of the status, in one sentence; of many cases, how many of each."""
         if np.ndim(self.status):
             names, counts = np.unique(self.status, return_counts=True)
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))

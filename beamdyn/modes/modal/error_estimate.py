@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import BASES_OF_FIELDS, ROUNDING_OF_TWO, SLOW_BASES
+from beamdyn.accuracy.margins import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
@@ -26,6 +26,8 @@ _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may b
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
+# Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
+_ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
@@ -226,6 +228,9 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
     """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
     if not discretization.converges_regularly:
         return _IRREGULAR
+    if scene.physics.plate:
+        across = discretization.spaces(scene.modelled_beam).across
+        return BASES_OF_PLATES.factor * max(1.0, across / _ACROSS_MEASURED), _OTHERS_OF_PLATES, np.inf
     return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
 
 

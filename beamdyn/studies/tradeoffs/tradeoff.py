@@ -22,7 +22,7 @@ from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
-from beamdyn.steady.excitation_phases import check_steady_state
+from beamdyn.steady.periodic_system import check_steady_state
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
 from beamdyn.studies.tradeoffs.responses import (

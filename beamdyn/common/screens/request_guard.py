@@ -16,29 +16,19 @@ from __future__ import annotations
 
 import re
 import socket
-from collections.abc import Awaitable, Callable, MutableMapping
 from ipaddress import ip_address
-from typing import Any
 
-Scope = MutableMapping[str, Any]
-Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
-Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
-App = Callable[[Scope, Receive, Send], Awaitable[None]]
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 _THIS_COMPUTER = ("127.0.0.1", "[::1]", "localhost")
 _HOST = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(:[0-9]+)?")
-_POLICY = "; ".join((
-    "default-src 'self'",
-    "script-src 'self' 'unsafe-inline' 'unsafe-eval'",
-    "style-src 'self' 'unsafe-inline'",
-    "img-src 'self' data: blob:",
-    "font-src 'self' data:",
-    "connect-src 'self'{sockets}",
-    "object-src 'none'",
-    "base-uri 'none'",
-    "form-action 'self'",
-    "frame-ancestors 'none'",
-))  # fmt: skip
+_POLICY = (
+    "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self'{sockets}; object-src 'none'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
 _GUARDS = (
     (b"x-frame-options", b"DENY"),
     (b"x-content-type-options", b"nosniff"),
@@ -46,7 +36,7 @@ _GUARDS = (
 )
 
 
-class OwnNames:
+class RequestGuard:
     """ASGI middleware that refuses requests to other names than the program's, and from other pages.
 
     Parameters
@@ -59,7 +49,7 @@ class OwnNames:
         page has a name, too, but another one.
     """
 
-    def __init__(self, app: App, host: str) -> None:
+    def __init__(self, app: ASGIApp, host: str) -> None:
         self.app = app
         self.any_address = host == "" or (_is_address(host) and ip_address(host).is_unspecified)
         own = socket.gethostname() if self.any_address else f"[{host}]" if ":" in host else host
@@ -68,20 +58,32 @@ class OwnNames:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse it with a sentence and status 403 or 404."""
         if scope["type"] not in ("http", "websocket"):
+            return await self.app(scope, receive, send)
+        headers, path, is_page = Headers(scope=scope), scope["path"], scope["type"] == "http"
+        refusal = self.refusal(headers.getlist("host"), headers.getlist("origin"))
+        # A websocket says its Origin always, and browsers differ in what site they count it to.
+        sites = headers.getlist("sec-fetch-site") if is_page else []
+        if not refusal and any(site not in ("same-origin", "none") for site in sites):
+            refusal = (
+                "This program answers to its own page alone, not to links and pictures of other sites. "
+                "To follow a link, put the cursor into the browser's address bar and press Enter."
+            )
+        send = _guarded(send, "" if refusal else headers["host"])
+        known = path == "/favicon.ico" or path.startswith(("/_nicegui/", "/_nicegui_ws/"))
+        if not refusal and (known or (is_page and path == "/" and scope["method"] == "GET")):
             await self.app(scope, receive, send)
-        elif refusal := self.refusal(_headers(scope, b"host"), _headers(scope, b"origin")) or _foreign(scope):
-            await _refuse(scope, _guarded(send), 403, refusal)
+        elif is_page:
+            sentence = refusal or "There is no such page; the program's only one is at /."
+            await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
-            send = _guarded(send, _headers(scope, b"host")[0])
-            if _is_known(scope):
-                await self.app(scope, receive, send)
-            else:
-                await _refuse(scope, send, 404, "There is no such page; the program's only one is at /.")
+            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
         """Why a request with these headers is refused; empty if it is answered."""
         host = hosts[0].lower() if len(hosts) == 1 else ""
-        if not self._is_own(host):
+        match = _HOST.fullmatch(host)
+        is_other_address = match and self.any_address and _is_address(match[1].strip("[]"))
+        if match is None or not (match[1] in self.names or is_other_address):
             *others, last = self.names
             asked = host or "a request that names none"
             return (
@@ -92,12 +94,6 @@ class OwnNames:
             return f"This program answers to its own page alone, not to {origins[0]}."
         return ""
 
-    def _is_own(self, host: str) -> bool:
-        match = _HOST.fullmatch(host)
-        return match is not None and (
-            match[1] in self.names or (self.any_address and _is_address(match[1].strip("[]")))
-        )
-
 
 def _is_address(name: str) -> bool:
     try:
@@ -107,12 +103,7 @@ def _is_address(name: str) -> bool:
     return True
 
 
-def _headers(scope: Scope, name: bytes) -> list[str]:
-    """All values of a header."""
-    return [value.decode("latin-1") for key, value in scope["headers"] if key == name]
-
-
-def _guarded(send: Send, host: str = "") -> Send:
+def _guarded(send: Send, host: str) -> Send:
     """A `send` that adds headers: what the page may load, and that no other page may frame it.
 
     Parameters
@@ -126,38 +117,9 @@ def _guarded(send: Send, host: str = "") -> Send:
     sockets = f" ws://{host} wss://{host}" if host else ""
     policy = (b"content-security-policy", _POLICY.format(sockets=sockets).encode("latin-1"))
 
-    async def send_guarded(message: MutableMapping[str, Any]) -> None:
+    async def send_guarded(message: Message) -> None:
         if message["type"] == "http.response.start":
             message["headers"] = [*message.get("headers", ()), *_GUARDS, policy]
         await send(message)
 
     return send_guarded
-
-
-def _foreign(scope: Scope) -> str:
-    """Why a request is refused that another site has made the browser send; empty if none has.
-
-    A websocket says its Origin always, and browsers differ in what site they count it to.
-    """
-    sites = _headers(scope, b"sec-fetch-site") if scope["type"] == "http" else []
-    if all(site in ("same-origin", "none") for site in sites):
-        return ""
-    return (
-        "This program answers to its own page alone, not to links and pictures of other sites. "
-        "To follow a link, put the cursor into the browser's address bar and press Enter."
-    )
-
-
-def _is_known(scope: Scope) -> bool:
-    """Whether a request is for the page or for what belongs to it."""
-    path = scope["path"]
-    page = scope["type"] == "http" and path == "/" and scope["method"] == "GET"
-    return page or path == "/favicon.ico" or path.startswith(("/_nicegui/", "/_nicegui_ws/"))
-
-
-async def _refuse(scope: Scope, send: Send, status: int, sentence: str) -> None:
-    if scope["type"] == "websocket":
-        return await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
-    headers = [(b"content-type", b"text/plain; charset=utf-8")]
-    await send({"type": "http.response.start", "status": status, "headers": headers})
-    await send({"type": "http.response.body", "body": f"{sentence}\n".encode()})

@@ -1,21 +1,24 @@
-"""The computations of a page: one at a time; of those asked for meanwhile only the newest follows."""
+"""Computations of a page: one at a time, then the newest of those asked for meanwhile; downloads."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 from collections.abc import Callable
+from concurrent.futures import BrokenExecutor
 from time import monotonic
 from typing import Any
 
-from nicegui import background_tasks
+from nicegui import background_tasks, ui
+
+from beamdyn.common.screens.processes import TakesTooLong
 
 SOON = 0.15  # time after which the page says that it computes [s]; the message is there within 0.3 s
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 2.0  # time after which what is no longer wanted is ended [s]; another process takes 1 s to start
 
 
-class UnderWay:
+class LatestComputation:
     """The computation that is under way, and the one that follows it.
 
     Parameters
@@ -72,10 +75,14 @@ class UnderWay:
             await asyncio.wait([self._task])
 
     def _next(self) -> asyncio.Future[Any]:
-        """Start what is wanted."""
+        """Start what is wanted; the future of what cannot be started holds the error."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
-        self._future = _started(start)
+        try:
+            self._future = start()
+        except Exception as error:
+            self._future = asyncio.get_running_loop().create_future()
+            self._future.set_exception(error)
         return self._future
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
@@ -86,36 +93,48 @@ class UnderWay:
             self._fail(error)
 
     async def _follow(self, future: asyncio.Future[Any]) -> None:
+        """Show what is under way when it is done, and so with what was wanted meanwhile.
+
+        What takes long and is no longer wanted is ended.
+        """
         try:
-            await self._wait(future)
-            while self._wanted is not None:
+            while True:
+                start = monotonic()
+                await asyncio.wait([future], timeout=SOON)
+                while not future.done():
+                    if not self.slow:
+                        self.slow = True
+                        self._tell()
+                    if self._wanted is not None and monotonic() - start > _PATIENCE:
+                        future.cancel()
+                    await asyncio.wait([future], timeout=SOON)
+                if self._wanted is None:
+                    break
                 done, future = future, self._next()
                 await asyncio.sleep(0)  # it is on its way before the last one is shown, which takes its time
                 if not done.cancelled():
                     self._settle(done, False)
-                await self._wait(future)
         finally:
             self._task, self.slow = None, False
         self._settle(future, True)
 
-    async def _wait(self, future: asyncio.Future[Any]) -> None:
-        """Wait for the computation under way; end it if it takes long and is no longer wanted."""
-        start = monotonic()
-        await asyncio.wait([future], timeout=SOON)
-        while not future.done():
-            if not self.slow:
-                self.slow = True
-                self._tell()
-            if self._wanted is not None and monotonic() - start > _PATIENCE:
-                future.cancel()
-            await asyncio.wait([future], timeout=SOON)
 
+async def download(making: asyncio.Future[Any], name: str) -> None:
+    """Download bytes or a text as a file when they have been made; notify if that takes long, or fails.
 
-def _started(start: Callable[[], asyncio.Future[Any]]) -> asyncio.Future[Any]:
-    """The future of a computation; one with the error if it cannot be started."""
+    Parameters
+    ----------
+    making : asyncio.Future
+        From `RunsTasks.submit`.
+    name : str
+        Name of the file.
+    """
+    await asyncio.wait([making], timeout=SOON)
+    if not making.done():
+        ui.notify(f"{name} is being made")
     try:
-        return start()
-    except Exception as error:
-        failed: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        failed.set_exception(error)
-        return failed
+        made = await making
+    except (TakesTooLong, BrokenExecutor) as error:
+        ui.notify(f"{name} was given up: {error}", type="negative")
+        return
+    ui.download.content(made.encode() if isinstance(made, str) else made, name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -37,31 +37,31 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
     InvalidInput
         At the first mistake; its field is the place, such as "stations[2][0]", counted from 0.
     """
-    heads, *rest = _checked_rows(place, rows)
-    units: dict[str, str] = {}
-    for c, head in enumerate(heads):
-        name, unit = _read_head(f"{place}[0][{c}]", head, known)
-        if name in units:
-            raise InvalidInput(f"{place}[0][{c}]", head, "a second column of this name")
-        units[name] = unit
-    columns: dict[str, list[Any]] = {name: [] for name in units}
-    for r, row in enumerate(rest, 1):
-        for c, (name, cell) in enumerate(zip(units, row, strict=True)):
-            columns[name].append(_read_cell(f"{place}[{r}][{c}]", cell, units[name], known[name]))
-    return columns
-
-
-def _checked_rows(place: str, rows: Any) -> Sequence[Sequence[Any]]:
-    """Refuse what is not a row of heads and one row or more of as many cells."""
-    remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
     if not isinstance(rows, list) or len(rows) < 2:
+        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
         raise InvalidInput(place, rows, remedy)
     for r, row in enumerate(rows):
         if not isinstance(row, list) or not row:
             raise InvalidInput(f"{place}[{r}]", row, "give a row in brackets")
         if len(row) != len(rows[0]):
             raise InvalidInput(f"{place}[{r}]", row, f"{len(row)} cells under {len(rows[0])} heads")
-    return rows
+    units: dict[str, str] = {}
+    for c, head in enumerate(rows[0]):
+        name, unit = _read_head(f"{place}[0][{c}]", head, known)
+        if name in units:
+            raise InvalidInput(f"{place}[0][{c}]", head, "a second column of this name")
+        units[name] = unit
+    columns: dict[str, list[Any]] = {name: [] for name in units}
+    for r, row in enumerate(rows[1:], 1):
+        for c, ((name, unit), cell) in enumerate(zip(units.items(), row, strict=True)):
+            at = f"{place}[{r}][{c}]"
+            if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
+                raise InvalidInput(at, cell, f"give a finite number{f', in {unit}' if unit else ''}")
+            try:
+                columns[name].append(known[name].parse(f"{cell!r} {unit}" if unit else cell))
+            except InvalidInput as error:
+                raise replace(error, field=at, value=cell) from None
+    return columns
 
 
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
@@ -81,13 +81,3 @@ def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[st
         pass
     example = f'"{name} [{usual_unit(wanted)}]"' if wanted else f'it without a unit, "{name}"'
     raise InvalidInput(place, head, f"give {example}")
-
-
-def _read_cell(place: str, cell: Any, unit: str, quantity: Quantity) -> Any:
-    """A number in SI, within the bounds of its column."""
-    if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
-        raise InvalidInput(place, cell, f"give a finite number{f', in {unit}' if unit else ''}")
-    try:
-        return quantity.parse(f"{cell!r} {unit}" if unit else cell)
-    except InvalidInput as error:
-        raise replace(error, field=place, value=cell) from None
