@@ -52,7 +52,7 @@ _BENT = (
     "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
     "equilibrium turns back"
 )
-_FUNCTIONS = 5  # of a model of which only the loads are read
+_FUNCTIONS = 5  # functions of a model of which only the loads are read
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class CriticalPoint(StatesModelError):
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 

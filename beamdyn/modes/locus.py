@@ -74,7 +74,7 @@ class Locus(StatesModelError):
     axial_strain : ndarray, shape (S,)
         Largest static axial strain; nan if it is unknown.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -101,7 +101,7 @@ class Locus(StatesModelError):
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
     ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
-    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
+    place: np.ndarray = field(repr=False)  # place of each mode in `ascending` (S, m)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""

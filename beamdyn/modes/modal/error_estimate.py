@@ -28,7 +28,7 @@ _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may b
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
 # Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
-_ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
+_ABOVE = 0.99  # share of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
 
@@ -83,13 +83,13 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # of moments some may depend on others
+    if model.solver.size < modes:  # some moments may depend on others
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
-    compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
+    compared = coarse.shape[1]  # there may be fewer independent moments than modes
     s = fine.eigenvalue[:, :compared]
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order

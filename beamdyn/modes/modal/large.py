@@ -22,7 +22,7 @@ from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
-_RESTARTS = 50  # of the iteration, which converges after a few, if at all
+_RESTARTS = 50  # restarts of the iteration, which converges after a few, if at all
 
 
 class LargeSolver(Eigensolver):
