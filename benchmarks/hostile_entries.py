@@ -32,7 +32,7 @@ from beamdyn.common.screens.tasks import outcome_of
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES
-from brakes.cli.interactive import make_program as make_brakes
+from brakes.cli.commands import make_program as make_brakes
 
 MAKERS: dict[str, Callable[[], Program]] = {"brakes": make_brakes, "beamdyn": make_beamdyn}
 OTHER = {"brakes": ("Drum brake", "shoe.force_arm"), "beamdyn": ("Frequencies", "mount.radius")}

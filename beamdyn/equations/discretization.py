@@ -87,6 +87,16 @@ class Spaces(Protocol):
         """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
         ...
 
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        ...
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser discretization."""
+        ...
+
     def shares_functions(self, other: Self) -> bool:
         """Whether the functions are those of other spaces of the same kind, but for the quadrature."""
         ...

@@ -18,6 +18,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_ACROSS = 8  # functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest number accepted
 MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
@@ -161,6 +162,16 @@ class FemSpaces(FieldsOnly):
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return _ACROSS
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of functions `across` of the coarser model: its mesh differs along the beam alone."""
+        return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
         """Whether the nodes are the same."""

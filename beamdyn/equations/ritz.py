@@ -19,6 +19,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_MOST_ACROSS = 40  # functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
@@ -136,6 +137,16 @@ class RitzSpaces:
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean: as many as along a segment."""
+        return max(2, min(self.ritz.functions, _MOST_ACROSS))
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser basis."""
+        return max(2, min(self.ritz.fewer, _MOST_ACROSS - 2))
 
     def shares_functions(self, other: RitzSpaces) -> bool:
         """Whether the basis and the segments are the same."""

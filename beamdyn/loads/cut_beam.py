@@ -174,6 +174,16 @@ class CutSpaces:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return self.functions(rows).product(self.functions(columns), weight, orders)
 
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return self.spaces.across
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser discretization."""
+        return self.spaces.fewer_across
+
     def shares_functions(self, other: CutSpaces) -> bool:
         """Whether the functions of the beam and the cuts are the same."""
         same = np.array_equal(self.quadrature.points, other.quadrature.points)

@@ -16,8 +16,8 @@ from beamdyn.transient.system import ModalSystem
 
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
-_REFINED = 4  # of these, after the first refinement
-_REFINEMENTS = 2  # of a maximum, each on a grid 17 times as fine; then parabolas err by less than 1e-12
+_REFINED = 4  # number of maxima refined after the first refinement
+_REFINEMENTS = 2  # refinements of a maximum, each 17 times as fine; then parabolas err by less than 1e-12
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
 

@@ -7,10 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
-from matplotlib.figure import Figure
 from pydantic import BaseModel
 from rich.console import RenderableType
 
@@ -41,6 +40,9 @@ from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.screens.screens import FoldedPart, Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
@@ -51,7 +53,7 @@ class Answer(Result, ABC):
     Attributes
     ----------
     design : BaseModel
-        What the file describes, in SI.
+        Design of the file, in SI.
     provenance : Provenance, optional
         Version, method, how the error was found, and the time taken; `BrakeType.answer` adds it.
     """
@@ -73,7 +75,7 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What to look at although there is an answer: one sentence each."""
+        """Doubts although there is an answer: one sentence each."""
         return ()
 
     @property

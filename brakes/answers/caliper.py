@@ -7,10 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -59,6 +58,9 @@ from brakes.drawings.caliper import (
 from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _AT_STOPS = 11  # positions of a stroke at which the slider stops
@@ -311,7 +313,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """Caliper or mechanism that tables describe."""
         mistakes = {}
         for part in PARTS:
-            if isinstance(text := tables.get(part), str):  # which is no list of tables
+            if isinstance(text := tables.get(part), str):  # text is no list of tables
                 form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
                 try:
                     tomllib.loads(f"parts = {text}")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -21,6 +20,9 @@ from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MM, _MPA = 1e-3, 1e6
 
@@ -162,7 +164,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
         return DrumAnswer(design, design.solve())
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Explain the symbols of the form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.on_axes import figure_of
@@ -27,6 +26,9 @@ from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
 
@@ -305,7 +307,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Explain the symbols of the form."""
         return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:

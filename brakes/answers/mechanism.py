@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -44,6 +43,9 @@ from brakes.drawings.mechanism import (
 )
 from brakes.planar import Equilibrium, Mechanism, assemble, solve, solve_with_friction, stroke
 from brakes.planar.system import join_names
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SCALES = {"mm": 1e-3, "deg": pi / 180}
 WITHOUT = "without friction"
@@ -283,7 +285,7 @@ class MechanismAnswer(PlanarAnswer):
         drawn = open_and_closed(self.equilibrium.position, now, title)
         if now.status == "self-locking":
             drawn = with_lock(drawn, now, unknown_loads(self._mechanism)[-1].name)
-        points = getattr(self.design, "points", {})  # of a file; a named caliper has dimensions
+        points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:

@@ -1,4 +1,4 @@
-"""What answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
+"""Parts that answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.edge.input_sweep import Output
@@ -26,7 +25,10 @@ from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
 
-_ROWS = 5  # of a stroke's table
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ROWS = 5  # rows of a stroke's table
 
 
 def units_of(load: Load) -> tuple[float, str, str]:
@@ -117,7 +119,7 @@ def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float
 # Friction in a mechanism: its forces without friction, squeezing and releasing, side by side -------------
 
 
-_ROUNDING = 1e-9  # of the largest load: what is shown as 0, such as a brake's torque without friction
+_ROUNDING = 1e-9  # share of the largest load that is shown as 0, such as a torque without friction
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,7 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
         yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
@@ -249,7 +251,7 @@ def unknown_loads(mechanism: Mechanism) -> list[Load]:
 # Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation -----------
 
 
-_FRAMES = 30  # of an animation
+_FRAMES = 30  # frames of an animation
 
 
 @dataclass(frozen=True)
@@ -271,7 +273,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, its status first; see `Result.headline`."""
+        """The answer in one line, its status first; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -13,8 +13,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis
-from beamdyn.common.edge.varying import SPREAD as OPTION
-from beamdyn.common.edge.varying import in_units_of, parse_spreads
+from beamdyn.common.edge.varying import SPREAD, in_units_of, parse_spreads
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
@@ -91,7 +90,7 @@ def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
     """
     value = part_at(design, entry.path)
     if not isinstance(value, int | float):
-        raise InvalidValue(OPTION, entry.path, "the file gives it no value", "give it one, or leave it out")
+        raise InvalidValue(SPREAD, entry.path, "the file gives it no value", "give it one, or leave it out")
     return float(value), "rad" if isinstance(value, Angle) else entry.quantity.unit
 
 

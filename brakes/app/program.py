@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib import import_module
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import html
@@ -71,5 +70,5 @@ MECHANISM = make_document(
 )
 
 
-_STANDARD = (make_document(import_module(f"brakes.answers.{name}").BRAKE) for name in STANDARD)
+_STANDARD = (make_document(load()) for _, load in STANDARD.values())
 BRAKES = Program("brakes", "Brakes", (FORKLIFT, *_STANDARD, CALIPER, MECHANISM))

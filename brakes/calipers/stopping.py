@@ -112,7 +112,7 @@ class Stance:
         return mu * GRAVITY * (length - x) / holds if holds > 0 else math.inf
 
 
-_RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
+_RTOL, _ATOL = 1e-12, 1e-12  # tolerances of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
 _MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
@@ -167,7 +167,7 @@ class StoppingDistance(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
         yield f"limited by {self.limited_by}"
         yield self.status

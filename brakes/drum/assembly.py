@@ -104,7 +104,7 @@ class BrakeResult(SlidesOrLocks):
     c_star, c_star_slope : ndarray
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Of the shoe that locks first.
+        Values of the shoe that locks first.
 
     Examples
     --------
@@ -135,7 +135,7 @@ class BrakeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)

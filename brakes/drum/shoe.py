@@ -189,7 +189,7 @@ class SlidesOrLocks(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence."""
+        """Meaning of the status, in one sentence."""
         locked = np.asarray(self.locked)
         if not locked.any():
             return "slides: the friction is below self-locking"
@@ -282,7 +282,7 @@ class ShoeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{'leading' if self.leading else 'trailing'}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)

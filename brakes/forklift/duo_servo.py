@@ -273,7 +273,7 @@ class ShoeMotion(Result):
     levers: Levers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"drum turns {spanned(np.degrees(self.drum_turn), 'deg')}"
         travels = (spanned(np.multiply(1e3, each), "mm") for each in (self.right_travel, self.left_travel))
         yield f"pistons travel {' and '.join(travels)}"

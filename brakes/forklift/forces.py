@@ -31,7 +31,7 @@ from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 
-_STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60
+_STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
 _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
 
@@ -122,7 +122,7 @@ class InternalForces(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
@@ -130,7 +130,7 @@ class InternalForces(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many of each."""
+        """Meaning of the status, in one sentence; of many cases, how many of each."""
         if np.ndim(self.status):
             names, counts = np.unique(self.status, return_counts=True)
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))
@@ -231,7 +231,7 @@ def _solve_from_torque(
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     r = levers.drum_radius
     B, D = T * (1 - u) / r, T * u / r
-    most = 1 - LEAST_MARGIN  # of the resultants, at which friction grows beyond all bounds
+    most = 1 - LEAST_MARGIN  # ratio of the resultants at which friction grows beyond all bounds
     balanced = (most * R_L > B) & (most * R_T > D)
     status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):

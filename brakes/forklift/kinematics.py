@@ -142,7 +142,7 @@ class Kinematics(Result):
     interference: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"clearance {number(1e3 * self.clearance, 'mm')}"
         yield from (f"{each.name} at {number(np.degrees(each.turn), 'deg')}" for each in self.events)
         yield warned(self.interference)
@@ -191,6 +191,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     """
     kind("geometry", geometry, DuoServo)
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2, MOST_POSITIONS)
+    interference = geometry.move_shoes(c).interference
     seated, tips, events = {}, [], []
     for side in ("right", "left"):
         mechanism = build_seating_mechanism(geometry, c, side)
@@ -216,7 +217,6 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
         f"the left piston is {1e3 * out:.3f} mm out"
     )
     events.append(Event("piston bottoms", 2, float(turn[-1]), message))
-    interference = geometry.move_shoes(c).interference
     return Kinematics(geometry, c, **seated, drum=drum, events=tuple(events), interference=interference)
 
 

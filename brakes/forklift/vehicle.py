@@ -233,7 +233,7 @@ class Stop(Result):
     front_load, rear_load : ndarray
         Normal forces of the axles while it slides [N].
     standing_front_load, standing_rear_load : ndarray
-        The same at rest on the slope [N].
+        Normal forces of the axles at rest on the slope [N].
 
     Examples
     --------
@@ -274,7 +274,7 @@ class Stop(Result):
     standing_rear_load: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
         yield f"torque of a brake {spanned(self.torque_per_brake, 'N m')}"
         yield self.message
@@ -300,7 +300,7 @@ class Stop(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many do not stop."""
+        """Meaning of the status, in one sentence; of many cases, how many do not stop."""
         if np.ndim(self.status):
             short = int(np.sum(~self.stops))
             return f"{short} of {np.size(self.stops)} cases do not stop" if short else "every case stops"

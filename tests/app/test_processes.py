@@ -15,7 +15,7 @@ from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.processes import Processes, Share, TakesTooLong
 from beamdyn.common.screens.tasks import outcome_of
 from brakes.app.program import BRAKES
-from brakes.cli.interactive import make_program
+from brakes.cli.commands import make_program
 from tests.app.serving import PATIENCE, ROOT
 
 FORKLIFT = BRAKES.documents[0]

@@ -30,9 +30,10 @@ DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits b
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
 FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
-_MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
+PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
+_MOST_SEGMENTS = 200  # segments of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
-_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
 _MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more functions, and lose digits
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
@@ -41,7 +42,7 @@ _ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of ha
 _OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
 _MANY = 10_000  # modes, more than any discretization gives
 _NAMES = "ritz", "fem"
-_FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
+_FEWEST_FUNCTIONS = 9  # fewest functions: else the coarser basis lacks only one, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
 
@@ -145,7 +146,7 @@ def _choose(
     """Find the model of `choose_model`, and its modes at the slowest and fastest speed, if solved."""
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
-    target = max(target, FEM_TARGET) if discretization == "fem" else target
+    target = affordable_target(scene, discretization, target)
     split = scene
     if isinstance(discretization, str):
         speed = float(np.abs(speeds).max(initial=0.0))
@@ -162,6 +163,13 @@ def _choose(
         lambda found: found.meet(reached),
     )
     return at_ends.model, at_ends
+
+
+def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
+    """A target of the error, or the least that finite elements, or the functions of a plate, aim at."""
+    if not isinstance(discretization, str):
+        return target
+    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.physics.plate)
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
@@ -212,7 +220,8 @@ def _refine(model: Model) -> Model | None:
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have their own limit
         segments = _count_segments(model.scene) if finer.on_each_segment else 1
-        finer = finer if finer.functions * segments <= _MOST_IN_ALL else None
+        across = 1 + finer.functions if model.scene.physics.plate else 1
+        finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
     if finer is None:
         return None
     refined = Model(model.scene, finer)
@@ -230,6 +239,8 @@ def _first_ritz(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    if scene.physics.plate:  # as many functions across as on each segment
+        return Ritz(max(5, int(np.ceil(2 + modes - 0.6 * np.log10(target)))))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
@@ -289,7 +300,7 @@ def check_discretization(discretization: object) -> None:
 
 _LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
-_SHORTEST = 1e-4  # and the shortest
+_SHORTEST = 1e-4  # length of the shortest layer
 _TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies
 
 
