@@ -32,8 +32,8 @@ class Path(Protocol):
     2. Steps end at the motion's breakpoints, as `beamdyn.transient.step_size.split_at_breakpoints` has them.
     3. `samples` are several in each step, so that no maximum is missed; `at` interpolates between them.
     4. It estimates its time-integration error of the tip deflection [m], or states nan.
-    5. `TransientRequest` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs none
-       of this: it is passed as ``method=`` itself.
+    5. `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
+       none of this: it is passed as ``method=`` itself.
     """
 
     @property

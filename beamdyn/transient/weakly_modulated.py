@@ -82,7 +82,7 @@ class _Steps(NamedTuple):
     system: ModulatedSystem
     first: float
     h: float
-    count: int
+    number: int
     table: Tableau
     accuracy: float
 
@@ -385,7 +385,7 @@ def _expand(steps: _Steps) -> _Expansion | None:
     width = 2 * n * (2 * n + s * len(system.P))
     for points in _POINTS:
         terms = points + points * d + points * d * d // 4
-        if steps.count < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
+        if steps.number < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
             return None
         if (found := _Expansion.of(steps, points)) is not None:
             return found
