@@ -18,7 +18,7 @@ class ErrorMargin(NamedTuple):
     factor : float
         Error over distance.
     distance : str
-        What is compared.
+        Names of what is compared.
     reason : str
         Why the factor is as large as it is.
     evidence : str

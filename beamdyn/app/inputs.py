@@ -96,10 +96,17 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
     def choose(table: str, models: Sequence[type[BaseModel]]) -> list[type[BaseModel]]:
         if table == "beam":
-            return [_beam(entries)]
+            given = {
+                path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
+            }
+            given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns
+            own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
+            return [StiffnessInput if given & own else RectangularInput]
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
-        return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
+        chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
+        usual = next(iter(by_kind)) if chosen else ""  # of a table with other keys alone
+        return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 
     aside = [entry for table, model in ASIDE.items() for entry in describe(model, f"{table}.")]
     inputs: dict[str, Input] = {}
@@ -114,19 +121,6 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         else:
             inputs[entry.path] = entry
     return [*inputs.values()]
-
-
-def _beam(entries: Mapping[str, str]) -> type[Section]:
-    given = {path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text}
-    given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns among others
-    own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
-    return StiffnessInput if given & own else RectangularInput
-
-
-def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
-    """The kind chosen for a table: the default if only other keys are given, "" if none is."""
-    given = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-    return entries.get(f"{table}.kind", "") or (usual if given else "")
 
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:

@@ -51,5 +51,5 @@ def modelled_directions(scene: Scene) -> tuple[str, ...]:
 
 
 def words_of_directions(scene: Scene) -> tuple[str, ...]:
-    """The same, each in a word; none where one plane is modelled, which needs no telling apart."""
+    """Name the two directions of bending in a word each; none where one plane is modelled."""
     return tuple(word for _, word in name_directions(scene) if scene.physics.planes == 2)

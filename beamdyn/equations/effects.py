@@ -56,7 +56,7 @@ class Effect:
         return not self.is_in(scene) and (self is not TWIST or scene.beam.twist is not None)
 
     def reason(self, scene: Scene) -> str:
-        """What the model of a scene assumes in place of the effect, and how to include that."""
+        """The assumption of a scene's model in place of the effect, and how to include the effect."""
         assumed = self.assumed.format(across=name_directions(scene)[1][0])
         return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
 

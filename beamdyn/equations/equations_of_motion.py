@@ -62,7 +62,7 @@ class SteadyPencil:
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
     def undamped(self) -> SteadyPencil:
-        """The same without damping and gyroscopic coupling."""
+        """A copy without damping and gyroscopic coupling."""
         return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
     @cached_property

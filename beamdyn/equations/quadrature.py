@@ -138,7 +138,7 @@ class Sampler:
 
     @classmethod
     def on_cells(cls, cells: Cells) -> Sampler:
-        """That of cells one after the other."""
+        """Make the sampler of cells that follow one after the other."""
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:

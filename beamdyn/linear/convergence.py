@@ -25,7 +25,7 @@ from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_MODES = 5  # by which the physics and the functions are chosen, where all functions are kept
+_MODES = 5  # modes by which physics and functions are chosen, where all functions are kept
 _STRAIGHT = "linear models are those about the straight beam"
 
 
@@ -79,7 +79,7 @@ def model_at_speed(
 def model_of_few_modes(
     scene: Scene, speed: float, few: int, discretization: DiscretizationChoice
 ) -> ModelAtSpeed:
-    """The same in a few modes that nobody asked for: in fewer where a given discretization has no more."""
+    """Make the model of a few modes that nobody asked for: of fewer if the discretization has no more."""
     return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization)
 
 
@@ -90,9 +90,9 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 
 _FIRST = 4  # modes of the first basis of "auto"
 _ACCURATE = 8  # modes for which its functions are chosen, at least
-_MOST = 40  # of the last
+_MOST = 40  # most modes of the last refinement
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
-_ROUNDING = 1e-12  # of the largest value
+_ROUNDING = 1e-12  # rounding error, over the largest value
 
 
 @dataclass(frozen=True)

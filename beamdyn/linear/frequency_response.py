@@ -86,7 +86,7 @@ class FrequencyResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The largest response, its frequency and its error in one line; see `Result.headline`."""
         at, size = self.peak
         names = [text.partition(" [")[0] for text in (self.output, self.input)]
         yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"

@@ -20,7 +20,7 @@ _ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_
 _ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
 _NEGLIGIBLE = 1e-15  # component of a unit acceleration that rounding makes of 0
 
-Accelerations: TypeAlias = "dict[Quantity, complex]"  # of the root, per unit of the input
+Accelerations: TypeAlias = "dict[Quantity, complex]"  # accelerations of the root, per unit of the input
 
 
 @dataclass(frozen=True)

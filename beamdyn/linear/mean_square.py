@@ -60,7 +60,7 @@ class PartialFractions:
         return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
 
     def through_filter(self, delay: float) -> PartialFractions:
-        """The same divided by 1 + s delay."""
+        """Partial fractions of the function divided by 1 + s delay."""
         pole = -1 / delay
         passed = self.residues / (1 + self.poles * delay)
         residue = complex(self(np.array(pole)) / delay)
@@ -85,9 +85,9 @@ class PoleIntegrals:
     Parameters
     ----------
     whole : float
-        Of g S.
+        Integral of g S.
     by_pole : ndarray of complex, shape (m,)
-        Of g S / (f - mu_k).
+        Integrals of g S / (f - mu_k).
     """
 
     whole: float

@@ -115,7 +115,7 @@ class RandomResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The output's rms and its error in one line; see `Result.headline`."""
         yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
@@ -254,7 +254,7 @@ def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Ex
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # without resonances all are overdamped
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, about_resonances(poles)
     between = about[(about > bottom) & (about < top)]

@@ -23,7 +23,7 @@ from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
 _DENSE = 0.1  # step of samples over the distance to the nearest pole
-_HALVINGS = 60  # of an interval, to rounding
+_HALVINGS = 60  # halvings of an interval, to rounding
 _UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
 _ROUNDING = 1e-9  # relative, within which the numbers of a peak are found
 _LEVEL = 1e-10  # relative, by which a peak stands above the minima beside it, or it is rounding
@@ -117,7 +117,7 @@ def find_peaks(
 def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
     """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
     own = np.array(peak[:3])
-    with np.errstate(invalid="ignore"):  # of a magnitude that is inf
+    with np.errstate(invalid="ignore"):  # a magnitude may be inf
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
         error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
         for margin, others in compared:

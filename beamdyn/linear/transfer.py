@@ -76,7 +76,7 @@ def modal_sums(
 
 _GROWING = 1e-6  # growth rate over the size of a pole, beyond rounding
 _STILL = 1e-6  # size of a pole over that of an elastic mode, that is 0: its square is so within rounding
-_PLANES = 2  # in each the beam may turn freely, with two poles at 0
+_PLANES = 2  # planes in each of which the beam may turn freely, with two poles at 0
 _AT_ONCE = 2_000_000  # entries of the matrices that are solved at once
 
 

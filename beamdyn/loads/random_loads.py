@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _TURN = 2 * np.pi
 _HOUR = 3600.0
 _FEW = 10.0  # crossings in the duration, below which the largest is no matter of statistics
-_DIGITS = 3  # of the largest that are expected: statistics have no more
+_DIGITS = 3  # digits of the largest that are expected: statistics have no more
 _UNSURE = 0.05  # error over the largest, above which no digit of it may be sure
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
 
@@ -86,7 +86,7 @@ class RandomLoads(SpanLoads):
     case: ClassVar[Case] = Case("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Largest moment and strain to be expected, with errors, in one line; see `Result.headline`."""
         yield f"{counted(len(self.x), 'station')} at {self.say_speed(self.speed)}"
         for name in ("moment", "strain"):
             if np.isfinite(self.values(name)).any():

@@ -28,7 +28,7 @@ from beamdyn.scene.validity import (
     warn_of_strain,
 )
 
-_MODES = 3  # of which the model is accurate: loads in equilibrium need no more
+_MODES = 3  # modes of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
 _ROUNDING = 1e-12  # relative to the largest along the span
 

@@ -81,7 +81,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Upper bounds and relative width in one line; see `Result.headline`."""
         yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
         yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
 
@@ -142,7 +142,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
     upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
     method = max((ritz for _, _, ritz in enclosed), key=lambda ritz: ritz.functions)
-    speeds = np.array([speed])  # at which rotation may bend the beam too far for the model that is bounded
+    speeds = np.array([speed])  # rotation may bend the beam too far for the bounded model
     tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
     deflection = np.linalg.norm(tips, axis=1)
     bent = warn_of_static_deflection(deflection, scene.beam.length, speeds)
@@ -206,7 +206,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip, unit = beam.tip or TipMass(0.0), m * length  # of mass
+    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass
     moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)

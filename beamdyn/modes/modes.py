@@ -76,7 +76,7 @@ class Modes(StatesModelError):
     axial_strain : float
         Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -112,13 +112,13 @@ class Modes(StatesModelError):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Number, frequencies and error of the modes in one line; see `Result.headline`."""
         yield f"{len(self.frequency)} at {self.say_speed(self.speed)}: {listed(self.frequency, 'Hz')}"
         yield from (error_at_most(self.error), states(self.status, ("stable",)), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects that the model leaves out would change in each frequency (m,)."""
+        """Changes of each frequency by effects that the model leaves out, shape (m,)."""
         from beamdyn.modes.model_error.left_out_changes import (
             left_out_of_modes,
         )  # here, for the time that it takes to import

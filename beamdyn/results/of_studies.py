@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from beamdyn.studies.tradeoffs.measurements import Diagram
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
-_MOST_ROWS = 30  # of a table of a study
+_MOST_ROWS = 30  # rows of a table of a study
 _DIGITS = 10  # most digits of a speed or frequency
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4  # most digits, and answers beside one another
-_RPM = 30 / np.pi  # in rad/s
+_RPM = 30 / np.pi  # revolutions per minute in a rad/s
 _NEAR = 1e-3  # relative distance of a frequency from its upper bound, which is close
 _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in_front"
 

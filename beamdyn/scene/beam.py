@@ -32,7 +32,7 @@ from beamdyn.scene.profile import (
 )
 from beamdyn.scene.rectangle import Rectangle
 
-_ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
+_ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
 
 
 @dataclass(frozen=True)
@@ -313,7 +313,7 @@ class Beam(FieldsOnly, OneLine):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # of many properties, for each look into a cache
+    def _hash(self) -> int:  # hashed once: it has many properties, and caches ask often
         return hash(tuple(getattr(self, f.name) for f in fields(self) if f.compare))
 
     @cached_property
@@ -355,7 +355,7 @@ class Beam(FieldsOnly, OneLine):
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
 
 
-PROPERTY_UNITS = {  # of what varies along a beam, but for its twist
+PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "mass_per_length": "kg/m",
     "bending_stiffness": "N m2",
     "second_bending_stiffness": "N m2",

@@ -71,7 +71,7 @@ class SingleDesigns(FieldsOnly):
     Parameters
     ----------
     question : StudyQuestion
-        What is asked of them.
+        Question that is asked of the designs.
     columns : mapping of str to ndarray, shape (N,)
         Their inputs, but for the speed.
     speeds : ndarray, shape (N, S)
@@ -179,7 +179,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     ]
 
     def effects() -> LeftOutEffects:
-        """Those of the crossings of the answer; nan where there is none."""
+        """Changes of the crossings of the answer; nan where there is none."""
         places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
         known = found.left_out_effects
         changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}
@@ -242,12 +242,12 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
 def left_out_of_design(
     question: StudyQuestion, scene: Scene, design: Mapping[str, float]
 ) -> LeftOutEffects | None:
-    """What the effects left out would change in the answer of a design.
+    """Find how much effects left out would change the answer of a design.
 
     Parameters
     ----------
     question : StudyQuestion
-        What is asked.
+        The question.
     scene : Scene
         The scene of the design.
     design : mapping of str to float

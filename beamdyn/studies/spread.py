@@ -51,7 +51,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) ->
     Parameters
     ----------
     question : StudyQuestion
-        What is asked; crossings with their resonances.
+        The question; one of crossings with their resonances.
     inputs : sequence of SpreadInput
         The inputs.
     """
@@ -86,7 +86,7 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 
 
 def _columns(values: np.ndarray, columns: Sequence[int | None]) -> np.ndarray:
-    """Those of the answers, in their order; nan for those that are missing."""
+    """Columns of the answers, in their order; nan for those that are missing."""
     none = np.full(len(values), np.nan)
     return np.stack([none if column is None else values[:, column] for column in columns], axis=1)
 
@@ -103,7 +103,7 @@ def _of_critical_speed(question: StudyQuestion, names: list[str]) -> tuple[Sensi
 
 
 def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
-    """Those of the lowest crossing of each mode with each line."""
+    """Sensitivities of the lowest crossing of each mode with each line, and their columns."""
     options = {"inputs": names, "discretization": question.discretization}
     found = crossing_sensitivities(question.scene, question.speed, question.modes, **options)
     wanted = [each.label for each in question.resonances]
@@ -113,7 +113,7 @@ def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivit
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # of units
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 
@@ -156,7 +156,7 @@ def spread(
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
         128, else the next is used.
     seed : int
-        What the random designs follow from.
+        Seed from which the random designs follow.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
 
@@ -245,7 +245,7 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """That of all designs so far: how many worst cases take is not known before."""
+        """Progress over all designs so far: the number that worst cases need is not known before."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 

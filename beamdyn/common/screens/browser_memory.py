@@ -15,6 +15,8 @@ from beamdyn.common.screens.form_entries import Entries, read_entry, unit_of, us
 
 _LONGEST = 80  # characters of a name
 _MOST = 100  # named designs
+_LONGEST_LINK, _LARGEST = 30_000, 200_000  # characters of a link, and bytes of what it holds
+_SOURCE = "the link"
 
 # Width of a page below which drawings have narrow paper, as the rules of `look` have it.
 _NARROW = "(max-width: 600px)"
@@ -180,11 +182,6 @@ def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
             unit = unit_of(entries.get(path, ""), known[path]) or usual_unit(known[path].quantity.unit)
             found[path] = read_entry(text, known[path], unit).text
     return found
-
-
-_LONGEST_LINK = 30_000  # characters
-_LARGEST = 200_000  # bytes of what it holds
-_SOURCE = "the link"
 
 
 @dataclass(frozen=True)

@@ -172,7 +172,7 @@ def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Co
     Parameters
     ----------
     name : str
-        Of the input.
+        Name of the input.
     nominal : float
         Its value [unit].
     unit : str

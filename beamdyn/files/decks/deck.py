@@ -36,15 +36,15 @@ class Deck(Result):
     Parameters
     ----------
     kind : str
-        What the files are.
+        Kind of files.
     title : str
-        What they say they are of.
+        Title that the files have.
     sources : tuple of str
         The files that were read.
     scene : Scene
         The blade on its hub: it points outward, flap out of the plane of rotation, edge in it.
     ignored : tuple of IgnoredProperty
-        What of the files the scene does not have.
+        Properties of the files that the scene does not have.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Deck(Result):
     blade: Blade = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Kind and title of the deck, and length of its blade, in one line; see `Result.headline`."""
         yield self.kind
         yield repr(self.title) if self.title else ""
         yield f"{number(self.scene.beam.length, 'm')} long"

@@ -112,7 +112,7 @@ def read_openfast_file(text: DataText) -> Blade:
 
 
 def _other_elastic_model(text: DataText, found: Mapping[str, NamedValue]) -> tuple[IgnoredProperty, ...]:
-    """What to say where the turbine's blades are not those of ElastoDyn."""
+    """The remark that a turbine computes its blades by another module than ElastoDyn, if it does."""
     model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
     if model == _ELASTODYN:
         return ()

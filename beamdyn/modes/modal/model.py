@@ -38,7 +38,7 @@ class Model(FieldsOnly):
     discretization: Discretization
 
     def of(self, scene: Scene) -> Model:
-        """The same beam and discretization with the physics, motion and damping of another scene."""
+        """Model of this beam and discretization with physics, motion and damping of another scene."""
         return Model(replace(scene, beam=self.scene.beam), self.discretization)
 
     @cached_property

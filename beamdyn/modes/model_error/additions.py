@@ -84,7 +84,7 @@ def _assume_shear(beam: Beam) -> Beam | None:
     """
     if beam.shear_stiffness is not None or beam.axial_stiffness is None or beam.outer_fibre is None:
         return None
-    xi = np.linspace(0, 1, 33)  # of rectangles of outer fibre h/2, EI = EA h^2 / 12
+    xi = np.linspace(0, 1, 33)  # rectangles with outer fibre h/2 have EI = EA h^2 / 12
     gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
     if not np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0):
         return None

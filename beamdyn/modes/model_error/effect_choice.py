@@ -36,9 +36,9 @@ from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_SMALL = 0.1  # of the tolerance, below which no effect is added
-_SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
-_MODES = 3  # of which a motion consists
+_SMALL = 0.1  # share of the tolerance below which no effect is added
+_SOLVED = 0.1  # share of the tolerance to which the modes are solved that the effects change
+_MODES = 3  # modes of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
 _BENDING = LARGE_DEFLECTION.name
@@ -112,7 +112,7 @@ def choose_physics(
         counts = vibrate(s)
         if (
             candidate.physics.large_deflection
-        ):  # then others are judged on the straight beam, where it is stable
+        ):  # others are then judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
         return _judged_by(candidate, effects, counts, _rough_size(found.model, some))
 
@@ -257,7 +257,7 @@ class _Candidate:
         return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
-        """The same, with a reason why an effect cannot be added."""
+        """A copy with a reason why an effect cannot be added."""
         return replace(self, reasons={name: reason} | self.reasons)
 
     def add(self, name: str, judge: Judge) -> _Candidate:
@@ -274,7 +274,7 @@ class _Candidate:
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
-            size = judged.sizes.get(other, math.nan)  # as before where it is not known any more
+            size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
@@ -314,7 +314,7 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(_BENDING, judge)  # and what it is combined with
+            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
             best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
@@ -338,7 +338,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
-    """What was chosen, in numbers: each effect by its size, and what the choice costs."""
+    """Describe a choice by numbers: each effect by its size, and the time that the choice costs."""
     without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without

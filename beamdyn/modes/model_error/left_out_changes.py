@@ -153,7 +153,7 @@ def _bent_change_at(
     except (
         ArithmeticError,
         np.linalg.LinAlgError,
-    ) as error:  # of a hinge, with no one equilibrium
+    ) as error:  # a hinged beam has no single equilibrium
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -189,7 +189,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     base = BaseEquations.of(without_large_deflection(model), 1)
     pencil = base.equations.steady()
     v = buckling_mode(pencil, critical)
-    known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
+    known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effects
 
     def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         return np.array(shift_critical_speed(equations.steady(), known, embed(v)) / known - 1)
@@ -221,7 +221,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """What the model assumes in place of each effect, and how to include it."""
+    """Assumption of the model in place of each effect, and how to include the effect, by name."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 

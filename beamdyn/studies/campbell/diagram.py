@@ -80,7 +80,7 @@ class Campbell(StatesModelError):
     unit : {"rad/s", "rpm"}
         Unit of speeds in the picture and the tables.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -108,7 +108,7 @@ class Campbell(StatesModelError):
     scene: Scene = field(repr=False)  # the first one
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of crossings, lines and scenes, and the error, in one line; see `Result.headline`."""
         found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
         yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
         yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
@@ -127,7 +127,7 @@ class Campbell(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
+        """Changes of the speed of each crossing by effects left out, shape (k,)."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
@@ -151,7 +151,7 @@ class Campbell(StatesModelError):
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # without their model error
+        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # model errors are left out
         return super().to_dict() | {"loci": loci}
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -426,7 +426,7 @@ def _all_lines(
             others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
-    distinct = distinct_lines([*per_rev, *others])  # of two at one frequency the first
+    distinct = distinct_lines([*per_rev, *others])  # the first of two at one frequency is kept
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
 
 

@@ -29,11 +29,11 @@ class Nearby(Generic[Evaluated]):
     Parameters
     ----------
     values : list
-        What was evaluated, at `PLACES` places.
+        Matrices at `PLACES` places.
     weights : ndarray, shape (PLACES,)
         The derivative is their sum times the values [1 / unit of the number].
     last : ndarray, shape (PLACES,)
-        The same of the last term of the polynomial through the values, for what the polynomial misses.
+        Weights of the last term of that polynomial, which bounds what it misses.
     width : float
         Half of the interval [unit of the number].
     """
@@ -190,7 +190,7 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """What P(s) would change the eigenvalues by if all its entries had one sign, shape (k,).
+        """Changes of the eigenvalues if all entries of P(s) had one sign, shape (k,).
 
         Rounding errors are relative to this.
         """
@@ -244,7 +244,7 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
 
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
-_RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
+_RESOLVED = 1e-13  # share of the matrices within an interval: what the last term of a polynomial may be
 _ROUNDED = 1e-10  # what rounding alone may be, as of damping by modes
 _CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
@@ -257,7 +257,7 @@ class Changes:
     Parameters
     ----------
     of : tuple of list of PencilChange
-        Those of the model, and those of the coarser one.
+        Changes of the model, and those of the coarser one.
     missed : list of PencilChange
         What those of the model may lack, as their dependence on a number is not resolved.
     rounding : ndarray, shape (n,)

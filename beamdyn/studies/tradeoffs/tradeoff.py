@@ -35,10 +35,10 @@ from beamdyn.studies.tradeoffs.responses import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_MODES = 20  # that the references resolve, also beside those of a second plane
+MOST_MODES = 20  # number of modes that the references resolve, also beside those of a second plane
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
 _REMEDY = "the times of fewer tell how those of more grow"
-_DEFAULT_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
+_DEFAULT_PERIODS = 100  # periods of the first mode, after the start, in a run whose length is not given
 _LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
 _LOCUS, _STEADY = 101, 50  # numbers of speeds
 _SHARES = {
@@ -86,7 +86,7 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of diagrams and measurements, and the speed, in one line; see `Result.headline`."""
         yield f"{counted(len(self.diagrams), 'diagram')} at {self.say_speed(self.speed)}"
         yield counted(sum(len(each.measurements) for each in self.diagrams), "measurement")
         yield warned(self.warnings)
