@@ -205,7 +205,7 @@ class Strip:
         section, EI = self.section, self.scene.beam.bending_stiffness
         D, bend = EI * section.camber_stiffening, self.integrate
         cross = D * _root(warping) * section.camber_ratio
-        GJ = (EI * section.torsion_factor).scaled(2 / (1 + section.poissons_ratio))
+        GJ = (EI * section.torsion_factor).scaled(2 / (1 + (section.poissons_ratio or 0.0)))
         return (
             bend(D * warping, (rows, "w_xx"), (columns, "w_xx"))
             + bend(D, (rows, "w_yy"), (columns, "w_yy"))
