@@ -43,6 +43,12 @@ BASES_OF_FIELDS = ErrorMargin(
     "a mode may lack functions of one field only, which both bases lack",
     "stated_physics_errors",
 )
+ROUNDING_OF_TWO = ErrorMargin(
+    1.5,
+    "rounding errors of one of two models that are compared",
+    "where both have the same matrices, they have the same errors, which do not show",
+    "stated_frequency_errors",
+)
 BASES_OF_PLATES = ErrorMargin(
     3.0,
     "frequencies of a strip as a plate in two bases of up to 12 functions along and across",

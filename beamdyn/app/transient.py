@@ -20,7 +20,7 @@ from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screens import KeyResult, Slider
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.results.cautions import describe_choice
 from beamdyn.results.of_motion import time_of_peak, transient_table
 from beamdyn.scene.scene import Scene

@@ -293,12 +293,12 @@ class MomentSpace(SampledSpace):
     spaces: MomentSpaces
     conditions: RootConditions
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """Points of the Gauss rule on [0, 1], shape (k,)."""
         return self.spaces.quadrature.xi
 
-    @property
+    @cached_property
     def rule(self) -> np.ndarray:
         """Weights of the Gauss rule, shape (k,)."""
         return self.spaces.quadrature.weights

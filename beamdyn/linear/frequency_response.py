@@ -20,7 +20,7 @@ from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 

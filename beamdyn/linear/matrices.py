@@ -15,7 +15,7 @@ from beamdyn.common.results.announced import announce, announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
 from beamdyn.linear.free_motion import free_motion
@@ -30,7 +30,7 @@ from beamdyn.linear.inputs_outputs import (
 )
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed, pole_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out

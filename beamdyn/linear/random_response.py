@@ -43,7 +43,7 @@ from beamdyn.linear.spectra import (
 )
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 

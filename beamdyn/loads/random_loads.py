@@ -28,7 +28,7 @@ from beamdyn.loads.load_statistics import (
 from beamdyn.loads.span_loads import AskedLoads, Case, SpanLoads, with_unit
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out

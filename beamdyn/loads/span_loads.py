@@ -13,7 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.loads.stations import (
     UNITS,
     Positions,

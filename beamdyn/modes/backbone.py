@@ -67,7 +67,7 @@ class Backbone(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Mode, frequency and coefficient of the amplitude in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"mode {self.mode} at {self.say_speed(self.speed)}: {number(self.frequency, 'Hz')}"
         yield from (
             f"coefficient {number(self.coefficient)}",

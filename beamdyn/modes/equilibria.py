@@ -92,7 +92,7 @@ class Equilibrium(Result):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Place of the tip, its error and stability in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         unit = self.display_units.length_unit()
         yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
         yield error_at_most(self.error * unit.per_si, unit.name)
@@ -294,7 +294,7 @@ class EquilibriumBranches(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Names of the branches and the speed of buckling in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{' and '.join(each.name for each in self.branches)} up to {self.say_speed(self.top_speed)}"
         if np.isfinite(self.critical_speed):
             yield f"straight beam buckles at {self.say_speed(self.critical_speed)}"

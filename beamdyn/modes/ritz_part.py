@@ -55,17 +55,17 @@ class RitzPart(ABC):
 
     beam: Beam
 
-    @property
+    @cached_property
     @abstractmethod
     def ends(self) -> np.ndarray:
         """Ends of the cells on which the curvatures are polynomials, as x/L."""
 
-    @property
+    @cached_property
     @abstractmethod
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule for products of two moments of the highest degree, and of less with properties."""
 
-    @property
+    @cached_property
     @abstractmethod
     def bending(self) -> np.ndarray:
         """Curvatures at the points, along fixed directions."""

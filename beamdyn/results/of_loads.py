@@ -15,7 +15,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
-from beamdyn.equations.directions import words_of_directions
+from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
 from beamdyn.loads.stations import UNITS
 

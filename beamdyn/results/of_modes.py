@@ -16,7 +16,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported, supported_or_range
 from beamdyn.common.results.statements import OUTSIDE, of_kind, said_in
-from beamdyn.equations.directions import first_drawn, words_of_directions
+from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, column_named, columns_of_rows, name_in_heads
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.pictures import figure_of
-from beamdyn.equations.directions import first_drawn
+from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

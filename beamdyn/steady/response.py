@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import error_at_most, states, warned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
-from beamdyn.equations.directions import check_direction, modelled_directions
+from beamdyn.equations.effects import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modes.modal.model import Model

@@ -35,7 +35,7 @@ from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak

@@ -18,7 +18,7 @@ from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

@@ -198,9 +198,8 @@ def list_models(
         )
     if named := isinstance(discretization, str):
         first = _first_ritz if discretization == "ritz" else _first_fem
-        discretization = first(scene, segments, modes, target, cheapest, has_layers)
-        while not _fits(discretization, modes, segments) and (finer := discretization.finer()) is not None:
-            discretization = finer
+        smallest = first(scene, segments, modes, target, cheapest, has_layers)
+        discretization = refine(smallest, lambda d: d.finer(), lambda d: _fits(d, modes, segments))
     if not _fits(discretization, modes, segments):
         most = _most_that_fit(discretization, modes, segments)
         bound = f"{discretization} gives at most {most} modes with an estimate of their error"

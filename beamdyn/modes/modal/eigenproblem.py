@@ -163,17 +163,17 @@ class Solver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest eigenvalue at rest, from the largest one of the inverse problem."""
+        """Inverse of the largest eigenvalue of the inverse problem."""
         return float(1 / _largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
 
     @property
     def softening(self) -> float:
-        """Lowest growth of the stiffness with the squared speed; on springs, without that of the shift."""
+        """The lowest growth of the stiffness, reversed; on springs, without the growth by the shift."""
         return self._softening[0]
 
     @property
     def critical_rounding(self) -> float:
-        """Rounding error of the softening, relative to the largest growth."""
+        """Rounding error of the softening, which is relative to the largest growth."""
         return self._softening[1]
 
     @cached_property
@@ -229,7 +229,7 @@ class Solver(Eigensolver):
         return 1j / np.sqrt(inverse_squares(mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Static outputs at speeds: by a factorization of a single one, else in decoupled coordinates."""
+        """One speed is solved by a factorization, others in the coordinates of the solver, each by itself."""
         if self.pencil.shift:
             return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
         if (L := self.factor(speeds)) is not None:

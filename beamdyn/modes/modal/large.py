@@ -45,19 +45,19 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest eigenvalue at rest by iteration, or by full matrices if that fails."""
+        """Inverse of the largest eigenvalue, which the iteration finds."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """Softening, found by full matrices."""
+        """The softening by full matrices."""
         return self.dense.softening
 
     @property
     def critical_rounding(self) -> float:
-        """Rounding error of the softening, found by full matrices."""
+        """The rounding error by full matrices."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:

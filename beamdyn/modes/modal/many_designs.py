@@ -53,7 +53,7 @@ class PencilStack:
     K2: np.ndarray
 
     def part(self, coordinates: np.ndarray) -> PencilStack:
-        """A copy over some of the coordinates."""
+        """Extract the matrices of some of the coordinates."""
         places = ..., *np.ix_(coordinates, coordinates)
         return PencilStack(self.K0[places], self.M[places], self.K2[places])
 

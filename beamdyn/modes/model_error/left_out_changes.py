@@ -17,8 +17,7 @@ from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.model_error.reference_modes import (
@@ -221,7 +220,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """Assumption of the model in place of each effect, and how to include the effect, by name."""
+    """Reasons: what the model assumes in place of each effect, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 

@@ -16,7 +16,7 @@ from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
-from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

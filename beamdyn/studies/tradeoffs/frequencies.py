@@ -19,8 +19,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import frequency_bounds
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
