@@ -75,7 +75,7 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
     return data | {"beam": beam | {"stations": [heads, *rows]}}
 
 
-# Records in CSV files, which the table [motion] of a scene may name in  ---------------------------
+# Records of motions -------------------------------------------------------------------------------
 
 
 class RecordedQuantity(Quantity):

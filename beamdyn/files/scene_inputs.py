@@ -95,7 +95,7 @@ def _kind_of_variation(given: Any) -> str | None:
     return next((kind for kind, keys in kinds.items() if keys & given.keys()), None)
 
 
-# The tables of a scene's TOML file, as texts with units, and the core o ---------------------------
+# Motions, physics and points ----------------------------------------------------------------------
 
 
 # Tables of the file -------------------------------------------------------------------------------

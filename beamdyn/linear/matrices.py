@@ -295,7 +295,7 @@ def _is_nodal(values: np.ndarray) -> bool:
     return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1
 
 
-# The linear model at a steady speed as a state space, for scipy.signal  ---------------------------
+# State space --------------------------------------------------------------------------------------
 
 
 _MODES = 6  # number of modes by default

@@ -209,7 +209,11 @@ def random_response(
         _DIRECT,
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
-    f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
+    if frequencies is None:
+        f = _frequencies(spectrum, model, drive)
+    else:
+        f = ascending("frequencies", frequencies)
+        refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
     of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(
@@ -235,13 +239,6 @@ def random_response(
 
 
 # The response -------------------------------------------------------------------------------------
-
-
-def _given(frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
-    """The frequencies asked for [Hz], checked."""
-    f = ascending("frequencies", frequencies)
-    refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
-    return f
 
 
 def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation) -> np.ndarray:

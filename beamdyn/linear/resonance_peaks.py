@@ -121,16 +121,10 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
         error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
         for margin, others in compared:
-            error += margin * np.nan_to_num(np.abs(_nearest(peak, others) - own), nan=np.inf, posinf=np.inf)
+            same = (each for each in others if each.harmonic == peak.harmonic)
+            near = min(same, key=lambda each: abs(each.frequency - peak.frequency), default=[np.inf] * 3)
+            error += margin * np.nan_to_num(np.abs(np.array(near[:3]) - own), nan=np.inf, posinf=np.inf)
     return np.where(np.isfinite(own), error, np.nan)
-
-
-def _nearest(peak: Peak, others: list[Peak]) -> np.ndarray:
-    """Frequency, magnitude and bandwidth of the nearest peak of the same harmonic; inf if there is none."""
-    same = [each for each in others if each.harmonic == peak.harmonic]
-    if not same:
-        return np.full(3, np.inf)
-    return np.array(min(same, key=lambda each: abs(each.frequency - peak.frequency))[:3])
 
 
 def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float) -> Iterator[Peak]:

@@ -1,4 +1,12 @@
-"""Power spectral densities of inputs: tables, and roads by ISO 8608."""
+"""Power spectral densities of inputs: tables, and roads by ISO 8608.
+
+Random inputs at a steady speed: what acts, and with which density.
+
+Frequencies of the density of a random response: straight lines between its values have its area.
+
+They are dense where the density of the input is steep, and about each resonance, down to its bandwidth.  An
+input that does not turn with the beam appears shifted by the speed.
+"""
 
 from __future__ import annotations
 

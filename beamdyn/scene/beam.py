@@ -275,7 +275,7 @@ class Beam(FieldsOnly, OneLine):
             to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
         other = shear_stiffness if second_shear_stiffness is None else second_shear_stiffness
-        given = {
+        given: dict[str, Any] = {
             "mass_per_length": mass_per_length,
             "bending_stiffness": bending_stiffness,
             "axial_stiffness": axial_stiffness,
@@ -288,7 +288,7 @@ class Beam(FieldsOnly, OneLine):
             "second_rotary_inertia": second_rotary_inertia,
         }
         length = size("length", length, "m")
-        made = {
+        made: dict[str, Any] = {
             name: (to_profile if name == "twist" else as_profile)(name, value, breakpoints)
             for name, value in given.items()
             if value is not None or name in _REQUIRED

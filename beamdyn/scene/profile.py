@@ -273,7 +273,13 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     elif isinstance(value, Table):
         profile = _from_table(name, value)
     elif isinstance(value, Polynomial):
-        profile = _from_polynomial(name, value)
+        if np.iscomplexobj(value.coef) or not np.isfinite(value.coef).all():
+            raise ValueError(
+                f"{name}: the polynomial {value} has coefficients that are complex or not finite"
+            )
+        _check_largest(name, value.coef)  # a small one may stand beside others
+        t, w = legendre.leggauss(value.degree() + 1)
+        profile = Profile((0.0, 1.0), (_project(value, 0.0, 1.0, t, w),))
     elif callable(value):
         profile = Profile(ends, tuple(_fit(name, value, a, b) for a, b in pairwise(ends)))
     else:
@@ -304,16 +310,6 @@ def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
     inner = ends[1:][np.diff(ends) > _SHORTEST_SEGMENT]
     inner = inner[ends[-1] - inner > _SHORTEST_SEGMENT]
     return (float(ends[0]), *inner.tolist(), float(ends[-1]))
-
-
-def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
-    if np.iscomplexobj(polynomial.coef) or not np.isfinite(polynomial.coef).all():
-        raise ValueError(
-            f"{name}: the polynomial {polynomial} has coefficients that are complex or not finite"
-        )
-    _check_largest(name, polynomial.coef)  # a small one may stand beside others
-    t, w = legendre.leggauss(polynomial.degree() + 1)
-    return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
 
 
 def _from_table(name: str, table: Table) -> Profile:

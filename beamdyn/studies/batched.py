@@ -1,4 +1,7 @@
-"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds."""
+"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds.
+
+Similar designs solved in finer and finer bases: each in the smallest that a single call would choose.
+"""
 
 from __future__ import annotations
 
@@ -146,7 +149,7 @@ def _size(basis: Discretization) -> int:
     return basis.functions
 
 
-# Natural frequencies of designs that differ in numbers only, in one bas ---------------------------
+# Natural frequencies ------------------------------------------------------------------------------
 
 
 _LARGE_ERROR = 1e-6  # error of a frequency beyond which it is said to be unresolved
@@ -273,7 +276,7 @@ def stacks_of(
     return stack, designs.family(basis.coarser()).stack(weights), family, weights
 
 
-# Critical speeds of designs that differ in numbers only -------------------------------------------
+# Critical speeds ----------------------------------------------------------------------------------
 
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"

@@ -151,7 +151,9 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
     state = BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
     state = NOT_FOUND if np.isinf(found.error) else state
     answer = (np.array([[each]]) for each in (found.speed, found.error, state))
-    return SpeedAnswer(*answer, found.warnings, effects=lambda: found.left_out_effects.at(np.newaxis))
+    return SpeedAnswer(
+        *answer, warnings=found.warnings, effects=lambda: found.left_out_effects.at(np.newaxis)
+    )
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
@@ -224,7 +226,7 @@ def _at_each(
     columns = (each[order, None] for each in (value, np.where(np.isnan(error), np.inf, error), status))
     where = None if warned is None else warned[order]
     warnings = (*found.warnings, *failed)
-    return SpeedAnswer(*columns, warnings, where, effects=lambda: found.left_out_effects)
+    return SpeedAnswer(*columns, warnings=warnings, warned=where, effects=lambda: found.left_out_effects)
 
 
 _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] = {

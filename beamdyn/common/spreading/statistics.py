@@ -3,6 +3,13 @@
 Samples come in blocks whose points were scrambled independently, so that the scatter over blocks says how far
 a mean is from the truth: no assumption on the answers is made, and what the even distribution of the points
 gains is in it.  A statistic is a mean or a ratio of means over blocks, and its error that of its linear part.
+
+Designs of a spread: random ones for its statistics, the nominal one, and those about it for slopes.
+
+Of random designs there are two samples A and B (n each), and for each input one with the values of A but for
+that input, whose values are those of B (Saltelli et al., Computer Physics Communications 181 (2010) 259).
+Both are points of scrambled Sobol' sequences, `BLOCKS` of them, each scrambled by itself: what they differ by
+says how far a statistic may be from the truth.
 """
 
 from __future__ import annotations
@@ -139,7 +146,7 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
     return np.clip(points, 2.0**-40, 1 - 2.0**-40)
 
 
-# Statistics of the answers of random designs, with their standard error ---------------------------
+# Statistics of the answers ------------------------------------------------------------------------
 
 
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)

@@ -57,10 +57,7 @@ class Uniform:
         """Smallest and largest value of a worst case."""
         return self.low, self.high
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Smallest and largest value of a sample."""
-        return self.low, self.high
+    reach = ends  # smallest and largest value of a sample
 
     @property
     def mean(self) -> float:

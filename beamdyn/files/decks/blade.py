@@ -199,7 +199,7 @@ def _check_positive(text: DataText, lines: Sequence[int], column: Column, values
         raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")
 
 
-# What every deck says of a blade, in the words of this package, whateve ---------------------------
+# Blades -------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

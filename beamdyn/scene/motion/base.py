@@ -188,7 +188,7 @@ def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
     return tuple(np.unique(real_array("breakpoints", times)).tolist())
 
 
-# Checks that a motion is consistent with its derivatives, and that it c ---------------------------
+# Checks of consistency ----------------------------------------------------------------------------
 
 
 _SAMPLES = 1000  # times at which functions are compared with their derivatives

@@ -254,10 +254,17 @@ def campbell(
     """
     start = perf_counter()
     by_label, orders, bounds = _check_scenes(scenes), _check_orders(per_rev), flag("bounds", bounds)
-    unit = _check_unit(unit, next(iter(by_label.values())))
+    if unit is None:
+        own = next(iter(by_label.values())).units.speed
+        unit = own if own in UNITS else UNITS[0]
+    one_of("unit", unit, UNITS)
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
-    speeds = _with_operation(speeds, rated, operating)
+    # The operating speeds stand among the others, in place of those that they repeat but for rounding.
+    added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
+    if added.size:
+        far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
+        speeds = np.union1d(speeds[far], added)
     loci = [frequency_locus(s, speeds, modes, discretization, tolerance) for s in by_label.values()]
     names = [_name_modes(locus) for locus in loci]
     lines, unknown = _all_lines(orders, loci, [*by_label])
@@ -294,7 +301,7 @@ _METHODS = "method", "compared_with"
 
 
 def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
-    """The scenes by their labels."""
+    """The scenes by their labels; by numbers if several have none, or the same."""
     if isinstance(scenes, Scene):
         return {"": scenes}
     by_label: dict[str, Any]
@@ -303,35 +310,18 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
         for label in by_label:
             kind("scenes", label, str, "labels are text")
     else:
-        by_label = _with_labels(scenes)
+        try:
+            numbered = {f"scene {i}": scene for i, scene in enumerate(scenes, 1)}
+        except TypeError:
+            numbered = {"": scenes}
+        own = {name: scene.label if isinstance(scene, Scene) else "" for name, scene in numbered.items()}
+        by_label = {own[name] or name: scene for name, scene in numbered.items()}
+        by_label = by_label if len(by_label) == len(numbered) else numbered
     if not by_label:
         raise InvalidValue("scenes", scenes, "it is empty; give at least one scene")
     for label, scene in by_label.items():
         kind(f"scenes[{label!r}]" if label else "scenes", scene, Scene, "give a beamdyn.Scene, or several")
     return by_label
-
-
-def _with_labels(scenes: Any) -> dict[str, Any]:
-    """One scene or several by their labels; by numbers if several have none, or the same."""
-    try:
-        each = [*scenes]
-    except TypeError:
-        return {_label_of(scenes): scenes}
-    numbered = {f"scene {i}": scene for i, scene in enumerate(each, 1)}
-    named = {_label_of(scene) or number: scene for number, scene in numbered.items()}
-    return named if len(named) == len(each) else numbered
-
-
-def _label_of(scene: object) -> str:
-    return scene.label if isinstance(scene, Scene) else ""
-
-
-def _check_unit(unit: str | None, scene: Scene) -> str:
-    """The unit that is given, or that of the scene."""
-    if unit is not None:
-        one_of("unit", unit, UNITS)
-        return unit
-    return scene.units.speed if scene.units.speed in UNITS else UNITS[0]
 
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
@@ -387,17 +377,6 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
         bound = "it is below the first speed of the diagram, {limit}"
         raise InvalidValue(name, value, bound, "begin at a lower speed", "rad/s", first)
     return min(value, top)
-
-
-def _with_operation(
-    speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
-) -> np.ndarray:
-    """Put the operating speeds among the others, in place of those that they repeat but for rounding."""
-    added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
-    if not added.size:
-        return speeds
-    far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
-    return np.union1d(speeds[far], added)
 
 
 # Names, lines, warnings ---------------------------------------------------------------------------

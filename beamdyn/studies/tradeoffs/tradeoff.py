@@ -192,7 +192,7 @@ def _end(scene: Scene) -> float:
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
     start = scene.motion.steady_start if scene.motion.steady_start <= _LONGEST_START * period else 0.0
-    return min(float(f"{(start + _DEFAULT_PERIODS * period):.1e}"), scene.motion.end)
+    return min(float(f"{start + _DEFAULT_PERIODS * period:.1e}"), scene.motion.end)
 
 
 def _list_diagrams(
