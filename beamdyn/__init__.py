@@ -117,8 +117,8 @@ _NAMES = {
     "studies.spread": ("spread",),
     "studies.result": ("Study",),
     "studies.study": ("study",),
-    "studies.tradeoffs": ("Tradeoff", "tradeoff"),
-    "transient.gauss_solver": ("GaussCollocation",),
+    "studies.tradeoffs.tradeoff": ("Tradeoff", "tradeoff"),
+    "transient.scipy_integrators": ("GaussCollocation",),
     "transient.simulate": ("simulate",),
     "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
     "transient.transient": ("Transient",),
@@ -219,8 +219,8 @@ if TYPE_CHECKING:
     )
     from beamdyn.studies.spread import spread
     from beamdyn.studies.study import study
-    from beamdyn.studies.tradeoffs import Tradeoff, tradeoff
-    from beamdyn.transient.gauss_solver import GaussCollocation
+    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff, tradeoff
+    from beamdyn.transient.scipy_integrators import GaussCollocation
     from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep
     from beamdyn.transient.transient import Transient

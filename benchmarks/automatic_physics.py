@@ -24,7 +24,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.equations.effects import NAMED, add_effects
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.of_modes import bends
+from beamdyn.modes.model_error.left_out_changes import bends
 from beamdyn.scene.physics import PhysicsChoice
 from benchmarks.cases.random_physics import Section, random_twist, speed_of_deflection
 from benchmarks.cases.scenes import time_unit

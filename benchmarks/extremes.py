@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 import beamdyn as bd
 from beamdyn.modes.bounds import _nondimensional
 from beamdyn.modes.flexibility import bound_flexibility
-from beamdyn.modes.split import Split
+from beamdyn.modes.residual_bound import PlaneEnclosure
 from benchmarks.cases.random_scenes import MOST_TENSION, largest_tension
 from benchmarks.cases.reference.of_scene import exact, exact_critical_speed, relative_errors
 from benchmarks.cases.scenes import time_unit
@@ -172,7 +172,7 @@ class Prover:
     def __init__(self, scene: bd.Scene) -> None:
         scaled, self.time = _nondimensional(scene)
         flexibility = bound_flexibility(scaled.beam.bending_stiffness)
-        self.splits = [Split(scaled, size, 0.0, flexibility) for size in (32, 64)]
+        self.splits = [PlaneEnclosure(scaled, size, 0.0, flexibility) for size in (32, 64)]
 
     def is_stable(self, speed: float) -> bool | None:
         """Whether the stiffness is proved positive or not; None if neither is."""

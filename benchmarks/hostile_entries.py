@@ -25,14 +25,14 @@ from beamdyn.app.program import BEAMDYN
 from beamdyn.cli.interactive import make_program as make_beamdyn
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.processes import Processes
-from beamdyn.common.screens.refusals import outcome_of
 from beamdyn.common.screens.screens import Document, Program, Screen
+from beamdyn.common.screens.tasks import outcome_of
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES
-from brakes.cli.interactive import make_program as make_brakes
+from brakes.cli.commands import make_program as make_brakes
 
 MAKERS: dict[str, Callable[[], Program]] = {"brakes": make_brakes, "beamdyn": make_beamdyn}
 OTHER = {"brakes": ("Drum brake", "shoe.force_arm"), "beamdyn": ("Frequencies", "mount.radius")}
@@ -82,7 +82,7 @@ class Found:
     def add(self, where: str, path: str, outcome: tasks.Outcome, seconds: float) -> None:
         """Count an outcome."""
         self.slow = sorted([*self.slow, (seconds, where)], reverse=True)[:3]
-        if isinstance(outcome, Answered):
+        if isinstance(outcome, ShownAnswer):
             self.kinds["answered"] += 1
             return
         said = " ".join(sentence for sentences in outcome.values() for sentence in sentences)

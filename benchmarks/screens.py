@@ -15,11 +15,11 @@ from typing import Any
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.screens import tasks
 from beamdyn.common.screens.chart_options import options_of
-from beamdyn.common.screens.document_report import drawn
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.handles import draw_sheet
-from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.screens import Document, Program, Screen
+from beamdyn.common.screens.tasks import drawn
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
@@ -46,8 +46,8 @@ def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
     times = []
     for _ in range(RUNS):
         start = process_time()
-        found = tasks.glance(document, screen, entries)
-        assert isinstance(found, Answered)
+        found = tasks.solve_for_drawing(document, screen, entries)
+        assert isinstance(found, ShownAnswer)
         _show(screen, found.answer)
         times.append(process_time() - start)
     bound = f"{POSITIONS}" if screen.coarser({}) else ""  # of screens that are solved coarsely meanwhile

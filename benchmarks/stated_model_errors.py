@@ -183,7 +183,7 @@ class _OverBeam(Model):
     @property
     def equations(self) -> Any:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Equations of motion."""
-        from beamdyn.equations.equations_of_motion import assemble_over
+        from beamdyn.equations.assembly import assemble_over
 
         return assemble_over(self.scene, self.discretization.spaces(self.beam))
 

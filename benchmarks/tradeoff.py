@@ -24,15 +24,15 @@ import beamdyn as bd
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.model import Model
-from beamdyn.studies.tradeoffs import (
-    Diagram,
-    frequency_diagram,
+from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
+from beamdyn.studies.tradeoffs.measurements import Diagram
+from beamdyn.studies.tradeoffs.responses import (
+    OURS,
     harmonics_diagram,
     integrators_diagram,
     steady_modes_diagram,
     transient_modes_diagram,
 )
-from beamdyn.studies.tradeoffs.responses import OURS
 from benchmarks import rows
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
 from benchmarks.cases.table_3 import handwritten, modal_system

@@ -14,8 +14,8 @@ from pathlib import Path
 from time import perf_counter
 
 import beamdyn as bd
-from beamdyn.studies.tradeoffs import Diagram, physics_diagram
-from beamdyn.studies.tradeoffs.frequencies import AS_GIVEN
+from beamdyn.studies.tradeoffs.frequencies import AS_GIVEN, physics_diagram
+from beamdyn.studies.tradeoffs.measurements import Diagram
 from benchmarks.cases.scenes import HARVESTER
 from benchmarks.rows import markdown_table, time_text
 

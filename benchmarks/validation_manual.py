@@ -20,8 +20,8 @@ from beamdyn.common.results.one_line import rounded_up
 from beamdyn.modes.equilibria import equilibrium
 from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
-from beamdyn.reproduce import blades, frequencies, large_deflection, motion, others, printed_tables, sections
-from beamdyn.reproduce.entries import PrintedValue, half_unit
+from beamdyn.reproduce import blades, inward_beam, printed_tables
+from beamdyn.reproduce.entries import PrintedValue, compare_modes, half_unit
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
@@ -30,9 +30,8 @@ from benchmarks.cases import measured, single_answers, statics, textbooks
 from benchmarks.sources import page_of_sources
 from brakes.planar import solve
 from brakes.published import load as load_brakes
-from brakes.published.errata import Erratum
-from brakes.reproduce import caliper, drum, drum_as_printed, forklift, forklift_as_printed
-from brakes.reproduce.common import Heads
+from brakes.reproduce import drum_as_printed, eebrake, forklift_as_printed, forklift_tables
+from brakes.reproduce.common import Erratum, PrintedTable
 
 TESTS = "tests/literature"
 _TESTS_OF_TABLES = {  # by the beginning of the source's name
@@ -106,7 +105,7 @@ def of_printed_tables() -> Sections:
     found: Sections = {}
     for source, entries in printed_tables.all_entries("ritz").items():
         test = _BLADES if source.endswith("computed") else first_of(_TESTS_OF_TABLES, source)
-        found[source] = [_row_of_entry(entry, test) for entry in entries]
+        found[source] = _rows(entries, test)
     return found
 
 
@@ -136,23 +135,18 @@ def of_reference_tables() -> Sections:
     found: Sections = {}
     data = load("rotating_beams")
     for case in (*data["case"], *(c for c in data["critical"] if np.isfinite(c["gamma"]))):
-        printed, ours, error = others.solve_case(case, "ritz")
-        rows = _rows(case["name"], printed, ours, error, _ROTATING["frequency" in case])
+        rows = _rows(printed_tables.entries_of_reference(case, "ritz"), _ROTATING["frequency" in case])
         source = case.get("source", "computed")
         found.setdefault(_BEAMS if source == "computed" else source, []).extend(rows)
     for case in load("twisted_beams")["case"]:
-        modes = natural_modes(others.twisted_scene(case), case["gamma"], len(case["frequency"]))
-        test = "test_two_planes.py::test_rows_of_the_models"
-        rows = _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
+        entries = printed_tables.entries_of_reference(case, "ritz")
+        rows = _rows(entries, "test_two_planes.py::test_rows_of_the_models")
         found.setdefault(case["source"][:1].upper() + case["source"][1:], []).extend(rows)
     return found
 
 
-def _rows(name: str, printed: Iterable[Any], ours: np.ndarray, error: np.ndarray, test: str) -> Iterator[Row]:
-    for i, (text, value, relative) in enumerate(zip(map(str, printed), ours, error, strict=True)):
-        absolute = abs(float(value * relative))
-        entry = PrintedValue(name, i + 1, text, float(value), absolute)
-        yield _row_of_entry(entry, test)
+def _rows(entries: Iterable[PrintedValue], test: str) -> list[Row]:
+    return [_row_of_entry(entry, test) for entry in entries]
 
 
 def of_single_answers() -> Sections:
@@ -207,7 +201,8 @@ def of_elastica() -> Sections:
         modes = natural_modes(scene, case["gamma"], len(case["frequency"]))
         test = "test_elastica.py::test_frequencies"
         case |= {"name": f"{case['name']} (gamma {case['gamma']:.6g}, r/L {case['radius']:g})"}
-        rows += _rows(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error, test)
+        entries = compare_modes(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error)
+        rows += _rows(entries, test)
         if "tip" in case:
             rows += _tips(case, equilibrium(scene, case["gamma"]))
     return {"Rotating elastica, computed by other methods": rows}
@@ -242,7 +237,7 @@ def of_lee_and_yoo() -> Sections:
         f"Lee and Yoo 2019, {title}": [
             _row_of_comparison(c, first_of(_TESTS_OF_LEE_YOO, title)) for c in rows
         ]
-        for title, rows in sections(motion.run_sweep()).items()
+        for title, rows in inward_beam.sections(inward_beam.run_sweep()).items()
     }
 
 
@@ -257,39 +252,33 @@ def of_brakes() -> Sections:
 
     What a verdict calls right is the corrected number.
     """
-    found = {
-        "Vardanyan et al. 2019, Table 1 (by the paper's own way)": _cells(
-            drum.rows(), drum.HEADS, "test_drum.py::test_table_1_to_every_printed_digit"
-        )
-    }
-    for name, rows in forklift.rows().items():
+    test = "test_drum.py::test_table_1_to_every_printed_digit"
+    drum = [row for table in drum_as_printed.tables().values() for row in _rows_of_table(table, test)]
+    found = {"Vardanyan et al. 2019, Table 1 (by the paper's own way)": drum}
+    for name, table in forklift_tables.tables().items():
         early = name in ("table_2", "table_3", "table_4")
         test = "tables_2_3_4_but_for_one_cell" if early else "tables_5_6_7_within_their_rounding"
-        found[f"Yoo et al. 1997, Table {name[-1]} (by the paper's own way)"] = _cells(
-            rows, forklift.heads()[name], f"test_forklift.py::test_{test}"
+        found[f"Yoo et al. 1997, Table {name[-1]} (by the paper's own way)"] = _rows_of_table(
+            table, f"test_forklift.py::test_{test}"
         )
-    for title, comparisons in caliper.sections().items():
+    for title, comparisons in eebrake.sections().items():
         test = "test_caliper.py::test_every_verdict_on_the_page_is_as_expected"
         found[title] = [_row_of_comparison(c, test) for c in comparisons]
     return found
 
 
-def _cells(rows: Iterable[Any], heads: Heads, test: str) -> list[Row]:
+def _rows_of_table(table: PrintedTable, test: str) -> list[Row]:
+    """A row for each number of a table: its inputs, if the table has any, and its quantity."""
     found = []
-    for row in rows:
-        for where, cell in zip(_places(row, *heads), row.cells, strict=True):
+    for inputs, cells in table.rows:
+        given = ", ".join(f"{head} = {value}" for head, value in zip(table.inputs, inputs, strict=True))
+        for quantity, cell in zip(table.quantities, cells, strict=True):
+            name = f"{quantity} [{table.unit}]" if table.unit else quantity
             printed, ours, *right = cell.texts
             verdict = f"{cell.verdict}; right: {right[0]}" if right else cell.verdict
+            where = f"{given}: {name}" if given else name
             found.append(Row(where, printed, ours, "rounding", verdict, test))
     return found
-
-
-def _places(row: Any, inputs: Sequence[str], quantities: Sequence[str]) -> list[str]:
-    """Inputs and quantity of each cell; of a single number, its name alone."""
-    if len(row.cells) != len(quantities):
-        return [*row.inputs]
-    given = ", ".join(f"{head} = {value}" for head, value in zip(inputs, row.inputs, strict=True))
-    return [f"{given}: {quantity}" for quantity in quantities]
 
 
 def of_textbooks() -> Sections:
@@ -454,9 +443,9 @@ PARTS = {
 
 
 NOTES: dict[str, tuple[Callable[[], Iterable[str]], ...]] = {  # to which numbers in verdicts refer
-    "inward_beam": (frequencies.notes, motion.notes, large_deflection.notes),
+    "inward_beam": (inward_beam.notes,),
     "wider_models": (blades.notes,),
-    "brakes": (drum.notes, forklift.notes, caliper.notes),
+    "brakes": (drum_as_printed.notes, forklift_tables.notes, eebrake.notes),
 }
 
 

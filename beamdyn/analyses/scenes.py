@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
     from beamdyn.scene.rotor import RotorDrawing
     from beamdyn.scene.scene import Scene
-    from beamdyn.studies.tradeoffs import Tradeoff
+    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
 MeasuredEnd = Annotated[float | None, positive("s", absent=none_given, field="t_end")]
 Budget = Annotated[float, positive("s", default="60 s")]
@@ -62,7 +62,7 @@ def tradeoff(
         listed.
     """
     from beamdyn.common.edge.progress import at_work
-    from beamdyn.studies.tradeoffs import tradeoff
+    from beamdyn.studies.tradeoffs.tradeoff import tradeoff
 
     at = None if speed is None else parse_speed("--speed", speed, scene)
     with at_work("measuring") as progress:

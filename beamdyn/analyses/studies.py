@@ -18,8 +18,7 @@ from beamdyn.analyses.values import (
     parse_speed,
     parse_window,
 )
-from beamdyn.common.edge.spread_options import NO_SPREAD, SpreadOptions
-from beamdyn.common.edge.varying import NOTHING_VARIED, OPTION, VaryOptions
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
 from beamdyn.common.results.statements import InputValue, Words
 
 if TYPE_CHECKING:
@@ -111,7 +110,7 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
 def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
     """Ranges of the answer over tolerances."""
     from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.spread_options import in_units_of, parse_spreads
+    from beamdyn.common.edge.varying import in_units_of, parse_spreads
     from beamdyn.common.edge.wording import of_file
     from beamdyn.scene.numbers import unit_of
     from beamdyn.studies.spread import nominal_value

@@ -11,16 +11,16 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
-from beamdyn.app.headlines import of_locus
 from beamdyn.app.inputs import read
-from beamdyn.app.scene_screen import scene_screen, tables_with_choice
-from beamdyn.app.speed_charts import CrossingPoint, describe_margin, frequency_chart
+from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
-from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.edge.tables import table
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.plots.plots import mark_critical
+from beamdyn.common.results.one_line import number
+from beamdyn.common.screens.screens import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
 from beamdyn.modes.model_error.effect_choice import plain_physics
@@ -28,12 +28,15 @@ from beamdyn.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
-from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
+from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
+CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
 _SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
 _COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
+_HEADROOM = 1.08  # height of the chart over the highest frequency
+_MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 
 
 @dataclass(frozen=True)
@@ -73,29 +76,34 @@ class Frequencies:
 
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
-    """The locus, and where the scene's motion excites a mode."""
+    """The locus, and where the scene's motion excites a mode.
+
+    A coarse solution, for a drawing, is the locus at few speeds, and where lines meet it between them.
+    """
     scene, top, modes = read({name: table for name, table in tables.items() if name != _COARSE})
-    if _COARSE in tables:
-        return _solve_coarsely(scene, top, modes)
-    locus = frequency_locus(scene, _speeds(scene, top, _SPEEDS), modes)
-    critical = critical_point(scene)
-    if scene.motion is None:
+    coarse = _COARSE in tables
+    scene, count = (plain_physics(scene), _FEW_SPEEDS) if coarse else (scene, _SPEEDS)
+    accuracy: dict[str, Any] = {"tolerance": _ROUGH} if coarse else {}
+    own = motion_speed(scene)
+    speeds = np.union1d(np.linspace(0.0, top, count), [own] if own is not None and own < top else [])
+    locus = frequency_locus(scene, speeds, modes, **accuracy)
+    critical = critical_point(scene, **accuracy)
+    motion, crossings = scene.motion, None
+    if motion is None:
         return Frequencies(locus, None, critical, "")
     try:
-        crossings = resonance_speeds(scene, top, modes)
+        if coarse:
+            system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
+            lines = tuple(distinct_lines(excitation_lines(system, motion, 1)[0]))
+            points = tuple(_crossing_points(locus, lines))
+        else:
+            crossings = resonance_speeds(scene, top, modes)
+            lines = crossings.lines
+            names = (label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings)
+            points = tuple((c.speed, c.frequency, name) for c, name in zip(crossings, names, strict=True))
     except ValueError as error:
         return Frequencies(locus, None, critical, f"no excitation lines: {error}")
-    return Frequencies(
-        locus,
-        crossings,
-        critical,
-        "",
-        crossings.lines,
-        tuple(
-            (c.speed, c.frequency, label_crossing(c.line, c.kind, c.mode, c.second_mode)) for c in crossings
-        ),
-        _margins(locus, crossings.lines),
-    )
+    return Frequencies(locus, crossings, critical, "", lines, points, _margins(locus, lines))
 
 
 def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -103,39 +111,10 @@ def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**tables, _COARSE: {}}
 
 
-def _solve_coarsely(scene: Scene, top: float, modes: int) -> Frequencies:
-    """The locus at few speeds, and where lines meet it between them."""
-    scene = plain_physics(scene)
-    locus = frequency_locus(scene, _speeds(scene, top, _FEW_SPEEDS), modes, tolerance=_ROUGH)
-    critical = critical_point(scene, tolerance=_ROUGH)
-    try:
-        lines = _lines_of(locus)
-    except ValueError as error:
-        return Frequencies(locus, None, critical, str(error))
-    return Frequencies(
-        locus, None, critical, "", lines, tuple(_crossing_points(locus, lines)), _margins(locus, lines)
-    )
-
-
-def _speeds(scene: Scene, top: float, count: int) -> np.ndarray:
-    """Speeds up to the top, that of the motion among them."""
-    own = motion_speed(scene)
-    return np.union1d(np.linspace(0.0, top, count), [own] if own is not None and own < top else [])
-
-
 def motion_speed(scene: Scene) -> float | None:
     """Speed at which the motion settles [rad/s]; None where it does not turn, or not steadily."""
     speed = None if scene.motion is None else abs(scene.motion.final_speed)
     return speed if speed is not None and 0 < speed < np.inf else None
-
-
-def _lines_of(locus: Locus) -> tuple[Line, ...]:
-    """Lines of the load by the motion of the locus's scene."""
-    motion = locus.scene.motion
-    if motion is None:
-        return ()
-    system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
-    return tuple(distinct_lines(excitation_lines(system, motion, 1)[0]))
 
 
 def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPoint]:
@@ -158,36 +137,90 @@ def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
 
 
 def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
-    """Frequencies over speed, with lines, crossings, margins and the critical speed."""
-    same = answer.have_same_physics
+    """Natural frequencies over speed, with lines of excitation, crossings, margins and the critical speed."""
+    locus, lines, same = answer.locus, answer.lines, answer.have_same_physics
+    speed, last = locus.display_units.speed_unit(), float(locus.speeds[-1])
+    top = _top(locus.frequency, [line.multiple * last / (2 * np.pi) for line in lines])
+    curves = []
+    for i, frequency in enumerate(locus.frequency.T, 1):
+        least = np.nanmin(frequency, initial=np.inf)
+        above = f" (above: from {least:.4g} Hz)" if top < least < np.inf else ""
+        curves.append(ChartCurve(f"mode {i}{above}", speed.of(locus.speeds), frequency))
+    for line in lines:  # each up to where it leaves the chart
+        end = min(last, 2 * np.pi * top / line.multiple) if line.multiple > 0 else last
+        ends = np.array([0.0, end])
+        curves.append(ChartCurve(line.name, speed.of(ends), line.multiple * ends / (2 * np.pi), True, True))
+
+    def placed(at: float, frequency: float, words: str) -> CrossingPoint:
+        return speed.of(at), frequency, f"{words}\n{speed.say(at, 5)}, {frequency:.5g} Hz"
+
+    met = [placed(*point) for point in answer.crossing_points]
+    near = [placed(m.speed, m.frequency, f"{m.name}: {describe_margin(m)}") for m in answer.margins]
+    each = [ChartPoints("resonance", met), ChartPoints("margin at the motion's speed", near, "reaction")]
+    critical, motion = answer.critical.speed, motion_speed(locus.scene)
+    marks = []
+    if 0 <= critical <= last:
+        words = f"{critical_label(answer.critical)} {speed.say(critical, 5)}"
+        marks.append(ChartMark(speed.of(critical), words))
+    if motion is not None and motion <= last:
+        words = f"speed of the motion {speed.say(motion, 5)}"
+        marks.append(ChartMark(speed.of(motion), words, at_foot=True))
+    past = [ChartBand(speed.of(critical), speed.of(last), "past the critical speed")]
+    size = 10.0 ** np.floor(np.log10(top)) / 10  # the axis ends at a number of two digits
     return [
-        frequency_chart(
-            answer.locus,
-            answer.lines,
-            answer.crossing_points if same else (),
-            answer.margins if same else (),
-            (answer.critical.speed, critical_label(answer.critical)),
-            motion_speed(answer.locus.scene),
+        Chart(
+            "Natural frequencies over speed",
+            ChartAxis("angular speed", speed.name, low=0.0, high=speed.of(last)),
+            ChartAxis("frequency", "Hz", low=0.0, high=float(f"{np.ceil(top / size) * size:.2g}")),
+            curves,
+            [points for points in each if same and points.at],
+            marks,
+            past if critical < last else [],
         )
     ]
 
 
+def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
+    """Highest frequency shown: of the modes that are not far above all lines, or of the lowest mode."""
+    known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
+    fastest = max(ends, default=0.0)
+    near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
+    return _HEADROOM * (max(near) if near else min(known, default=fastest)) or 1.0
+
+
+def describe_margin(margin: Margin) -> str:
+    """A margin in words: how far the nearest line is from the natural frequency."""
+    if not margin.margin:
+        return f"{margin.line.name} meets it"
+    where = "above" if margin.margin > 0 else "below"
+    return f"{margin.line.name} is {100 * abs(margin.margin):.3g} % {where} it"
+
+
+def headline(answer: Frequencies) -> Iterator[KeyResult]:
+    """First frequency at both ends of the speeds, the critical speed, and its margin."""
+    first, top, critical = answer.locus.frequency[:, 0], float(answer.locus.speeds[-1]), answer.critical
+    unit = answer.locus.display_units.speed_unit()
+    for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
+        yield KeyResult(words, number(frequency, "Hz") if np.isfinite(frequency) else "diverges")
+    if np.isfinite(critical.speed):
+        yield KeyResult("critical speed", brief(critical.speed, unit))
+        margin = f"{100 * (1 - top / critical.speed):.3g} %" if top < critical.speed else "none: past it"
+        yield KeyResult("margin of the top speed", margin)
+    else:
+        bound = critical.none_below
+        below = f" below {brief(bound, unit)}" if np.isfinite(bound) else ""
+        yield KeyResult("critical speed", f"none{below}")
+
+
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
     """Crossings and frequencies, each with the physics that was chosen for it."""
-    parts = tables_with_choice(answer.locus)
+    parts = [] if answer.crossings is None else tables_with_choice(answer.crossings)
     if answer.margins:
-        parts = [_margins_table(answer), *parts]
-    if answer.crossings is not None:
-        parts = [*tables_with_choice(answer.crossings), *parts]
-    return parts
-
-
-def _margins_table(answer: Frequencies) -> RenderableType:
-    """Distance of the nearest line from each mode at the speed of the motion."""
-    at = answer.locus.display_units.speed_unit().say(answer.margins[0].speed)
-    rows = [(m.name, f"{m.frequency:.5g}", describe_margin(m)) for m in answer.margins]
-    heads = "mode", "frequency [Hz]", "nearest line of excitation"
-    return table(f"Margins at the speed of the motion, {at}", heads, rows, (0, 2))
+        at = answer.locus.display_units.speed_unit().say(answer.margins[0].speed)
+        rows = [(m.name, f"{m.frequency:.5g}", describe_margin(m)) for m in answer.margins]
+        heads = "mode", "frequency [Hz]", "nearest line of excitation"
+        parts.append(table(f"Margins at the speed of the motion, {at}", heads, rows, (0, 2)))
+    return [*parts, *tables_with_choice(answer.locus)]
 
 
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
@@ -228,7 +261,7 @@ FREQUENCIES = scene_screen(
     draw=draw,
     notes=warnings,
     sweeps=sweeps_of(frequency_outputs, "mount.setting_angle=0:180:31 deg", "frequency_1"),
-    headline=lambda answer: [*of_locus(answer.locus, answer.critical)],
+    headline=headline,
     coarser=coarser,
     charts=chart,
 )

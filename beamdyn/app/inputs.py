@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, get_args
 
 from pydantic import BaseModel, Field, create_model
@@ -96,70 +96,62 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
     def choose(table: str, models: Sequence[type[BaseModel]]) -> list[type[BaseModel]]:
         if table == "beam":
-            return [_beam(entries)]
+            given = {
+                path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
+            }
+            given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns
+            own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
+            return [StiffnessInput if given & own else RectangularInput]
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
-        return [by_kind.get(_kind(entries, table, next(iter(by_kind))), _NoKind)]
+        chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
+        usual = next(iter(by_kind)) if chosen else ""  # of a table with other keys alone
+        return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 
     aside = [entry for table, model in ASIDE.items() for entry in describe(model, f"{table}.")]
-    inputs = [*aside, *describe(SceneInput, choose=choose)]
-    inputs = [
-        dataclasses.replace(entry, choices=kinds[entry.path], required=False, default=None)
-        if entry.path in kinds
-        else entry
-        for entry in inputs
-    ]
-    return [*_with_lists_whole(inputs)]
-
-
-def _with_lists_whole(inputs: Sequence[Input]) -> Iterator[Input]:
-    """The inputs, with one field for all tables of a list."""
-    seen: set[str] = set()
-    for entry in inputs:
-        table = next((table for table in _LISTS if entry.path.startswith(f"{table}.")), "")
-        if not table:
-            yield entry
-        elif table not in seen:
-            seen.add(table)
-            words = Quantity(meaning=_LISTS[table])
-            yield Input(table, entry.section, list[dict], words, (), False, None)
-
-
-def _beam(entries: Mapping[str, str]) -> type[Section]:
-    given = {path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text}
-    given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns among others
-    own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
-    return StiffnessInput if given & own else RectangularInput
-
-
-def _kind(entries: Mapping[str, str], table: str, usual: str) -> str:
-    """The kind chosen for a table: the default if only other keys are given, "" if none is."""
-    given = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-    return entries.get(f"{table}.kind", "") or (usual if given else "")
+    inputs: dict[str, Input] = {}
+    for entry in (*aside, *describe(SceneInput, choose=choose)):
+        whole = next((path for path in _LISTS if entry.path.startswith(f"{path}.")), "")
+        if whole:  # one field for all tables of a list
+            words = Quantity(meaning=_LISTS[whole])
+            inputs.setdefault(whole, Input(whole, entry.section, list[dict], words, (), False, None))
+        elif entry.path in kinds:
+            choices = kinds[entry.path]
+            inputs[entry.path] = dataclasses.replace(entry, choices=choices, required=False, default=None)
+        else:
+            inputs[entry.path] = entry
+    return [*inputs.values()]
 
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
-    options = read_aside(tables, "options")
-    scene = _shown_in(read_scene(tables), tables["options"]["top_speed"])
-    _check_effort(scene, options.top_speed, "options.top_speed")
-    return scene, options.top_speed, int(options.modes)
+    return _read_with_speed(tables, "options", "top_speed")
 
 
 def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
     """The scene, one speed [rad/s] and the number of modes; raises `ConfigError`."""
-    speed, modes = read_aside(tables, "operation").speed, read_aside(tables, "options").modes
-    scene = _shown_in(read_scene(tables), tables["operation"]["speed"])
-    _check_effort(scene, speed, "operation.speed")
+    return _read_with_speed(tables, "operation", "speed")
+
+
+def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[Scene, float, int]:
+    """Read a scene, a speed and the number of modes.
+
+    Results are shown in the unit of that speed, unless that is the usual one.  A speed that takes minutes is
+    refused: the faster a beam turns, the more functions a mode needs.  That depends on the stiffness of the
+    beam, not on that of its root, which may be a hinge.
+    """
+    speed, modes = getattr(read_aside(tables, table), key), read_aside(tables, "options").modes
+    scene = read_scene(tables)
+    unit = known_unit("speed", unit_as_written(tables[table][key], "rad/s")[0])
+    if unit not in ("", _USUAL_SPEED):
+        scene = dataclasses.replace(scene, units=scene.units.with_others({"speed": unit}))
+    clamped = dataclasses.replace(scene.mount, root_stiffness=math.inf, second_root_stiffness=math.inf)
+    limit = _FASTEST * first_frequency(dataclasses.replace(scene, mount=clamped))
+    if speed > limit:
+        of = "" if clamped == scene.mount else ", were the root clamped"
+        bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest{of}"
+        raise InvalidValue(f"{table}.{key}", speed, bound, unit="rad/s", limit=limit)
     return scene, speed, int(modes)
-
-
-def _shown_in(scene: Scene, speed: object) -> Scene:
-    """The scene, with results in the unit of a speed given beside it, unless that is the usual one."""
-    unit = known_unit("speed", unit_as_written(speed, "rad/s")[0])
-    if unit in ("", _USUAL_SPEED):
-        return scene
-    return dataclasses.replace(scene, units=scene.units.with_others({"speed": unit}))
 
 
 def read_scene(tables: Mapping[str, Any]) -> Scene:
@@ -171,19 +163,6 @@ def read_aside(tables: Mapping[str, Any], name: str) -> Any:
     """The values of a table that is not in the file of a scene; raises `ConfigError`."""
     model = create_model("_Aside", __base__=Section, **{name: (ASIDE[name], ...)})  # pyright: ignore[reportCallIssue, reportArgumentType]
     return getattr(validated(model, {name: tables.get(name, {})}, name), name)
-
-
-def _check_effort(scene: Scene, speed: float, path: str) -> None:
-    """Refuse a speed that takes minutes: the faster a beam turns, the more functions a mode needs.
-
-    That depends on the stiffness of the beam, not on that of its root, which may be a hinge.
-    """
-    clamped = dataclasses.replace(scene.mount, root_stiffness=math.inf, second_root_stiffness=math.inf)
-    first = first_frequency(dataclasses.replace(scene, mount=clamped))
-    if speed > _FASTEST * first:
-        of = "" if clamped == scene.mount else ", were the root clamped"
-        bound = f"it must be at most {{limit}}, {_FASTEST} times the first natural frequency at rest{of}"
-        raise InvalidValue(path, speed, bound, unit="rad/s", limit=_FASTEST * first)
 
 
 def first_frequency(scene: Scene) -> float:

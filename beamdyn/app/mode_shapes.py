@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from beamdyn import natural_modes
-from beamdyn.app.bent_beam import bent_beam
-from beamdyn.app.headlines import of_modes, of_numbers
+from beamdyn.app.drawings import bent_beam
 from beamdyn.app.inputs import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
-from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.screens.screens import Drag, Slider
+from beamdyn.common.results.one_line import number
+from beamdyn.common.screens.screens import Drag, KeyResult, Slider
 from beamdyn.equations.directions import words_of_directions
+from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
 
 _PLACES = 41  # along the beam
@@ -31,20 +31,30 @@ def solve(tables: Mapping[str, Any]) -> Modes:
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
     """Each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the undeflected beam."""
-    each = [*_drawings(modes, 1.0 - place)]
-    return [each[i : i + _ABREAST] for i in range(0, len(each), _ABREAST)]
-
-
-def _drawings(modes: Modes, swing: float) -> Iterator[Drawing]:
-    length = modes.scene.beam.length
+    length, words = modes.scene.beam.length, words_of_directions(modes.scene)
     x = np.linspace(0.0, length, _PLACES)
-    words = words_of_directions(modes.scene)
+    each = []
     for i, name in enumerate(modes.labels()):
         main = int(modes.plane_share[i].argmax()) if words else 0
         shape = np.real(modes.shape(x, main)[i])
         shape *= _LARGEST * length / (np.abs(shape).max() or 1.0)
-        said = f"{name}, drawn in {words[main]}" if words else name
-        yield bent_beam(x, swing * shape, said, "", (shape, -shape), _LARGEST * length)
+        title = f"{name}, drawn in {words[main]}" if words else name
+        each.append(bent_beam(x, (1.0 - place) * shape, title, "", (shape, -shape), _LARGEST * length))
+    return [each[i : i + _ABREAST] for i in range(0, len(each), _ABREAST)]
+
+
+def quick_headline(modes: Modes) -> Iterator[KeyResult]:
+    """The first frequency, and the largest numerical error of all modes."""
+    first = modes.frequency[0]
+    yield KeyResult("first frequency", number(first, "Hz") if np.isfinite(first) else "diverges")
+    yield KeyResult("numerical error at most", f"{float(np.max(modes.error)):.0e}")
+
+
+def headline(modes: Modes) -> Iterator[KeyResult]:
+    """The results of `quick_headline`, and the largest model error, which takes longer than the modes."""
+    yield from quick_headline(modes)
+    if np.isfinite(modes.model_error).any():
+        yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))
 
 
 MODE_SHAPES = scene_screen(
@@ -56,6 +66,6 @@ MODE_SHAPES = scene_screen(
     slider=Slider("swing", ("one way", "at rest", "other way"), 0.05),
     drags=(Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     drawings=drawings,
-    headline=lambda modes: [*of_modes(modes)],
-    quick_headline=lambda modes: [*of_numbers(modes)],
+    headline=headline,
+    quick_headline=quick_headline,
 )

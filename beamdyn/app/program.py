@@ -5,11 +5,11 @@ from __future__ import annotations
 from importlib.resources import files
 
 from beamdyn.analyses import ANALYSES
-from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.app.inputs import inputs_of
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.rotor import ROTOR
+from beamdyn.app.scene_screen import analysis_screen, first_entries
 from beamdyn.app.steady_state import STEADY_STATE
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT

@@ -2,21 +2,38 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from inspect import Parameter
+from itertools import pairwise
+from typing import Any, Literal, get_args, get_origin
 
+import numpy as np
 from matplotlib.figure import Figure
+from pydantic import Field, create_model
 from rich.console import RenderableType
 
-from beamdyn.app.inputs import DRAGS, EFFORT, SCENE_TABLES
-from beamdyn.app.left_out import left_out_table
-from beamdyn.app.sketches import sketch
+from beamdyn.analyses.analysis import Analysis, Answer
+from beamdyn.app.drawings import sketch
+from beamdyn.app.inputs import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
+from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.inputs import Section, parts_of
+from beamdyn.common.edge.rendering import drawing, picture
+from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.plots.notes import note_below
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.plots.axes_and_lines import note_below
+from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
-from beamdyn.common.screens.screens import Screen
-from beamdyn.modes.model_error.left_out_effects import StatesModelError
+from beamdyn.common.screens.screens import FoldedPart, Screen
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError, say_change
 from beamdyn.results.cautions import describe_choice, notes_of, warnings_of
+
+_LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
+_DECADE = 3  # letters of a bar for a decade
+_LONGEST = 7  # decades
+_BAR = "\u2588"
 
 
 def scene_screen(
@@ -46,7 +63,11 @@ def scene_screen(
     tables = (*beside, *SCENE_TABLES)
 
     def shown(answer: Any) -> Sequence[RenderableType]:
-        return [*tables_with_choice(result(answer)), *left_out(result(answer), left_out_of)]
+        found = result(answer)
+        tables = tables_with_choice(found)
+        if left_out_of and isinstance(found, StatesModelError):
+            tables.append(left_out_table(found.left_out_effects, left_out_of))
+        return tables
 
     usual: dict[str, Any] = {
         "tables": shown,
@@ -65,15 +86,95 @@ def tables_with_choice(result: Result) -> list[RenderableType]:
     return [tables_of(result), *describe_choice(result)]
 
 
-def left_out(result: Result, what: str) -> list[RenderableType]:
-    """The table of effects left out, and how they change something, such as "frequencies"."""
-    if not what or not isinstance(result, StatesModelError):
-        return []
-    return [left_out_table(result.left_out_effects, what)]
-
-
 def drawn(result: Result) -> Figure:
     """The picture of a result, with its notes below."""
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
     result.plot(figure.subplots())  # pyright: ignore[reportAttributeAccessIssue]  (results with a picture)
     return note_below(figure, notes_of(result))
+
+
+def brief(value: float, unit: ShownUnit) -> str:
+    """A value in SI with few digits, in the unit shown, as headlines have it."""
+    return number(unit.of(value), unit.name)
+
+
+# What the physics leaves out --------------------------------------------------------------------------
+
+
+def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
+    """Table of the effects that a model leaves out, the largest first, with a bar for each.
+
+    Parameters
+    ----------
+    effects : LeftOutEffects
+        The effects.
+    of : str
+        What they change, such as "frequencies".
+    """
+    sizes: dict[str, float] = {}
+    for name, change in effects.changes.items():
+        known = np.asarray(change)[np.isfinite(change)]
+        if known.size:  # the change of the largest size
+            sizes[name] = float(known[np.abs(known).argmax()])
+    rows = []
+    for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
+        how = "; ".join(filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))
+        rows.append((name, say_change(sizes[name]), bar(sizes[name]), as_in_files(how)))
+    unknown = ((name, why) for name, why in effects.not_known.items() if name not in sizes)
+    rows += [(name, "not known", "", as_in_files(why)) for name, why in unknown]
+    rows += [(name, "not modelled", "", "no model here has it") for name in effects.not_modelled]
+    heads = "left out", "largest change", "size, logarithmic", "how to include it"
+    return table(f"What the physics leaves out, and by how much it changes the {of}", heads, rows, (0, 2, 3))
+
+
+def bar(change: float) -> str:
+    """A bar as long as the decades of a change above 1e-6."""
+    decades = np.log10(abs(change) / _LEAST) if change else 0.0
+    return _BAR * int(np.ceil(_DECADE * min(max(decades, 0.0), _LONGEST)))
+
+
+# Screens of analyses ----------------------------------------------------------------------------------
+
+
+def analysis_screen(analysis: Analysis) -> Screen:
+    """Make the screen of an analysis: a form of its options beside the scene's, and its result."""
+    name = analysis.function.__name__
+    ASIDE[name] = _section(analysis)
+
+    def solve(tables: Mapping[str, Any]) -> Answer:
+        given = dict(read_aside(tables, name))
+        paths = {option: f"{name}.{option}" for option in given}
+        with of_file(paths):
+            return analysis.answer(read_scene(tables), given, named=paths.__getitem__)
+
+    def notes(answer: Answer) -> list[str]:
+        said = warnings_of(answer.result) if answer.warnings is None else answer.warnings
+        return [*([answer.refusal] if answer.refusal else []), *said]
+
+    def result(answer: Answer) -> Result:
+        return answer.result
+
+    def on_page(answer: Answer) -> str:
+        return picture(drawing(lambda: drawn(answer.result)), "Picture")
+
+    more = (FoldedPart("Picture", on_page, lambda _: "<p>It is the drawing above.</p>"),)
+    return scene_screen(analysis.screen, analysis.question, solve, (name,), result, notes=notes, more=more)
+
+
+def first_entries(analysis: Analysis) -> dict[str, str]:
+    """Entries of the form on opening: the options of the example in the help of the command."""
+    name, words = analysis.function.__name__, shlex.split(analysis.examples[0])
+    given = {word[2:].replace("-", "_"): text for word, text in pairwise(words) if word[:2] == "--"}
+    return {f"{name}.{option}": given.get(option, "") for option in _section(analysis).model_fields}
+
+
+def _section(analysis: Analysis) -> type[Section]:
+    """The table of an analysis' options: numbers, texts and choices, but no files or groups of options."""
+    fields: dict[str, Any] = {}
+    for name, option in analysis.shown.items():
+        kind = get_args(option.annotation)[0] if get_args(option.annotation) else option.annotation
+        known = (part in (str, int, float) or get_origin(part) is Literal for part in parts_of(kind))
+        if name != "physics" and get_origin(kind) is not tuple and any(known):
+            default = ... if option.default is Parameter.empty else option.default
+            fields[name] = kind, Field(default, description=analysis.meaning(name))
+    return create_model(f"{analysis.name}Input", __base__=Section, **fields)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from beamdyn import resonance_speeds, steady_response
-from beamdyn.app.headlines import of_steady
 from beamdyn.app.inputs import read
-from beamdyn.app.scene_screen import scene_screen
+from beamdyn.app.scene_screen import brief, scene_screen
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.scene.scene import Scene
+from beamdyn.common.screens.screens import KeyResult
 from beamdyn.scene.validity import LARGE_DEFLECTION
 from beamdyn.steady.response import SteadyResponse
 
@@ -25,22 +25,19 @@ _PAST_LIMIT = f"past {LARGE_DEFLECTION:g} of the length: not linear"
 
 
 def solve(tables: Mapping[str, Any]) -> SteadyResponse:
-    """The steady response over speed."""
+    """The steady response over speed, with more speeds beside resonances: these may be narrow."""
     scene, top, modes = read(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
-    return steady_response(scene, _speeds(scene, top, modes), modes)
-
-
-def _speeds(scene: Scene, top: float, modes: int) -> np.ndarray:
-    """Speeds up to the top, with more beside resonances, which may be narrower than the steps between."""
-    even = np.linspace(2 * top / _SPEEDS, top, _SPEEDS)
+    speeds = np.linspace(2 * top / _SPEEDS, top, _SPEEDS)
     try:
         found = np.array([crossing.speed for crossing in resonance_speeds(scene, top, modes)])
+        beside = np.array(_BESIDE + ((0.0,) if scene.is_damped else ()))
+        near = np.multiply.outer(found, 1 + beside).ravel()
+        speeds = np.union1d(speeds, near[near < top])
     except ValueError:  # the lines of the motion are not known
-        return even
-    near = np.multiply.outer(found, 1 + np.array(_BESIDE + ((0.0,) if scene.is_damped else ()))).ravel()
-    return np.union1d(even, near[near < top])
+        pass
+    return steady_response(scene, speeds, modes)
 
 
 def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
@@ -83,13 +80,23 @@ def stretches(answer: SteadyResponse) -> np.ndarray:
 def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
     """Bands over speeds with the same reason, which end midway between two speeds."""
     changes = np.flatnonzero(said[1:] != said[:-1]) + 1
-    middles = (x[:-1] + x[1:]) / 2
-    starts, ends = [0, *changes.tolist()], [*changes.tolist(), len(x)]
-    for start, end in zip(starts, ends, strict=True):
+    ends = [x[0], *((x[:-1] + x[1:]) / 2)[changes - 1], x[-1]]
+    for start, (low, high) in zip([0, *changes.tolist()], pairwise(ends), strict=True):
         if said[start]:
-            low = x[0] if start == 0 else middles[start - 1]
-            high = x[-1] if end == len(x) else middles[end - 1]
             yield ChartBand(float(low), float(high), str(said[start]))
+
+
+def headline(response: SteadyResponse) -> Iterator[KeyResult]:
+    """The largest deflection of the tip, whether it is past linear theory, and its speed."""
+    amplitude = np.asarray(response.amplitude)
+    if not np.isfinite(amplitude).any():
+        yield KeyResult("largest deflection of the tip", "no steady state")
+        return
+    at = int(np.nanargmax(np.where(np.isfinite(amplitude), amplitude, np.nan)))
+    past = amplitude[at] > LARGE_DEFLECTION * response.scene.beam.length
+    units, beyond = response.display_units, ", past linear theory" if past else ""
+    yield KeyResult(f"largest deflection of the tip{beyond}", brief(amplitude[at], units.length_unit()))
+    yield KeyResult("at the speed", brief(response.speeds[at], units.speed_unit()))
 
 
 STEADY_STATE = scene_screen(
@@ -98,6 +105,6 @@ STEADY_STATE = scene_screen(
     solve,
     left_out_of="amplitude, at the speeds where that is judged",
     sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
-    headline=lambda answer: [*of_steady(answer)],
+    headline=headline,
     charts=chart,
 )

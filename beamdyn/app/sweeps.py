@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any, TypeVar
 
@@ -14,26 +14,30 @@ from matplotlib.figure import Figure
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen
-from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, one_by_one, solve_cases
+from beamdyn.common.edge.input_sweep import (
+    MOST_ONE_BY_ONE,
+    InputSweep,
+    Output,
+    chosen,
+    one_by_one,
+    solve_cases,
+)
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import check_designs
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.plots.notes import note_below
 from beamdyn.common.screens.form_entries import entries_of
 from beamdyn.common.screens.screens import Sweeps
-from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR
-from beamdyn.modes.modes import Modes
 from beamdyn.results.cautions import warnings_of
 from beamdyn.scene.scene import Scene
+from beamdyn.steady.response import SteadyResponse
 
 Kept = TypeVar("Kept")
 _COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, about the largest amplitude, and refinements of these
 
 
-@dataclass(frozen=True)
 class SweepCase:
     """A case of a sweep: a scene with top speed and number of modes; answers are computed when wanted.
 
@@ -47,59 +51,26 @@ class SweepCase:
         Number of modes.
     """
 
-    scene: Scene
-    top: float
-    modes: int
-    answers: list[Any] = field(default_factory=list, compare=False)
+    def __init__(self, scene: Scene, top: float, modes: int) -> None:
+        self.scene, self.top, self.modes = scene, top, modes
+        self.answers: dict[tuple[Any, ...], Any] = {}  # those asked for, by function and arguments
 
-    def _keep(self, answer: Kept) -> Kept:
-        self.answers.append(answer)
-        return answer
+    def ask(self, function: Callable[..., Kept], *given: Any) -> Kept:
+        """The answer of a function on the scene, which is computed once."""
+        asked = function, *given
+        if asked not in self.answers:
+            self.answers[asked] = function(self.scene, *given)
+        return self.answers[asked]
 
-    @cached_property
-    def at_rest(self) -> Modes:
-        """The modes at rest."""
-        return self._keep(natural_modes(self.scene, 0.0, self.modes))
-
-    @cached_property
-    def at_top(self) -> Modes:
-        """The modes at the top speed."""
-        return self._keep(natural_modes(self.scene, self.top, self.modes))
-
-    @cached_property
-    def critical(self) -> CriticalPoint:
-        """The critical speed."""
-        return self._keep(critical_point(self.scene))
-
-    @cached_property
     def crossings(self) -> np.ndarray:
         """Speeds at which the motion excites a mode [rad/s]."""
         if self.scene.motion is None:
             return np.array([])
-        found = self._keep(resonance_speeds(self.scene, self.top, self.modes))
-        return np.array([crossing.speed for crossing in found])
+        return np.array([found.speed for found in self.ask(resonance_speeds, self.top, self.modes)])
 
-    @property
-    def first_resonance(self) -> float:
-        """The lowest resonance speed [rad/s]; inf if there is none."""
-        return float(self.crossings.min(initial=np.inf))
-
-    def amplitudes(self, speeds: np.ndarray) -> np.ndarray:
-        """Steady amplitudes [m]; nan where there is none."""
-        if self.scene.motion is None:
-            raise _no_motion()
-        return steady_response(self.scene, speeds, self.modes).amplitude
-
-    @cached_property
-    def amplitude(self) -> float:
-        """Steady amplitude at the top speed [m]."""
-        return self._amplitude_at(self.top)
-
-    def _amplitude_at(self, speed: float) -> float:
-        if self.scene.motion is None:
-            raise _no_motion()
-        found = self._keep(steady_response(self.scene, np.array([speed]), self.modes))
-        return float(found.amplitude[0])
+    def amplitude(self, speed: float) -> float:
+        """Steady amplitude at a speed [m]; nan where there is none."""
+        return float(self.ask(_steady_response, (speed,), self.modes).amplitude[0])
 
     @cached_property
     def peak(self) -> tuple[float, float]:
@@ -110,76 +81,77 @@ class SweepCase:
         ValueError
             If the beam is not damped: then the amplitude at a resonance has no bound.
         """
-        if not self.scene.is_damped and len(self.crossings):
+        crossings, best = self.crossings(), 0
+        if not self.scene.is_damped and len(crossings):
             bound = "without damping the amplitude at a resonance has no bound"
             advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
             raise InvalidValue("model.damping_ratio", 0.0, bound, advice)
-        speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), self.crossings)
-        for _ in range(_ROUNDS):
-            best = self._largest(speeds)
-            low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
-            speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
-        best = self._largest(speeds)
-        return float(speeds[best]), self._amplitude_at(float(speeds[best]))
-
-    def _largest(self, speeds: np.ndarray) -> int:
-        amplitudes = self.amplitudes(speeds)
-        if np.isnan(amplitudes).all():
-            raise ValueError("at no speed up to the top speed is there a steady response")
-        return int(np.nanargmax(amplitudes))
+        speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), crossings)
+        for finer in range(_ROUNDS + 1):
+            if finer:
+                low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, len(speeds) - 1)]
+                speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
+            amplitudes = _steady_response(self.scene, speeds, self.modes).amplitude
+            if np.isnan(amplitudes).all():
+                raise ValueError("at no speed up to the top speed is there a steady response")
+            best = int(np.nanargmax(amplitudes))
+        return float(speeds[best]), self.amplitude(float(speeds[best]))
 
     @cached_property
     def model_error(self) -> float:
         """Largest model error of the answers that were asked for; nan where it is not known."""
-        errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers]
+        errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers.values()]
         return float(np.max(errors, initial=0.0))
 
 
-def _no_motion() -> MissingValue:
-    return MissingValue("motion.kind", None, "choose the motion that excites the beam")
+def _steady_response(scene: Scene, speeds: Sequence[float] | np.ndarray, modes: int) -> SteadyResponse:
+    if scene.motion is None:
+        raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
+    return steady_response(scene, speeds, modes)
 
 
 def frequency_outputs(modes: int) -> list[Output]:
-    """Frequencies at the top speed and at rest, critical speed, first resonance."""
+    """Frequencies at the top speed and at rest, critical speed, lowest speed of resonance."""
     frequencies = [
-        Output(f"frequency_{i + 1}{where}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
-        for where, share in (("", 1.0), ("_at_rest", 0.0))
+        Output(f"frequency_{i + 1}{at}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
+        for at, share in (("", 1.0), ("_at_rest", 0.0))
         for i in range(modes)
     ]
+    first = "lowest speed of resonance"
     return [
         *frequencies,
-        Output("critical_speed", "critical speed", lambda case: case.critical.speed, "rad/s"),
-        Output("first_resonance", "lowest speed of resonance", lambda case: case.first_resonance, "rad/s"),
+        Output("critical_speed", "critical speed", lambda case: case.ask(critical_point).speed, "rad/s"),
+        Output("first_resonance", first, lambda case: case.crossings().min(initial=np.inf), "rad/s"),
     ]
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
     """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
-    return float((case.at_top if share else case.at_rest).frequency[mode])
+    return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
     """The steady amplitude at the top speed, and the largest one up to there."""
     return [
-        Output(
-            "amplitude",
-            "amplitude at top speed",
-            lambda case: case.amplitude,
-            "mm",
-            1e-3,
-        ),
+        Output("amplitude", "amplitude at top speed", lambda case: case.amplitude(case.top), "mm", 1e-3),
         Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
         Output("speed_of_largest", "its speed", lambda case: case.peak[0], "rad/s"),
     ]
 
 
-def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
-    """The sweeps of a screen whose outputs follow from the number of modes."""
+_MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.model_error, "%", 0.01)
+
+
+def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str) -> Sweeps:
+    """The sweeps of a screen whose outputs follow from the number of modes in the form."""
+
+    def names(tables: Mapping[str, Any]) -> Sequence[str]:
+        return [output.name for output in outputs(read(tables)[2])]
 
     def run(tables: Mapping[str, Any], text: str, names: str) -> InputSweep:
         axis = parse_axis(numbers(inputs_of(entries_of(tables, ()))), text, "sweep")
         check_designs(designs_of([axis]), MOST_ONE_BY_ONE, "sweep")
-        wanted = [*chosen(outputs(_modes(tables)), names, "results"), _MODEL_ERROR]
+        wanted = [*chosen(outputs(read(tables)[2]), names, "results"), _MODEL_ERROR]
         cases: list[SweepCase] = []
 
         def case_of(design: Mapping[str, Any]) -> SweepCase:
@@ -189,33 +161,32 @@ def sweeps_of(outputs: Any, example: str, results: str) -> Sweeps:
         swept = one_by_one(tables, [axis], wanted, lambda task: solve_cases(task, wanted, case_of))
         return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases), *_say_choices(cases)))
 
-    return Sweeps(partial(_names, outputs), example, results, run, _draw)
+    def draw(swept: InputSweep) -> Figure:
+        return note_below(sweep_figure(swept), swept.warnings)  # a picture may be used without the page
 
-
-def _draw(swept: InputSweep) -> Figure:
-    """The sweep with its warnings below it, as a picture may be used without the page."""
-    return note_below(sweep_figure(swept), swept.warnings)
-
-
-_MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.model_error, "%", 0.01)
+    return Sweeps(names, example, results, run, draw)
 
 
 def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
     """Yield the warnings of the case with the largest model error, and of the first where it is not known."""
-    errors = [case.model_error for case in cases]
-    large = [case for case, error in zip(cases, errors, strict=True) if error > LARGE_MODEL_ERROR]
-    unknown = [case for case, error in zip(cases, errors, strict=True) if np.isnan(error)]
-    if large:
-        where = f"at {len(large)} of {len(cases)} values the model error exceeds 1 %; where it is largest: "
-        yield from _warnings_of_case(max(large, key=lambda case: case.model_error), where)
-    if unknown:
-        where = f"at {len(unknown)} of {len(cases)} values the model error is not known; at the first: "
-        yield from _warnings_of_case(unknown[0], where)
+    large = [case for case in cases if case.model_error > LARGE_MODEL_ERROR]
+    unknown = [case for case in cases if np.isnan(case.model_error)]
+    for some, what in (
+        (large, "the model error exceeds 1 %; where it is largest"),
+        (unknown, "the model error is not known; at the first"),
+    ):
+        if some:
+            first = max(some, key=lambda case: case.model_error) if some is large else some[0]
+            said = dict.fromkeys(said for answer in first.answers.values() for said in warnings_of(answer))
+            warned = "; ".join(said) or "of a mode that does not vibrate, for instance"
+            yield f"at {len(some)} of {len(cases)} values {what}: {warned}."
 
 
 def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
     """Yield at how many values which effects were added, where the physics was chosen."""
-    choices = [[a.physics_choice for a in case.answers if a.physics_choice is not None] for case in cases]
+    choices = [
+        [a.physics_choice for a in case.answers.values() if a.physics_choice is not None] for case in cases
+    ]
     if not any(choices):
         return
     added = Counter(
@@ -223,17 +194,3 @@ def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
     )
     each = [f"{name} at {count} of {len(cases)} values" for name, count in added.items()]
     yield f'physics "auto" added {", ".join(each) or "nothing"}'
-
-
-def _warnings_of_case(case: SweepCase, where: str) -> Iterator[str]:
-    said = "; ".join(dict.fromkeys(said for answer in case.answers for said in warnings_of(answer)))
-    yield f"{where}{said or 'of a mode that does not vibrate, for instance'}."
-
-
-def _names(outputs: Any, tables: Mapping[str, Any]) -> Sequence[str]:
-    return [output.name for output in outputs(_modes(tables))]
-
-
-def _modes(tables: Mapping[str, Any]) -> int:
-    """Number of modes in the form."""
-    return read(tables)[2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from time import process_time
@@ -13,14 +13,14 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import natural_modes
-from beamdyn.app.headlines import of_trade
 from beamdyn.app.inputs import DRAGS, read_aside, read_at_speed
-from beamdyn.app.left_out import left_out_table
-from beamdyn.app.scene_screen import scene_screen
+from beamdyn.app.mode_shapes import headline as headline_of_modes
+from beamdyn.app.scene_screen import left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
-from beamdyn.common.plots.notes import note_below
-from beamdyn.common.screens.screens import Drag
+from beamdyn.common.plots.axes_and_lines import note_below
+from beamdyn.common.results.one_line import number
+from beamdyn.common.screens.screens import Drag, KeyResult
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
@@ -78,18 +78,12 @@ def solve(tables: Mapping[str, Any]) -> Trade:
     digits = int(read_aside(tables, "trade").digits)
     scene, speed, modes = read_at_speed(tables)
     scene = plain_physics(scene)
-    found, time = _timed(lambda: natural_modes(scene, speed, modes, tolerance=10.0**-digits))
-    return Trade(digits, found, time, *_measure(scene, speed, modes))
-
-
-def _timed(run: Callable[[], Modes]) -> tuple[Modes, float]:
-    """What a function returns, and its shortest processor time [s]."""
     found, times = [], []
     for _ in range(_RUNS):
         start = process_time()
-        found.append(run())
+        found.append(natural_modes(scene, speed, modes, tolerance=10.0**-digits))
         times.append(process_time() - start)
-    return found[-1], min(times)
+    return Trade(digits, found[-1], min(times), *_measure(scene, speed, modes))
 
 
 @lru_cache(maxsize=_KEPT)
@@ -113,43 +107,34 @@ def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
 
 
 def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
+    """Errors against times [ms]; errors outside the chart are drawn at its edge."""
     families: dict[str, list[tuple[float, float]]] = {}
     for m in diagram.measurements:
         if 0 < m.error < np.inf:
-            families.setdefault(m.family, []).append((m.time, m.error))
-    curves = [_curve(_FAMILIES.get(family, family), points) for family, points in families.items()]
-    front = _curve("Pareto front", [(m.time, m.error) for m in diagram.front if m.error > 0])
-    times = [m.time for m in diagram.measurements]
-    limit = ChartCurve(
-        f"tolerance {answer.tolerance:.0e}",
-        1e3 * np.array([min(times), max(times)]),
-        np.full(2, answer.tolerance),
-        dashed=True,
-        pale=True,
-    )
+            families.setdefault(_FAMILIES.get(m.family, m.family), []).append((m.time, m.error))
+    families["Pareto front"] = [(m.time, m.error) for m in diagram.front if m.error > 0]
+    curves = []
+    for family, points in families.items():
+        time, error = np.array(points).reshape(-1, 2).T
+        pale = family == "Pareto front"
+        error = np.clip(error, _LEAST, _LARGEST)
+        curves.append(ChartCurve(family, 1e3 * time, error, pale=pale, points=not pale))
+    times, tolerance = [m.time for m in diagram.measurements], answer.tolerance
+    ends = 1e3 * np.array([min(times), max(times)])
+    limit = ChartCurve(f"tolerance {tolerance:.0e}", ends, np.full(2, tolerance), dashed=True, pale=True)
+    digit, cheapest = answer.cheapest(diagram), []
+    for m in diagram.measurements:
+        if digit is not None and (m.family, m.setting, m.time) == (digit.family, digit.setting, digit.time):
+            words = f"{m.family}, {m.setting}\n{1e3 * m.time:.3g} ms, error {m.error:.0e}"
+            cheapest = [(1e3 * m.time, float(np.clip(m.error, _LEAST, _LARGEST)), words)]
+            break
     return Chart(
         f"{name}: {diagram.title.removeprefix('physics: ')}",
         ChartAxis("time", "ms", logarithmic=True),
         ChartAxis("relative error", logarithmic=True, high=_LARGEST),
-        [*curves, ChartCurve(front.name, front.x, front.y, pale=True), limit],
-        [*_cheapest_point(answer, diagram)],
+        [*curves, limit],
+        [ChartPoints(f"cheapest with {answer.digits} digits", cheapest)] if cheapest else [],
     )
-
-
-def _curve(name: str, points: Sequence[tuple[float, float]]) -> ChartCurve:
-    """Errors against times [ms]; errors outside the chart are drawn at its edge."""
-    at = np.array(points).reshape(-1, 2)
-    return ChartCurve(name, 1e3 * at[:, 0], np.clip(at[:, 1], _LEAST, _LARGEST), points=True)
-
-
-def _cheapest_point(answer: Trade, diagram: Diagram) -> Iterator[ChartPoints]:
-    digit = answer.cheapest(diagram)
-    for m in diagram.measurements:
-        if digit is not None and (m.family, m.setting, m.time) == (digit.family, digit.setting, digit.time):
-            words = f"{m.family}, {m.setting}\n{1e3 * m.time:.3g} ms, error {m.error:.0e}"
-            place = 1e3 * m.time, float(np.clip(m.error, _LEAST, _LARGEST)), words
-            yield ChartPoints(f"cheapest with {answer.digits} digits", [place])
-            return
 
 
 # Tables and files ---------------------------------------------------------------------------------
@@ -157,78 +142,45 @@ def _cheapest_point(answer: Trade, diagram: Diagram) -> Iterator[ChartPoints]:
 
 def tables(answer: Trade) -> Sequence[RenderableType]:
     """The chosen model and the cheapest ones; then all digits, and what the physics leaves out."""
-    diagrams = [diagram_table(answer.numerical)]
-    if answer.of_physics.measurements:
-        diagrams.append(diagram_table(answer.of_physics))
-    return [
-        _chosen_table(answer),
-        *headline(answer),
-        left_out_table(answer.modes.left_out_effects, "frequencies"),
-        *diagrams,
-    ]
-
-
-def headline(answer: Trade) -> Sequence[str]:
-    """Sentences on the cheapest models that keep the digits."""
-    number, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
+    numbers, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
     n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
-    numerical = "nothing measured keeps them" if number is None else _say(number)
-    said = [f"Cheapest numbers with {n} of this model: {numerical}."]
+    found = "nothing measured keeps them" if numbers is None else _describe(numbers)
+    sentences, diagrams = [f"Cheapest numbers with {n} of this model: {found}."], [answer.numerical]
     if answer.of_physics.measurements:
-        missed = f"nothing measured has them; the least error is {_best(answer.of_physics)}"
-        said.append(
-            f"Cheapest with {n} in all, the physics included: {missed if physics is None else _say(physics)}."
-        )
-    return said
+        least = say_size(min(m.error for m in answer.of_physics.measurements))
+        missed = f"nothing measured has them; the least error is {least}"
+        found = missed if physics is None else _describe(physics)
+        sentences.append(f"Cheapest with {n} in all, the physics included: {found}.")
+        diagrams.append(answer.of_physics)
+    effects = left_out_table(answer.modes.left_out_effects, "frequencies")
+    return [_chosen_table(answer), *sentences, effects, *map(diagram_table, diagrams)]
 
 
-def cheapest_in_all(answer: Trade) -> str:
-    """The cheapest model that keeps the digits with its physics, and its time, in words."""
-    diagram = answer.of_physics if answer.of_physics.measurements else answer.numerical
-    digit = answer.cheapest(diagram)
-    return "none measured" if digit is None else _say(digit)
-
-
-def _physics(family: str) -> str:
-    """A family in words: the physics that a model has."""
-    return "physics as given" if family == "as given" else family
-
-
-def _say(digit: Digit) -> str:
-    return f"{_physics(digit.family)}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
-
-
-def _best(diagram: Diagram) -> str:
-    return say_size(min(m.error for m in diagram.measurements))
+def _describe(digit: Digit) -> str:
+    """A measurement in words: the physics and setting of the model, and its time."""
+    physics = "physics as given" if digit.family == "as given" else digit.family
+    return f"{physics}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
 
 
 def _chosen_table(answer: Trade) -> RenderableType:
-    """What the tolerance chooses, and its errors, mode by mode."""
-    modes, known = answer.modes, answer.modes.model_error
-    rows = [
-        (
-            str(i),
-            f"{f:.10g}",
-            f"{error:.0e}",
-            say_size(float(of_model)),
-            _verdict(error, of_model, answer.tolerance),
-        )
-        for i, (f, error, of_model) in enumerate(zip(modes.frequency, modes.error, known, strict=True), 1)
-    ]
+    """Table of what the tolerance chooses, and its errors, mode by mode."""
+    modes, tolerance, rows = answer.modes, answer.tolerance, []
+    each = zip(modes.frequency, modes.error, modes.model_error.tolist(), strict=True)
+    for i, (frequency, error, of_model) in enumerate(each, 1):
+        if not error <= tolerance:
+            verdict = "the numbers miss the tolerance"
+        elif np.isnan(of_model):
+            verdict = "kept by the numbers; that of the model is not known"
+        elif of_model <= tolerance:
+            verdict = "kept"
+        else:
+            verdict = "kept by the numbers; the physics misses the tolerance"
+        rows.append((str(i), f"{frequency:.10g}", f"{error:.0e}", say_size(of_model), verdict))
     title = (
-        f"At {modes.display_units.speed_unit().say(modes.speed)}, tolerance {answer.tolerance:.0e}: "
+        f"At {modes.display_units.speed_unit().say(modes.speed)}, tolerance {tolerance:.0e}: "
         f"{modes.provenance.method}, in {1e3 * answer.time:.3g} ms"
     )
     return table(title, ("mode", "frequency [Hz]", "numerical error", "model error", "digits"), rows, (4,))
-
-
-def _verdict(error: float, of_model: float, tolerance: float) -> str:
-    """Whether the tolerance is kept, or by which error it is missed."""
-    if not error <= tolerance:
-        return "the numbers miss the tolerance"
-    if np.isnan(of_model):
-        return "kept by the numbers; that of the model is not known"
-    return "kept" if of_model <= tolerance else "kept by the numbers; the physics misses the tolerance"
 
 
 def rows(answer: Trade) -> Iterator[Sequence[object]]:
@@ -249,6 +201,15 @@ def draw(answer: Trade, _: float = 0.0) -> Figure:
     return note_below(figure, notes_of(answer.modes))
 
 
+def headline(answer: Trade) -> Iterator[KeyResult]:
+    """The cheapest model measured, the time that the chosen one takes, and its errors."""
+    digit = answer.cheapest(answer.of_physics if answer.of_physics.measurements else answer.numerical)
+    cheapest = "none measured" if digit is None else _describe(digit)
+    yield KeyResult("cheapest, physics included", cheapest)
+    yield KeyResult("time of the chosen model", number(1e3 * answer.time, "ms"))
+    yield from [*headline_of_modes(answer.modes)][1:]
+
+
 TRADE = scene_screen(
     "Trade",
     "The cheapest model that keeps so many digits of the natural frequencies at a speed.",
@@ -260,5 +221,5 @@ TRADE = scene_screen(
     rows=rows,
     drags=(Drag("trade.digits", 1, 10, 1, ""), Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     charts=charts,
-    headline=lambda answer: [*of_trade(answer.modes, answer.time, cheapest_in_all(answer))],
+    headline=headline,
 )

@@ -10,19 +10,15 @@ import numpy as np
 from rich.console import RenderableType
 
 from beamdyn import resonance_speeds, simulate
-from beamdyn.app.bent_beam import bent_beam, drawn_larger
-from beamdyn.app.headlines import of_peak
+from beamdyn.app.drawings import bent_beam, drawn_larger
 from beamdyn.app.inputs import first_frequency, read_aside, read_scene
-from beamdyn.app.left_out import left_out_table
-from beamdyn.app.scene_screen import scene_screen
+from beamdyn.app.scene_screen import brief, left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
-from beamdyn.common.screens.courses import Onward
 from beamdyn.common.screens.screens import KeyResult, Slider
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.results.cautions import describe_choice
@@ -77,20 +73,19 @@ def solve(tables: Mapping[str, Any]) -> Playable:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
     first = first_frequency(scene)
     period = 2 * np.pi / first if first else np.inf
-    if given.end > _MOST_PERIODS * period:
-        bound = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
-        raise InvalidValue("run.end", given.end, bound, unit="s", limit=_MOST_PERIODS * period)
-    window = _window(given)
+    start, end = given.window_start, given.end if given.window_end is None else given.window_end
+    periods = f"it must be at most {{limit}}, {_MOST_PERIODS} periods of the first mode"
+    for option, value, holds, bound, limit in (
+        ("end", given.end, given.end <= _MOST_PERIODS * period, periods, _MOST_PERIODS * period),
+        ("window_end", end, end <= given.end, "it is after the end of the run, {limit}", given.end),
+        ("window_start", start, start < end, "it must be before the end of the window, {limit}", end),
+    ):
+        if not holds:
+            raise InvalidValue(f"run.{option}", value, bound, unit="s", limit=limit)
     with of_file({"t_end": "run.end"}):
         run = simulate(scene, given.end, tolerance=_TOLERANCE)
-    return Playable(
-        run,
-        window,
-        run.peak(*window),
-        _time_of_peak(run, *window),
-        tuple(_passages(scene, given.end)),
-        period,
-    )
+    at, passages = _time_of_peak(run, start, end), tuple(_passages(scene, given.end))
+    return Playable(run, (start, end), run.peak(start, end), at, passages, period)
 
 
 def _time_of_peak(run: Transient, start: float, end: float) -> float:
@@ -101,18 +96,6 @@ def _time_of_peak(run: Transient, start: float, end: float) -> float:
     beside = run.t[largest][:, None] + apart * np.linspace(-1, 1, _TIMES)
     t = np.unique(np.clip(np.append(beside, (start + end) / 2), start, end))
     return float(t[np.hypot(run.deflection(t, 0), run.deflection(t, 1)).argmax()])
-
-
-def _window(given: Any) -> tuple[float, float]:
-    end = given.end if given.window_end is None else given.window_end
-    if end > given.end:
-        raise InvalidValue(
-            "run.window_end", end, "it is after the end of the run, {limit}", unit="s", limit=given.end
-        )
-    if given.window_start >= end:
-        bound = "it must be before the end of the window, {limit}"
-        raise InvalidValue("run.window_start", given.window_start, bound, unit="s", limit=end)
-    return given.window_start, end
 
 
 def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
@@ -136,31 +119,20 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
     """The beam at a time, in each direction, with its extremes within a period before and after."""
-    return [[_beam(answer, place, direction) for direction in range(answer.run.scene.physics.planes)]]
-
-
-def _beam(answer: Playable, place: float, direction: int) -> Drawing:
     run, now = answer.run, answer.time(place)
-    length = run.scene.beam.length
-    x = np.linspace(0.0, length, _PLACES)
-    larger = drawn_larger(run.largest, length)
-    around = run.shape(x, _around(answer, now, 1.0), direction)
-    low, high = around[around[:, -1].argmin()], around[around[:, -1].argmax()]
-    shape = run.shape(x, [now], direction)[0]
-    unit = run.display_units.length_unit()
-    words = modelled_directions(run.scene)
-    which = f", {words[direction]}" if len(words) > 1 else ""
+    unit, words = run.display_units.length_unit(), modelled_directions(run.scene)
+    x = np.linspace(0.0, run.scene.beam.length, _PLACES)
+    larger = drawn_larger(run.largest, run.scene.beam.length)
     scale = f"deflection drawn {larger:g} times larger" if larger != 1 else "to scale"
-    title = f"At {now:.4g} s{which}; {scale}"
-    return bent_beam(
-        x,
-        larger * shape,
-        title,
-        unit.say(float(shape[-1]), 3),
-        (larger * low, larger * high),
-        larger * run.largest,
-        scale,
-    )
+    row = []
+    for direction in range(run.scene.physics.planes):
+        around = run.shape(x, _around(answer, now, 1.0), direction)
+        extremes = [larger * around[i] for i in (around[:, -1].argmin(), around[:, -1].argmax())]
+        shape = run.shape(x, [now], direction)[0]
+        which = f", {words[direction]}" if len(words) > 1 else ""
+        title, tip = f"At {now:.4g} s{which}; {scale}", unit.say(float(shape[-1]), 3)
+        row.append(bent_beam(x, larger * shape, title, tip, extremes, larger * run.largest, scale))
+    return [row]
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
@@ -174,45 +146,30 @@ def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
 
 def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
     """The tip over the whole run, and over some periods about the present time."""
-    return [_whole(answer, place), _close_up(answer, place)]
+    run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
+    names = modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
 
+    def over(t: np.ndarray) -> tuple[ChartAxis, ChartAxis]:
+        time = ChartAxis("time", "s", low=float(t[0]), high=float(t[-1]))
+        return time, ChartAxis("tip deflection", unit.name)
 
-def _whole(answer: Playable, place: float) -> Chart:
-    run, unit = answer.run, answer.run.display_units.length_unit()
-    tips = (run.tip, run.tip_across)[: run.scene.physics.planes]
-    names = modelled_directions(run.scene) if len(tips) > 1 else ("tip deflection",)
-    curves = [ChartCurve(n, run.t, unit.of(tip), most=_MOST_SENT) for n, tip in zip(names, tips, strict=True)]
-    peak = float(run.deflection([answer.peak_at])[0])
+    tips = zip(names, (run.tip, run.tip_across), strict=False)
+    peak = unit.of(float(run.deflection([answer.peak_at])[0]))
     said = f"peak {unit.say(answer.peak, 5)} at {answer.peak_at:.5g} s"
-    start, end = run.path.start, run.path.end
-    outside = [
-        ChartBand(start, answer.window[0], "before the window"),
-        ChartBand(answer.window[1], end, "after the window"),
-    ]
-    return Chart(
+    ends, (start, end) = np.array([run.path.start, run.path.end]), answer.window
+    outside = ChartBand(ends[0], start, "before the window"), ChartBand(end, ends[1], "after the window")
+    whole = Chart(
         "Tip deflection over time",
-        ChartAxis("time", "s", low=start, high=end),
-        ChartAxis("tip deflection", unit.name),
-        curves,
-        [ChartPoints("peak in the window", [(answer.peak_at, unit.of(peak), said)], "friction")],
+        *over(ends),
+        [ChartCurve(name, run.t, unit.of(tip), most=_MOST_SENT) for name, tip in tips],
+        [ChartPoints("peak in the window", [(answer.peak_at, peak, said)], "friction")],
         [ChartMark(t, words) for t, words in answer.passages],
         [band for band in outside if band.high > band.low],
-        answer.time(place),
+        now,
     )
-
-
-def _close_up(answer: Playable, place: float) -> Chart:
-    run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
     t = _around(answer, now, _CLOSE)
-    names = modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
-    curves = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(names)]
-    return Chart(
-        "Close-up about the present time",
-        ChartAxis("time", "s", low=float(t[0]), high=float(t[-1])),
-        ChartAxis("tip deflection", unit.name),
-        curves,
-        cursor=now,
-    )
+    near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(names)]
+    return [whole, Chart("Close-up about the present time", *over(t), near, cursor=now)]
 
 
 # Tables and files ---------------------------------------------------------------------------------
@@ -225,13 +182,11 @@ def tables(answer: Playable) -> Sequence[RenderableType]:
     return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
 
 
-def headline(answer: Playable) -> Sequence[KeyResult]:
+def headline(answer: Playable) -> Iterator[KeyResult]:
     """The peak, and when the speed first passes a resonance."""
     unit = answer.run.display_units.length_unit()
-    return [*of_peak(answer.peak, answer.peak_at, unit), *_of_passages(answer)]
-
-
-def _of_passages(answer: Playable) -> Iterator[KeyResult]:
+    yield KeyResult("largest deflection of the tip", brief(answer.peak, unit))
+    yield KeyResult("at the time", number(answer.peak_at, "s"))
     for at, _ in answer.passages[:1]:
         yield KeyResult("passes a resonance at", number(at, "s"))
 
@@ -243,7 +198,7 @@ TRANSIENT = scene_screen(
     ("run",),
     result=lambda answer: answer.run,
     tables=tables,
-    slider=Slider("time", ("start", "end"), 0.001, 20.0, Onward),
+    slider=Slider("time", ("start", "end"), 0.001, 20.0, onward=True),
     drawings=drawings,
     charts=charts,
     headline=headline,

@@ -19,6 +19,11 @@ def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
     return ends[:-1, None] + np.diff(ends)[:, None] * (1 + gauss_rule(points)[0]) / 2
 
 
+def gauss_weights_on(ends: np.ndarray, points: int) -> np.ndarray:
+    """Weights (c points,) of the Gauss points on all of c cells between ascending ends (c + 1,)."""
+    return (np.diff(ends)[:, None] / 2 * gauss_rule(points)[1]).ravel()
+
+
 @cache
 def legendre_values(points: int, degree: int) -> np.ndarray:
     """Legendre polynomials up to a degree at the points of the Gauss rule, shape (points, degree + 1)."""

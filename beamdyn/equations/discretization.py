@@ -31,15 +31,6 @@ class RootConditions(NamedTuple):
     stiffness: str = ""
     direction: int = 0
 
-    def against(self, stiffness: str, direction: int = 0) -> RootConditions:
-        """The same conditions, of a displacement that a stiffness resists."""
-        return RootConditions(self.held, self.derivatives, stiffness, direction)
-
-    @property
-    def at_root(self) -> RootConditions:
-        """The same without a stiffness: all that functions which are the same in all beams depend on."""
-        return RootConditions(self.held, self.derivatives)
-
 
 CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root
 HINGED = RootConditions(1, 2)  # a deflection that may turn about the root, by its first function
@@ -94,6 +85,16 @@ class Spaces(Protocol):
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
+        ...
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        ...
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser discretization."""
         ...
 
     def shares_functions(self, other: Self) -> bool:

@@ -32,6 +32,8 @@ class Effect:
         Whether it can be combined with large deflection.
     taken_out : str
         Name of what is taken out where large deflection takes its place.
+    also_by : str
+        Field of `Physics` that models the effect among others.
     """
 
     name: str
@@ -41,9 +43,12 @@ class Effect:
     needs: tuple[str, ...] = ()
     bends: bool = False
     taken_out: str = ""
+    also_by: str = ""
 
     def is_in(self, scene: Scene) -> bool:
         """Whether the model of a scene has the effect."""
+        if self.also_by and getattr(scene.physics, self.also_by):
+            return True
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
@@ -92,9 +97,9 @@ LARGE_DEFLECTION = Effect(
 )
 EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, STRETCH, LARGE_DEFLECTION
 NEVER_MODELLED = (
-    Effect("torsion", "the beam is rigid against torsion"),
+    Effect("torsion", "the beam is rigid against torsion", also_by="plate"),
     Effect("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
-    Effect("warping and Poisson contraction", "sections keep their shape"),
+    Effect("warping and Poisson contraction", "sections keep their shape", also_by="plate"),
     Effect("contact", "nothing touches the beam"),
 )
 NAMED = {effect.name: effect for effect in EFFECTS}

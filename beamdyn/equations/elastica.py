@@ -17,7 +17,6 @@ kept as well as in the exact equations.  Derivation: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -312,40 +311,27 @@ class DeflectedState:
 
     def linearized(self) -> Equations:
         """Equations of small motions about this state, the elastic force of which is among the loads."""
-        linear, elastica = self.elastica.linear, self.elastica
-        _, V = self.gradients
-        space = DeflectedShapes(self)
-        deflection = Deflection(
-            space,
-            P=V @ elastica.points.mass,
-            Q=-self.inertia_of("acceleration") / (elastica.in_plane or 1.0),
-            Q_across=np.zeros(self.elastica.size),
+        linear, elastica, b = self.elastica.linear, self.elastica, _BENDING
+        terms, loads = (
+            [Term("mass", b, b, 2, self.mass)],
+            [Load("elastic force", b, elastica.stiffness @ self.q, "unity", -1.0)],
         )
-        return replace(
-            linear,
-            terms=(*self._terms(),),
-            loads=(*self._loads(),),
-            deflections={_BENDING: deflection},
-            shapes={_BENDING: replace(linear.shapes[_BENDING], matrix=np.eye(elastica.size))},
-        )
-
-    def _terms(self) -> Iterator[Term]:
-        def term(
-            name: str, order: int, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0
-        ) -> Term:
-            return Term(name, _BENDING, _BENDING, order, matrix, quantity, factor)
-
-        yield term("mass", 2, self.mass)
         if self.gyroscopic.any():
-            yield term("Coriolis coupling", 1, self.gyroscopic, "speed")
-        yield from (t for t in self.elastica.linear.terms if t.quantity == "unity" and t.order < 2)
+            terms.append(Term("Coriolis coupling", b, b, 1, self.gyroscopic, "speed"))
+        terms += [t for t in linear.terms if t.quantity == "unity" and t.order < 2]
         for quantity in QUANTITIES:
-            yield term(f"stiffness by {quantity}", 0, self.stiffness_of(quantity), quantity)
-
-    def _loads(self) -> Iterator[Load]:
-        yield Load("elastic force", _BENDING, self.elastica.stiffness @ self.q, "unity", -1.0)
-        for quantity in QUANTITIES:
-            yield Load(f"load by {quantity}", _BENDING, self.inertia_of(quantity), quantity, -1.0)
+            terms.append(Term(f"stiffness by {quantity}", b, b, 0, self.stiffness_of(quantity), quantity))
+            loads.append(Load(f"load by {quantity}", b, self.inertia_of(quantity), quantity, -1.0))
+        deflection = Deflection(
+            DeflectedShapes(self),
+            P=self.gradients[1] @ elastica.points.mass,
+            Q=-self.inertia_of("acceleration") / (elastica.in_plane or 1.0),
+            Q_across=np.zeros(elastica.size),
+        )
+        shape = replace(linear.shapes[b], matrix=np.eye(elastica.size))
+        return replace(
+            linear, terms=(*terms,), loads=(*loads,), deflections={b: deflection}, shapes={b: shape}
+        )
 
 
 QUANTITIES: tuple[Quantity, ...] = ("speed_squared", "acceleration", "root_axial", "root_transverse")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.equations.root_motion import RootMotion, root_motion
-from beamdyn.scene.motion import Motion, MotionSample, SteadyRotation
+from beamdyn.scene.motion import MotionSample, SteadyRotation
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
@@ -36,7 +36,15 @@ class SampledScene:
     def sample(self) -> MotionSample:
         """Motion of the carrier at representative times."""
         motion = self.scene.motion or SteadyRotation(1.0)
-        return motion.at(_sample_times(motion))
+        start = min(motion.steady_start, motion.end)
+        if not math.isfinite(start):
+            start = max(_HORIZON, *motion.breakpoints, 0.0)
+        speed = abs(motion.final_speed)  # some revolutions at it are sampled, too
+        times = (
+            np.linspace(0, start, _SAMPLES),
+            np.linspace(0, _TURNS * 2 * math.pi / (speed or np.inf), _SAMPLES),
+        )
+        return motion.at(np.unique(np.minimum(np.concatenate([times[0], start + times[1]]), motion.end)))
 
     @cached_property
     def root(self) -> RootMotion:
@@ -60,31 +68,14 @@ class SampledScene:
 
     def sources(self, quantity: str) -> list[str]:
         """Sources that contribute to an acceleration of the root: each is evaluated without the others."""
-        sizes = {
-            name: np.abs(getattr(root_motion(self.scene.mount, sample, gravity), quantity)).max()
-            for name, sample, gravity in _single_sources(self.sample, self.scene.gravity)
-        }
-        return [name for name, size in sizes.items() if size > self.rounding]
-
-
-def _single_sources(sample: MotionSample, gravity: float) -> Iterator[tuple[str, MotionSample, float]]:
-    """Yield name, motion and gravity of each source of acceleration without the others."""
-    rest = replace(MotionSample.steady(0 * sample.speed), angle=sample.angle)
-    yield "rotation", replace(rest, speed=sample.speed), 0.0
-    yield "angular acceleration", replace(rest, acceleration=sample.acceleration), 0.0
-    yield "translation", replace(rest, carrier_acceleration=sample.carrier_acceleration), 0.0
-    yield "gravity", rest, gravity
-
-
-def _sample_times(motion: Motion) -> np.ndarray:
-    """Choose times [s] that cover a motion until its speed is steady, and some revolutions after."""
-    start = min(motion.steady_start, motion.end)
-    if not math.isfinite(start):
-        start = max(_HORIZON, *motion.breakpoints, 0.0)
-    speed = abs(motion.final_speed)
-    duration = _TURNS * 2 * math.pi / speed if speed > 0 else 0.0
-    times = np.concatenate([np.linspace(0, start, _SAMPLES), start + np.linspace(0, duration, _SAMPLES)])
-    return np.unique(np.minimum(times, motion.end))
+        rest = replace(MotionSample.steady(0 * self.sample.speed), angle=self.sample.angle)
+        names = {
+            "rotation": "speed", "angular acceleration": "acceleration", "translation": "carrier_acceleration"
+        }  # fmt: skip
+        single = {n: (replace(rest, **{f: getattr(self.sample, f)}), 0.0) for n, f in names.items()}
+        single["gravity"] = rest, self.scene.gravity
+        roots = {name: root_motion(self.scene.mount, *given) for name, given in single.items()}
+        return [name for name, root in roots.items() if np.abs(getattr(root, quantity)).max() > self.rounding]
 
 
 # Explanations ---------------------------------------------------------------------------------------

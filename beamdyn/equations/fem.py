@@ -18,6 +18,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_ACROSS = 8  # functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest number accepted
 MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
@@ -83,8 +84,13 @@ class Fem:
     def nodes(self, beam: Beam) -> np.ndarray:
         """Positions x/L of the nodes: each segment has elements in proportion to its length."""
         ends = np.array(beam.breakpoints)
-        steps = _subdivide(ends if self.mesh == "uniform" else _ungrade(ends), self.elements, self.on_each)
-        nodes = steps if self.mesh == "uniform" else _grade(steps)
+        g = 0.0 if self.mesh == "uniform" else _GRADING
+        # A mesh that is uniform over s is seven times as fine at the root as at the tip, over x/L.
+        over_s = (np.sqrt(1 + 4 * g * (1 + g) * ends) - 1) / (2 * g) if g else ends
+        counts = _distribute(self.elements, np.diff(over_s), self.on_each)
+        parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(over_s), counts, strict=True)]
+        steps = np.concatenate([*parts, over_s[-1:]])
+        nodes = (steps + g * steps**2) / (1 + g)
         for end in ends:  # rounding must not leave a tiny segment beside a breakpoint
             nodes[np.abs(nodes - end).argmin()] = end
         return nodes
@@ -111,23 +117,6 @@ class Fem:
     def fits(self, modes: int) -> bool:
         """Whether the coarser mesh has functions enough for a number of modes."""
         return 2 * self.coarser().elements >= modes
-
-
-def _grade(s: np.ndarray) -> np.ndarray:
-    """Map positions in a uniform mesh to one that is seven times as fine at the root as at the tip."""
-    return (s + _GRADING * s**2) / (1 + _GRADING)
-
-
-def _ungrade(xi: np.ndarray) -> np.ndarray:
-    """Invert `_grade`."""
-    return (np.sqrt(1 + 4 * _GRADING * (1 + _GRADING) * xi) - 1) / (2 * _GRADING)
-
-
-def _subdivide(ends: np.ndarray, elements: int, on_each: int) -> np.ndarray:
-    """Divide each segment into equal elements, in proportion to its length, at least so many on each."""
-    counts = _distribute(elements, np.diff(ends), on_each)
-    parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(ends), counts, strict=True)]
-    return np.concatenate([*parts, ends[-1:]])
 
 
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
@@ -166,13 +155,23 @@ class FemSpaces(FieldsOnly):
 
     def functions(self, conditions: RootConditions) -> FemSpace:
         """Trial functions that satisfy conditions at the root."""
-        return FemSpace(self, conditions.at_root)
+        return FemSpace(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return _ACROSS
+
+    @property
+    def fewer_across(self) -> int:
+        """The same: meshes differ along the beam alone."""
+        return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
         """Whether the nodes are the same."""
@@ -295,15 +294,10 @@ def _derivative(u: Any, order: int) -> Any:
     return u.grad[0] if order == 1 else u.hess[0][0]
 
 
-def _product_of(rows: int, columns: int) -> BilinearForm:
-    """Form of the product of derivatives of two orders; scikit-fem passes the columns first."""
-    return BilinearForm(lambda u, v, w: w.weight * _derivative(u, columns) * _derivative(v, rows))
-
-
-def _load_of(order: int) -> LinearForm:
-    """Form of the derivative of an order."""
-    return LinearForm(lambda v, w: w.weight * _derivative(v, order))
-
-
-_PRODUCTS = {(a, b): _product_of(a, b) for a in range(3) for b in range(3)}
-_LOADS = tuple(_load_of(order) for order in range(3))
+# Products of derivatives of two orders, of rows and columns: scikit-fem passes the columns first.
+_PRODUCTS = {
+    (a, b): BilinearForm(lambda u, v, w, a=a, b=b: w.weight * _derivative(u, b) * _derivative(v, a))
+    for a in range(3)
+    for b in range(3)
+}
+_LOADS = tuple(LinearForm(lambda v, w, a=a: w.weight * _derivative(v, a)) for a in range(3))

@@ -23,7 +23,7 @@ which integrals are exact, and eigenvalues are upper bounds as those of other as
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache, partial
 from typing import TypeAlias
@@ -89,6 +89,16 @@ class MomentSpaces(FieldsOnly):
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return self.forces
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser basis."""
+        return self.coarse
+
     def shares_functions(self, other: MomentSpaces) -> bool:
         """Whether beam and numbers are the same: cells and forces follow every stiffness."""
         return self == other
@@ -108,12 +118,16 @@ class MomentSpaces(FieldsOnly):
     def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         """Whether an entry of a compliance on each cell, of these ends, needs a smaller one."""
         at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
-        for name, tensor in self._stiffnesses.items():
+        for tensor in self._stiffnesses.values():
             values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
             for (i, j), entry in invert(values).items():
-                if i <= j:
-                    rounding = _ROUNDING * self._largest[name, i] / np.abs(values[i, i]).min(axis=1)
-                    unresolved |= ~_are_resolved(entry, rounding)
+                if i > j:
+                    continue
+                largest = float(np.abs(tensor[i, i].end_values()).max())
+                rounding = _ROUNDING * largest / np.abs(values[i, i]).min(axis=1)
+                series = np.abs(entry @ legendre_series(NODES).T)  # of interpolants through the nodes
+                least = np.maximum(_RESOLVED, rounding) * series.max(axis=1)
+                unresolved |= ~(series[:, -2:].max(axis=1) <= least)
         return unresolved
 
     @cached_property
@@ -121,16 +135,6 @@ class MomentSpaces(FieldsOnly):
         """Stiffnesses that the sections have, by name."""
         tensors = {name: stiffness_tensor(self.beam, name) for name in _ORDERS}
         return {name: tensor for name, tensor in tensors.items() if tensor}
-
-    @cached_property
-    def _largest(self) -> dict[tuple[str, int], float]:
-        """Largest entry of each stiffness in each direction."""
-        return {
-            (name, i): float(np.abs(profile.end_values()).max())
-            for name, tensor in self._stiffnesses.items()
-            for (i, j), profile in tensor.items()
-            if i == j
-        }
 
     @cached_property
     def nodes(self) -> ArcQuadrature:
@@ -202,12 +206,6 @@ def invert(values: Values) -> Values:
     }
 
 
-def _are_resolved(values: np.ndarray, rounding: np.ndarray) -> np.ndarray:
-    """Whether interpolants through the nodes of each cell resolve functions with these values (c, nodes)."""
-    series = np.abs(values @ legendre_series(NODES).T)
-    return series[:, -2:].max(axis=1) <= np.maximum(_RESOLVED, rounding) * series.max(axis=1)
-
-
 @cache
 def _interpolation(points: int) -> np.ndarray:
     """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
@@ -226,20 +224,32 @@ def _build_forces(
     They are polynomials, and what displacements by the first of these cause by inertia and by tension.  Also
     whether each is one of the coarser discretization (n,); None if that has others.
     """
-    causes, parts = [*_causes(spaces, stiffness, direction)], spaces.polynomials
-    counts = parts.counts(spaces.forces)
-    first, others = _share(counts, len(causes))
+    beam, parts, causes = spaces.beam, spaces.polynomials, []
+    # Loads: the stiffness against the displacement, the derivative of that, and its weight.
+    mass, tension = spaces.at_nodes(beam.mass_per_length), spaces.at_nodes(axial_tension(beam)[1])
+    for name in _COUPLED[stiffness]:
+        if name in spaces.compliance:
+            causes += [(name, 0, mass), (name, 1, tension)]
+    rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
+    if rotary is not None and stiffness == "bending_stiffness":
+        causes.append((stiffness, 1, spaces.at_nodes(rotary)))
+    first, others = _share(parts.counts(spaces.forces), len(causes))
     fewer, lower = _share(parts.counts(spaces.coarse), len(causes))
     contained = partial(parts.contained, continuous=derivatives == 2)
     P = _polynomials(spaces, tuple(others), derivatives == 2)
-    causing = P[contained(others, first)]
-    displaced = {
-        name: _displace(spaces, causing, name, direction) for name in {name for name, _, _ in causes}
-    }
-    caused = [
-        _integrate_from_tip(spaces.nodes, weight * displaced[name][order], derivatives - order)
-        for name, order, weight in causes
-    ]
+    causing, displaced = P[contained(others, first)], {}
+    for name in {name for name, _, _ in causes}:
+        values = [causing * spaces.compliance[name][direction, direction]]
+        for _ in range(_ORDERS[name]):
+            values.insert(0, spaces.nodes.integrate(values[0])[:, :-1])
+        displaced[name] = values
+    caused = []
+    for name, order, weight in causes:
+        force = weight * displaced[name][order]
+        for _ in range(derivatives - order):  # from each node to the tip
+            integral = spaces.nodes.integrate(force)
+            force = integral[:, -1:] - integral[:, :-1]
+        caused.append(force)
     if not all(m <= n for m, n in zip([*fewer, *lower], [*first, *others], strict=True)):
         return np.concatenate([P, *caused]), None
     of_coarse = [contained(others, lower), *[contained(first, fewer)] * len(causes)]
@@ -252,19 +262,6 @@ def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
-def _causes(spaces: MomentSpaces, stiffness: str, direction: int) -> Iterator[tuple[str, int, np.ndarray]]:
-    """Yield of loads: the stiffness against the displacement, the derivative of that, and its weight."""
-    beam, at_nodes = spaces.beam, spaces.at_nodes
-    mass, tension = at_nodes(beam.mass_per_length), at_nodes(axial_tension(beam)[1])
-    rotary = section_tensor(beam, "rotary_inertia").get((direction, direction))
-    for name in _COUPLED[stiffness]:
-        if name in spaces.compliance:
-            yield name, 0, mass
-            yield name, 1, tension
-    if rotary is not None and stiffness == "bending_stiffness":
-        yield "bending_stiffness", 1, at_nodes(rotary)
-
-
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
     """Share forces on each part: how many polynomials cause others, by each cause, and how many there are.
 
@@ -273,22 +270,6 @@ def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
     """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
-
-
-def _displace(spaces: MomentSpaces, forces: np.ndarray, stiffness: str, direction: int) -> list[np.ndarray]:
-    """Displacements by forces (n, N) at the nodes against a stiffness, and their slopes: each (n, N)."""
-    derivatives = [forces * spaces.compliance[stiffness][direction, direction]]
-    for _ in range(_ORDERS[stiffness]):
-        derivatives.insert(0, spaces.nodes.integrate(derivatives[0])[:, :-1])
-    return derivatives[:2]
-
-
-def _integrate_from_tip(nodes: ArcQuadrature, values: np.ndarray, times: int) -> np.ndarray:
-    """Integrate repeatedly from each node to the tip: values and result have shape (n, N)."""
-    for _ in range(times):
-        integral = nodes.integrate(values)
-        values = integral[:, -1:] - integral[:, :-1]
-    return values
 
 
 # Functions ----------------------------------------------------------------------------------------
@@ -339,10 +320,10 @@ class MomentSpace(SampledSpace):
         stiffness, direction = self.conditions.stiffness, self.conditions.direction
         compliance = self.spaces.compliance[stiffness]
         forces_against = self.spaces, stiffness, self.conditions.derivatives
-        entries = [compliance[direction, other] for other in (0, 1) if (direction, other) in compliance]
-        others = (other for other in (0, 1) if (direction, other) in compliance)
+        others = [other for other in (0, 1) if (direction, other) in compliance]
         forces, of_coarse = zip(*(_build_forces(*forces_against, other) for other in others), strict=True)
-        quotients = np.concatenate([entry * part for entry, part in zip(entries, forces, strict=True)])
+        parts = zip(others, forces, strict=True)
+        quotients = np.concatenate([compliance[direction, other] * part for other, part in parts])
         own = stiffness_tensor(self.spaces.beam, stiffness)[direction, direction]
         weight = self.spaces.nodes.weights * self.spaces.at_nodes(own)
         if any(mask is None for mask in of_coarse):

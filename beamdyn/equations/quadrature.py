@@ -9,7 +9,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.legendre import gauss_points_on, gauss_rule, legendre_series
+from beamdyn.common.legendre import gauss_points_on, gauss_rule, gauss_weights_on, legendre_series
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.scene.profile import Profile
 
@@ -50,23 +50,17 @@ class ArcQuadrature:
     @cached_property
     def weights(self) -> np.ndarray:
         """Weights of the integral from 0 to 1, shape (N,)."""
-        _, w = gauss_rule(self.cells.points)
-        return (np.diff(self.cells.ends)[:, None] / 2 * w).ravel()
+        return gauss_weights_on(self.cells.ends, self.cells.points)
 
     @cached_property
     def _half_lengths(self) -> np.ndarray:
         return np.diff(self.cells.ends)[:, None] / 2
 
-    @property
-    def _count(self) -> int:
-        """Number of cells."""
-        return len(self.cells.ends) - 1
-
     def integrate(self, values: np.ndarray) -> np.ndarray:
         """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
         p, N = self.cells.points, len(self.xi)
         of_cells = values.reshape(-1, p)
-        shape = *values.shape[:-1], self._count, p
+        shape = *values.shape[:-1], (len(self.cells.ends) - 1), p
         ends = np.cumsum(
             (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
         )
@@ -81,11 +75,11 @@ class ArcQuadrature:
         """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
         p = self.cells.points
         _, w = gauss_rule(p)
-        inside = forces[..., :-1].reshape(*forces.shape[:-1], self._count, p)
+        inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
         of_cells = inside.sum(axis=-1)
         beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
         scaled = (inside @ _cumulative(p) + beyond[..., None] * w) * self._half_lengths
-        return scaled.reshape(*forces.shape[:-1], self._count * p)
+        return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
         """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
@@ -99,7 +93,8 @@ class ArcQuadrature:
         """Weights (k, N) of the interpolants through the points of each cell at xi (k,)."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
-        np.put_along_axis(matrix, own, _interpolate(t, self.cells.points), axis=1)
+        values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
+        np.put_along_axis(matrix, own, values, axis=1)
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -120,11 +115,6 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
     integrals = legendre.legint(np.eye(points), lbnd=-1)
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
-
-
-def _interpolate(t: np.ndarray, points: int) -> np.ndarray:
-    """Weights (k, p) of the interpolant through p Gauss points at t (k,)."""
-    return legendre.legvander(t, points - 1) @ legendre_series(points)
 
 
 _OF_TENSION = 3  # degree of the moment of a linear mass
@@ -166,16 +156,15 @@ class Sampler:
         They are those up to the degree, or to a higher one; most properties have the same segments.
         """
         placed = self._placed.get(breakpoints)
-        if placed is None or placed[1].shape[2] <= degree:
-            placed = self._placed[breakpoints] = self._find(np.array(breakpoints), max(degree, _OF_TENSION))
-        return placed
-
-    def _find(self, ends: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
-        segment = ends[1:-1].searchsorted((self._left + self._right) / 2, side="right")
+        if placed is not None and placed[1].shape[2] > degree:
+            return placed
+        ends, left, right = np.array(breakpoints), self._left, self._right
+        segment = ends[1:-1].searchsorted((left + right) / 2, side="right")
         a, b = ends[segment, None], ends[segment + 1, None]
-        lengths = (self._right - self._left)[:, None]
-        xi = self._left[:, None] + lengths * (1 + gauss_rule(self._points)[0]) / 2
-        return segment, legendre.legvander(((xi - a) - (b - xi)) / (b - a), degree)
+        xi = left[:, None] + (right - left)[:, None] * (1 + gauss_rule(self._points)[0]) / 2
+        polynomials = legendre.legvander(((xi - a) - (b - xi)) / (b - a), max(degree, _OF_TENSION))
+        self._placed[breakpoints] = segment, polynomials
+        return segment, polynomials
 
 
 class SampledSpace(FieldsOnly, ABC):
@@ -196,7 +185,7 @@ class SampledSpace(FieldsOnly, ABC):
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points, each of shape (n, k)."""
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number n of functions."""
         return len(self.samples[0])

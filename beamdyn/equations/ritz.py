@@ -2,30 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache, partial
+from functools import cache, cached_property, lru_cache
 from itertools import pairwise
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
-from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
+from beamdyn.common.legendre import gauss_points_on, gauss_weights_on
+from beamdyn.equations.discretization import RootConditions
 from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.equations.quadrature import Cells, SampledSpace, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_MOST_ACROSS = 40  # functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}  # the slower, the larger
-
-Evaluation = Callable[[np.ndarray, int], np.ndarray]  # (xi of shape (k,), order) -> shape (n, k)
 
 
 @dataclass(frozen=True)
@@ -58,6 +57,8 @@ class Ritz:
 
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
+    order: ClassVar[None] = None  # the error does not fall as a power of the size
+    rounding: ClassVar[float] = 0.0  # scaling of the functions keeps all digits of their integrals
 
     def __post_init__(self) -> None:
         most, remedy = MOST_FUNCTIONS, "use fewer, or discretization='fem'"
@@ -70,36 +71,24 @@ class Ritz:
         return self.basis == "legendre"
 
     @property
-    def order(self) -> None:
-        """None: the error does not fall as a power of the size."""
-        return None
-
-    @property
     def converges_regularly(self) -> bool:
         """Not where moments over the whole beam serve many segments, of which each resolves some."""
         return self.basis != "moments"
-
-    @property
-    def rounding(self) -> float:
-        """0: scaling of the functions keeps all digits of their integrals."""
-        return 0.0
 
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        return RitzSpaces(self, tuple(beam.breakpoints), self._points(beam))
-
-    def _points(self, beam: Beam) -> int:
-        """Number of Gauss points on each segment: exact for Legendre, ample for eigenfunctions."""
+        # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return degree + 2 + weight_degree(beam) // 2
+        return RitzSpaces(self, tuple(beam.breakpoints), degree + 2 + weight_degree(beam) // 2)
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
-        if self.basis == "moments":
-            return MomentSpaces(beam, self.functions, self.fewer).quadrature.cells
-        return Cells(np.array(beam.breakpoints), self._points(beam) + _POINTS_OF_TURNS)
+        spaces = self.spaces(beam)
+        if isinstance(spaces, MomentSpaces):
+            return spaces.quadrature.cells
+        return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
         """A basis small enough that its distance from this one exceeds the truncation error of this one."""
@@ -141,13 +130,23 @@ class RitzSpaces:
 
     def functions(self, conditions: RootConditions) -> RitzSpace:
         """Trial functions that satisfy conditions at the root."""
-        return _build_space(self, conditions.at_root)
+        return _build_space(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean: as many as along a segment."""
+        return max(2, min(self.ritz.functions, _MOST_ACROSS))
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser basis."""
+        return max(2, min(self.ritz.fewer, _MOST_ACROSS - 2))
 
     def shares_functions(self, other: RitzSpaces) -> bool:
         """Whether the basis and the segments are the same."""
@@ -170,30 +169,22 @@ class RitzSpace(SampledSpace):
     conditions: RootConditions
 
     @cached_property
-    def evaluation(self) -> Evaluation:
-        """Evaluates the derivatives of all functions at given points."""
-        basis = _BASES[self.spaces.ritz.basis][self.conditions]
-        return basis(self.spaces.ritz.functions, np.array(self.spaces.breakpoints))
-
-    @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
-        return self._coarse
-
-    @cached_property
-    def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))
 
-    @property
-    def _orders(self) -> range:
-        return range(self.conditions.derivatives + 1)
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Points of the Gauss rule on [0, 1], shape (k,)."""
+        return gauss_points_on(np.array(self.spaces.breakpoints), self.spaces.points).ravel()
 
     @cached_property
-    def _gauss_rule(self) -> tuple[np.ndarray, np.ndarray]:
-        return _gauss_rule(np.array(self.spaces.breakpoints), self.spaces.points)
+    def rule(self) -> np.ndarray:
+        """Weights of the Gauss rule, shape (k,)."""
+        return gauss_weights_on(np.array(self.spaces.breakpoints), self.spaces.points)
 
     def weights(self, weight: Profile) -> np.ndarray:
         """Multiply the weights of the rule by a property."""
@@ -201,32 +192,29 @@ class RitzSpace(SampledSpace):
             return self.rule * weight.at_points(self.spaces.points).ravel()
         return super().weights(weight)
 
-    @property
-    def points(self) -> np.ndarray:
-        """Points of the Gauss rule on [0, 1], shape (k,)."""
-        return self._gauss_rule[0]
-
-    @property
-    def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule, shape (k,)."""
-        return self._gauss_rule[1]
-
     @cached_property
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points."""
-        return [self.evaluation(self.points, order) for order in self._orders]
+        return [self.evaluate(self.points, order) for order in range(self.conditions.derivatives + 1)]
 
     @cached_property
     def _tip_values(self) -> list[np.ndarray]:
-        return [self.evaluation(np.ones(1), order)[:, 0] for order in self._orders]
+        orders = range(self.conditions.derivatives + 1)
+        return [self.evaluate(np.ones(1), order)[:, 0] for order in orders]
 
     def end(self, order: int) -> np.ndarray:
         """Evaluate the `order`-th derivatives at the tip."""
         return self._tip_values[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi."""
-        return self.evaluation(np.asarray(xi, dtype=float), order)
+        """Evaluate the `order`-th derivatives at xi; first that of a rotation x/L where the root turns."""
+        xi, (held, derivatives) = np.asarray(xi, dtype=float), self.conditions[:2]
+        ritz, ends = self.spaces.ritz, self.spaces.breakpoints
+        values = _BASES[ritz.basis](ritz.functions, ends, derivatives, xi, order)
+        if held == derivatives:
+            return values
+        rotation = (xi, np.ones_like(xi), np.zeros_like(xi))[order]
+        return np.concatenate([rotation[None, :], values])
 
 
 @lru_cache(maxsize=128)  # independent of the beam's properties: saves half the time of a small model
@@ -234,35 +222,27 @@ def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
     return RitzSpace(spaces, conditions)
 
 
-def _gauss_rule(ends: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights of a Gauss rule on each segment."""
-    t, w = legendre.leggauss(points)
-    half = np.diff(ends)[:, None] / 2
-    return (ends[:-1, None] + half * (1 + t)).ravel(), (half * w).ravel()
-
-
 # Integrated Legendre polynomials ------------------------------------------------------------------
 
 
-def _integrated_legendre(functions: int, ends: np.ndarray, integrations: int) -> Evaluation:
-    """Functions whose `integrations`-th derivative is a Legendre polynomial on one segment, 0 elsewhere.
+def _integrated_legendre(
+    functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
+) -> np.ndarray:
+    """Derivatives at xi of functions of which the highest is a Legendre polynomial on one segment, else 0.
 
     Being integrals from the root, they satisfy the conditions there and are smooth at breakpoints up to the
-    `integrations`-th derivative, which may jump; scaled so that these derivatives are orthonormal.
+    highest derivative, which may jump; scaled so that these derivatives are orthonormal.
     """
-
-    def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
-        segments = pairwise(ends)
-        values = [_integrate_on_segment(functions, a, b, xi, integrations - order) for a, b in segments]
-        return np.concatenate(values)
-
-    return evaluation
+    if order > derivatives:
+        raise ValueError("only as many derivatives as the basis was integrated")
+    segments = pairwise(ends)
+    return np.concatenate(
+        [_integrate_on_segment(functions, a, b, xi, derivatives - order) for a, b in segments]
+    )
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
     """Integrate n Legendre polynomials on [a, b] from the root, repeatedly; values at xi: shape (n, k)."""
-    if integrations < 0:
-        raise ValueError("only as many derivatives as the basis was integrated")
     half = (b - a) / 2
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
     inside, beyond = (xi >= a) & (xi <= b), xi > b
@@ -297,63 +277,24 @@ def clamped_free_roots(count: int) -> np.ndarray:
     return b
 
 
-def _clamped_free(functions: int, ends: np.ndarray) -> Evaluation:
-    """Clamped-free mode shapes divided by b^2, in a form that does not overflow or cancel at high modes."""
+def _eigenfunctions(
+    functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
+) -> np.ndarray:
+    """Clamped-free mode shapes divided by b^2; those of a rod, fixed and free, divided by b.
+
+    Their form does not overflow or cancel at high modes.
+    """
+    quarter = order * np.pi / 2  # the order-th derivative of cos and sin shifts their phase
+    if derivatives == 1:
+        b = np.pi * (np.arange(functions)[:, None] + 0.5)
+        return b ** (order - 1.0) * np.sin(b * xi + quarter)
     b = clamped_free_roots(functions)[:, None]
     decay = np.exp(-b)
     c = (-decay + np.sin(b) - np.cos(b)) / (1 - decay**2 + 2 * decay * np.sin(b))
-    s = 1 - 2 * decay * c
-
-    def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
-        quarter = order * np.pi / 2  # the order-th derivative of cos and sin shifts their phase
-        root_layer = (-1) ** order * (np.exp(-b * xi) - c * np.exp(-b * (xi + 1)))
-        tip_layer = c * np.exp(b * (xi - 1))
-        wave = -np.cos(b * xi + quarter) + s * np.sin(b * xi + quarter)
-        return b ** (order - 2.0) * (root_layer + tip_layer + wave)
-
-    return evaluation
+    root_layer = (-1) ** order * (np.exp(-b * xi) - c * np.exp(-b * (xi + 1)))
+    tip_layer = c * np.exp(b * (xi - 1))
+    wave = -np.cos(b * xi + quarter) + (1 - 2 * decay * c) * np.sin(b * xi + quarter)
+    return b ** (order - 2.0) * (root_layer + tip_layer + wave)
 
 
-def _clamped_free_rod(functions: int, ends: np.ndarray) -> Evaluation:
-    """Mode shapes of a rod fixed at the root and free at the tip, divided by their wave number."""
-    b = np.pi * (np.arange(functions)[:, None] + 0.5)
-
-    def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
-        return b ** (order - 1.0) * np.sin(b * xi + order * np.pi / 2)
-
-    return evaluation
-
-
-# A root that turns --------------------------------------------------------------------------------
-
-
-def _with_rotation(clamped: Callable[[int, np.ndarray], Evaluation]) -> Callable[..., Evaluation]:
-    """Extend a basis of clamped functions by the rigid rotation x/L, which stands first."""
-
-    def hinged(functions: int, ends: np.ndarray) -> Evaluation:
-        inner = clamped(functions, ends)
-
-        def evaluation(xi: np.ndarray, order: int) -> np.ndarray:
-            rotation = (xi, np.ones_like(xi), np.zeros_like(xi))[order]
-            return np.concatenate([rotation[None, :], inner(xi, order)])
-
-        return evaluation
-
-    return hinged
-
-
-_twice_integrated = partial(_integrated_legendre, integrations=2)
-
-# Functions of each basis by the conditions at the root.
-_BASES = {
-    "legendre": {
-        CLAMPED: _twice_integrated,
-        HINGED: _with_rotation(_twice_integrated),
-        FIXED: partial(_integrated_legendre, integrations=1),
-    },
-    "eigenfunctions": {
-        CLAMPED: _clamped_free,
-        HINGED: _with_rotation(_clamped_free),
-        FIXED: _clamped_free_rod,
-    },
-}
+_BASES = {"legendre": _integrated_legendre, "eigenfunctions": _eigenfunctions}

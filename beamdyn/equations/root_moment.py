@@ -24,8 +24,9 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.equations_of_motion import Equations, assemble_over
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
 
@@ -78,18 +79,10 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
     twist = scene.modelled_beam.root_twist
     by_direction = [math.cos(twist), math.sin(twist)][: equations.planes]
     moments = [_moment(scene, discretization, equations, direction) for direction in range(len(by_direction))]
-    return _combine(moments, by_direction)
-
-
-def _combine(moments: list[RootMoment], factors: list[float]) -> RootMoment:
-    """Sum of moments times factors."""
-    if factors == [1.0]:
+    if by_direction == [1.0]:
         return moments[0]
-    return RootMoment(
-        _weighted_sum([m.load for m in moments], factors),
-        _weighted_sum([m.position for m in moments], factors),
-        _weighted_sum([m.velocity for m in moments], factors),
-    )
+    parts = ([m.load for m in moments], [m.position for m in moments], [m.velocity for m in moments])
+    return RootMoment(*(_weighted_sum(part, by_direction) for part in parts))
 
 
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
@@ -169,8 +162,9 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     if spring == 0:
         return RootMoment({}, {}, {})
     full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
-    kept = _embed(full, equations)
-    rotation, share = _orthogonal_rotation(full, kept, full.blocks[name])
+    kept, M, rigid = _embed(full, equations), full.matrices[2]["unity"], _rotation(full, full.blocks[name])
+    share = np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rigid)
+    rotation = rigid - kept @ share  # minus its projection by the mass on the kept shapes
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
     def rows(order: int) -> dict[Quantity, np.ndarray]:
@@ -194,13 +188,6 @@ def _embed(full: Equations, equations: Equations) -> np.ndarray:
         end = full.blocks[name].stop
         kept[end - len(shape.matrix) : end, equations.blocks[shape.block]] = shape.matrix
     return kept
-
-
-def _orthogonal_rotation(full: Equations, kept: np.ndarray, field: slice) -> tuple[np.ndarray, np.ndarray]:
-    """Rigid rotation x/L about the root, minus its projection by the mass on the kept shapes; and that."""
-    M, rotation = full.matrices[2]["unity"], _rotation(full, field)
-    share = np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rotation)
-    return rotation - kept @ share, share
 
 
 def _rotation(full: Equations, field: slice) -> np.ndarray:

@@ -71,7 +71,10 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
     tangential = v1 * sin + v2 * cos + sample.acceleration * r
     a1 = cphi * radial - sphi * tangential
     a2 = sphi * radial + cphi * tangential
-    a1, a3 = _turn_by_precone(mount.precone, a1, v3)
+    a3 = v3
+    if mount.precone:
+        c, s = exact_cos_sin(mount.precone)
+        a1, a3 = c * a1 + s * v3, c * v3 - s * a1
     return RootMotion(
         unity=np.ones_like(omega),
         speed=omega,
@@ -81,11 +84,3 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
         root_transverse=cpsi * a2 + spsi * a3,
         root_across=cpsi * a3 - spsi * a2,
     )
-
-
-def _turn_by_precone(eta: float, a1: np.ndarray, a3: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Components along the beam and across it, from those in the plane of rotation and along its axis."""
-    if not eta:
-        return a1, a3
-    c, s = exact_cos_sin(eta)
-    return c * a1 + s * a3, c * a3 - s * a1

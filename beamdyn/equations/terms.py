@@ -12,8 +12,8 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Provenance, Result
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.effects import OmittedEffect, list_left_out
-from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term

@@ -114,17 +114,12 @@ class FrequencyResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
-        labels = [_label(h) for h in self.harmonics.tolist()]
+        labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]
         return plot_frequency_response(curves, value, labels, ax)
-
-
-def _label(harmonic: int) -> str:
-    """What a harmonic of the rotation is, in the legend of a picture; empty if there is one only."""
-    return {0: "", -1: "answer at f - n", 1: "answer at f + n"}[harmonic]
 
 
 @announced_of_plain_beam

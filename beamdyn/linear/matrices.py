@@ -229,18 +229,14 @@ def matrices(
 def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
     """Yield what limits the validity of the equations at the speed, in the words of natural modes there."""
     yield from warn_of_left_out(model.scene)
-    growing = _growing(model)
+    # How many of the lowest modes grow.
+    solver = model.model.solver
+    found = solver.solve(np.array([model.speed]), min(model.modes or _FEW, solver.size))
+    growing = int((np.real(found.eigenvalue) > 0).sum())
     if growing:
         end = f": {growing} mode(s) grow; see poles"
         yield Statement("unstable at ", Speeds(model.speed), end, kind=GROWING)
     yield from warn_of_rotation(model.model, model.speed)
-
-
-def _growing(model: ModelAtSpeed) -> int:
-    """How many of the lowest modes grow."""
-    solver = model.model.solver
-    found = solver.solve(np.array([model.speed]), min(model.modes or _FEW, solver.size))
-    return int((np.real(found.eigenvalue) > 0).sum())
 
 
 def listed(name: str, given: Any) -> tuple[Any, ...]:
@@ -376,7 +372,7 @@ def state_space(
     B = np.vstack([np.zeros_like(of_load), of_load])
     rows = [model.row(each) for each in observed]
     C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
-    correction = [[_correction(model, each, drive) for drive in drives] for each in observed]
+    correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
     system = StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
     vars(system)["error"] = pole_errors(model)
     return system
@@ -388,11 +384,6 @@ def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> Non
     if factor and any(isinstance(each, StrainAtRoot) for each in observed):
         bound = "the strain of a material that damps is not a function of the moment alone"
         raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
-
-
-def _correction(model: ModelAtSpeed, observation: Observation, drive: HarmonicDrive) -> float:
-    """What an output gains by the static deflection of what is left out, and by the base itself."""
-    return float(np.real(model.residual(observation, drive)[0]))
 
 
 def _with_mass(model: ModelAtSpeed) -> np.ndarray:

@@ -122,7 +122,7 @@ class RandomResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the density over frequency, both logarithmic."""
-        from beamdyn.common.plots.plots_over_frequency import plot_frequency_response
+        from beamdyn.common.plots.plots import plot_frequency_response
 
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
         label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"

@@ -138,7 +138,13 @@ def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float
     drives = model.drives(drive)
     for h, total in modal_sums(model, drives, seen).items():
         magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)
-        yield from _undamped_peaks(magnitude, top)
+        # Natural frequencies without damping, at which the response is infinite.
+        at = magnitude.undamped & (magnitude.places > 0) & (magnitude.places < top)
+        for pole, place in zip(magnitude.poles[at], magnitude.places[at].tolist(), strict=True):
+            step = _STEP * abs(pole) / _TURN
+            near, far = np.abs(magnitude.solved(np.array([place + step, place + 2 * step])))
+            if near > 1.5 * far > 0:
+                yield Peak(place, np.inf, 0.0, magnitude.harmonic, 0.0)
         yield from _damped_peaks(magnitude, top)
 
 
@@ -219,16 +225,6 @@ class HarmonicMagnitude:
         return 1j * _TURN * (f + self.shift)
 
 
-def _undamped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
-    """Natural frequencies without damping, at which the response is infinite."""
-    at = magnitude.undamped & (magnitude.places > 0) & (magnitude.places < top)
-    for pole, place in zip(magnitude.poles[at], magnitude.places[at].tolist(), strict=True):
-        step = _STEP * abs(pole) / _TURN
-        near, far = np.abs(magnitude.solved(np.array([place + step, place + 2 * step])))
-        if near > 1.5 * far > 0:
-            yield Peak(place, np.inf, 0.0, magnitude.harmonic, 0.0)
-
-
 def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
     """Maxima of a finite magnitude, with the minima beside them."""
     f = magnitude.samples(top)
@@ -245,19 +241,13 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
     tops, sides = at[k], np.array([limits[k], limits[k + 2]])
     size, beside = magnitude.size(tops), magnitude.size(sides.ravel()).reshape(2, -1)
     rounding = magnitude.rounding(tops)
-    width = _bandwidth(magnitude, tops, size, sides, beside)
+    # Widths between half-power frequencies [Hz] (p,); nan where a minimum beside a peak is not so low.
+    level = np.tile(size / np.sqrt(2), 2)
+    ends = _bisect(lambda f: magnitude.size(f) > level, np.tile(tops, 2), sides.ravel()).reshape(2, -1)
+    width = np.where((beside < size / np.sqrt(2)).all(axis=0), ends[1] - ends[0], np.nan)
     real = (size > (1 + _LEVEL) * beside.max(axis=0)) & (rounding < _NOISE)
     for j in np.flatnonzero(real).tolist():
         yield Peak(float(tops[j]), float(size[j]), float(width[j]), magnitude.harmonic, float(rounding[j]))
-
-
-def _bandwidth(
-    magnitude: HarmonicMagnitude, tops: np.ndarray, size: np.ndarray, sides: np.ndarray, beside: np.ndarray
-) -> np.ndarray:
-    """Widths between half-power frequencies [Hz] (p,); nan where a minimum beside a peak is not so low."""
-    level = np.tile(size / np.sqrt(2), 2)
-    ends = _bisect(lambda f: magnitude.size(f) > level, np.tile(tops, 2), sides.ravel()).reshape(2, -1)
-    return np.where((beside < size / np.sqrt(2)).all(axis=0), ends[1] - ends[0], np.nan)
 
 
 def _bisect(

@@ -230,26 +230,20 @@ def random_input(
         If a road is given another input, no wheel, or no speed; or the density is none.
     """
     if isinstance(psd, RoadRoughness):
-        return BaseMotion("n2"), _of_road(scene, speed, psd, given)
+        if given not in (None, "n2", BaseMotion("n2")):
+            raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
+        wheel = scene.motion
+        if not isinstance(wheel, RollingWheel):
+            bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
+            raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
+        refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
+        return BaseMotion("n2"), psd.acceleration(wheel.rolling_radius * speed)
     excitation = as_excitation("input", "bending" if given is None else given)
     if isinstance(psd, PowerSpectrum):
         return excitation, psd
     if not hasattr(psd, "__float__"):
         kind("psd", psd, PowerSpectrum, "PowerSpectrum(frequencies, values), a RoadRoughness, or a number")
     return excitation, positive("psd", psd, "", "give the density of white noise")
-
-
-def _of_road(
-    scene: Scene, speed: float, road: RoadRoughness, given: Excitation | str | None
-) -> PowerSpectrum:
-    if given not in (None, "n2", BaseMotion("n2")):
-        raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
-    wheel = scene.motion
-    if not isinstance(wheel, RollingWheel):
-        bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
-        raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
-    refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
-    return road.acceleration(wheel.rolling_radius * speed)
 
 
 def highest_frequency(spectrum: PowerSpectrum | float) -> float:

@@ -54,6 +54,7 @@ class CutQuadrature:
 
     @property
     def _ends(self) -> np.ndarray:
+        """Ends of the cells, the stations among them."""
         return np.unique(np.concatenate([self.cells.ends, self.stations.xi]))
 
 
@@ -116,18 +117,14 @@ class CutSpace(SampledSpace):
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate the `order`-th derivatives by x/L at xi (k,), without delta functions: shape (n, k)."""
-        cut, moved = self.quadrature.stations.xi[:, None], self._are_outboard(xi)
+        stations = self.quadrature.stations
+        cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
+        moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut
         flat = np.zeros_like(moved)
         parts = [] if self.space is None else [self.space.evaluate(xi, order)]
         if self.derivatives == 2:
             parts.append((self.length * (xi - cut) * moved, self.length * moved, flat)[order])
         return np.concatenate([*parts, moved if order == 0 else flat])
-
-    def _are_outboard(self, xi: np.ndarray) -> np.ndarray:
-        """1 for points xi (k,) that belong to the part outboard of each cut, else 0: shape (S, k)."""
-        stations = self.quadrature.stations
-        least = stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
-        return (np.asarray(xi) > least[:, None]).astype(float)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
         """Integrate the weight times the `order`-th derivatives of functions i and j."""
@@ -176,6 +173,16 @@ class CutSpaces:
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return self.functions(rows).product(self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return self.spaces.across
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of those of the coarser discretization."""
+        return self.spaces.fewer_across
 
     def shares_functions(self, other: CutSpaces) -> bool:
         """Whether the functions of the beam and the cuts are the same."""

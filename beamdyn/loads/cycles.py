@@ -115,7 +115,7 @@ class LoadCycles(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how many cycles exceed each range."""
-        from beamdyn.common.plots.plots_along_span import plot_exceedance
+        from beamdyn.common.plots.curves import plot_exceedance
 
         unit = UNITS[self.quantity] or "-"
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)

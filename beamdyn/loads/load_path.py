@@ -10,8 +10,7 @@ import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.mode_error import mode_error, through, with_neighbours
-from beamdyn.loads.stations import SpanStations, StationOutputs
+from beamdyn.loads.stations import SpanStations, StationOutputs, mode_error, through, with_neighbours
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.simulate import Transient
 from beamdyn.transient.system import ModalSystem
@@ -63,6 +62,7 @@ class LoadPath(FieldsOnly):
 
     @property
     def _system(self) -> ModalSystem:
+        """Equations of the run."""
         assert isinstance(self.run.system, ModalSystem)
         return self.run.system
 

@@ -27,6 +27,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import FieldEquations
+from beamdyn.equations.fields.plate import StackedSpace
 from beamdyn.equations.fields.stretch import Stretch
 from beamdyn.equations.quadrature import Cells
 from beamdyn.equations.root_motion import Quantity, RootMotion
@@ -115,6 +116,7 @@ class LoadRows:
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
+    """Differences of rows, of which those that are missing are 0."""
     names: dict[Quantity, None] = dict.fromkeys([*first, *second])
     return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
 
@@ -178,9 +180,19 @@ def _rows_of(
         for term in (t for t in each.terms if t.rows == field and t.factor and t.columns in equations.shapes):
             shape = equations.shapes[term.columns]
             total = by_order[term.order].setdefault(term.quantity, np.zeros((count, equations.size)))
-            kept = term.matrix[moved, : len(shape.matrix)] @ shape.matrix
+            of_trials = _trial_functions(assembled[term.columns].space)
+            kept = term.matrix[moved][:, of_trials] @ shape.matrix
             total[:, equations.blocks[shape.block]] -= term.factor * kept
     return LoadRows(load, *by_order)
+
+
+def _trial_functions(space: object) -> np.ndarray:
+    """Indices of the trial functions of a field among its functions with the virtual displacements."""
+    if isinstance(space, StackedSpace):  # of a plate: for each function across
+        starts = space.along.size * np.arange(space.across)
+        return (starts[:, None] + _trial_functions(space.along)).ravel()
+    assert isinstance(space, CutSpace)
+    return np.arange(space.trials)
 
 
 def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:

@@ -8,30 +8,226 @@ taken as independent, the largest is
 
 on the average (Davenport (1964), Proceedings of the Institution of Civil Engineers 28, 187-196), and with the
 probability p none passes s sqrt(2 ln(N / -ln p)).
+
+The rows of `beamdyn.loads.load_rows` give the loads by the state, and by the input itself, which acts on the
+part outboard of a cut at once: L = d u + P q + V q'.  With the residues q_k of the coordinates at the poles
+p_k, H(s) = d + sum (P + p_k V) q_k / (s - p_k).
+
+An input of a fixed direction acts on a turning beam by two harmonics, H+ at f + n and H- at f - n.  At the
+angle theta of rotation, which is 0 at the time 0, the mean square is
+
+    int (|H+|^2 + |H-|^2) S df + 2 Re exp(2 i theta) int H+ conj(H-) S df,
+
+whose mean over a turn is the first integral, and whose largest value has the second one's magnitude.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.linear.convergence import Refined, evaluate_accurately, model_of_few_modes
-from beamdyn.linear.inputs_outputs import Excitation
-from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.linear.inputs_outputs import BaseMotion, Excitation
+from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, highest_frequency
 from beamdyn.linear.transfer import check_stable
-from beamdyn.loads.load_fractions import LinearLoads, LoadFractions, largest_in_turn
+from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
+_TURN = 2 * np.pi
+_EPSILON = 2.0**-48  # rounding of a term, some units of the last digit
 _FIRST_MODES = 4  # of a model that tells the sizes of the outputs
 _OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors follow their logarithm
 _LEAST = math.e  # crossings that the formula is evaluated with, at least
-_TURN = 2 * np.pi
+
+
+@dataclass(frozen=True)
+class LoadFractions:
+    """Transfer functions H(s) = d + sum r_k / (s - p_k) of outputs at stations, at one harmonic.
+
+    Parameters
+    ----------
+    shift : float
+        Frequency of the response less that of the input [Hz].
+    direct : ndarray of complex, shape (S, K)
+        d of K outputs at S stations.
+    residues : ndarray of complex, shape (S, K, m)
+        r_k.
+    poles : ndarray of complex, shape (m,)
+        p_k [1/s], in the left half-plane.
+    """
+
+    shift: float
+    direct: np.ndarray
+    residues: np.ndarray
+    poles: np.ndarray
+
+    def at(self, s: np.ndarray) -> np.ndarray:
+        """Evaluate at s [1/s] (F,): shape (S, K, F)."""
+        return self.direct[..., None] + self.residues @ (1 / (s - self.poles[:, None]))
+
+    def mean_square(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
+        """Mean square (S, K) of the outputs, or with the order 2 of their rates."""
+        by_pole, constant = self._parts(spectrum, order)
+        return constant + 2 * np.real(by_pole).sum(axis=-1)
+
+    def rounding(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
+        """Rounding error of `mean_square` (S, K), whose parts may cancel."""
+        by_pole, constant = self._parts(spectrum, order)
+        return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
+
+    def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
+        """Terms of the mean square by pole (S, K, m), whose real parts count twice, and its constant term."""
+        between = 1 / (-self.poles - np.conj(self.poles)[:, None])
+        conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
+        integrals = pole_integrals(spectrum, self._mu, self.shift, order)
+        by_pole = self.residues * conjugate * (integrals.by_pole / (2j * np.pi))
+        return by_pole, np.abs(self.direct) ** 2 * integrals.whole
+
+    def together_with(self, other: LoadFractions, spectrum: PowerSpectrum) -> np.ndarray:
+        """Integral of H conj(H') S over the frequency of the input, with H' of `other`: shape (S, K)."""
+        mu, conjugate = self._mu, np.conj(other._mu)
+        r, d = self.residues / (2j * np.pi), self.direct
+        other_r, other_d = np.conj(other.residues / (2j * np.pi)), np.conj(other.direct)
+        between = 1 / (mu - conjugate[:, None])
+        at_own = r * (other_d[..., None] + other_r @ between)
+        at_other = other_r * (d[..., None] - r @ between.T)
+        of_own, of_other = (pole_integrals(spectrum, each) for each in (mu, conjugate))
+        return d * other_d * of_own.whole + at_own @ of_own.by_pole + at_other @ of_other.by_pole
+
+    @property
+    def _mu(self) -> np.ndarray:
+        """Poles over the frequency of the input [Hz], shape (m,)."""
+        return self.poles / (2j * np.pi) - self.shift
+
+
+@dataclass(frozen=True)
+class LinearLoads:
+    """Loads at stations of a linear model: transfer functions from an excitation, and steady loads.
+
+    Parameters
+    ----------
+    model : ModelAtSpeed
+        The model.
+    stations : SpanStations
+        The stations, S of them.
+    outputs : StationOutputs
+        The K outputs at each.
+    """
+
+    model: ModelAtSpeed
+    stations: SpanStations
+    outputs: StationOutputs
+
+    def fractions(self, excitation: Excitation) -> tuple[LoadFractions, ...]:
+        """Transfer functions from an excitation, one for each harmonic of the rotation.
+
+        Raises
+        ------
+        InvalidValue
+            If the excitation does not load the beam, or a mode is not damped.
+        """
+        free = damped_motion(self.model)
+        position, velocity = self._at_speed
+        found = []
+        for harmonic, drive in self.model.drives(excitation).items():
+            q = residues(free, drive.load)
+            seen = position @ q + (velocity @ q) * free.poles
+            shift = harmonic * self.model.speed / _TURN
+            found.append(LoadFractions(shift, self._direct(drive), seen, free.poles))
+        return (*found,)
+
+    def _direct(self, drive: HarmonicDrive) -> np.ndarray:
+        """Outputs (S, K) of a unit input itself, with the accelerations that it causes."""
+        rows, by_force = self._rows
+        total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
+        if drive.force is None:
+            return total
+        (at, direction), planes = drive.force, self.model.equations.planes
+        xi, inboard = self.stations.xi, self.stations.inboard
+        outboard = (xi < at) | (inboard & (xi == at))
+        loads = np.zeros((len(xi), 1 + 2 * planes))  # of a unit force on the parts outboard of it alone
+        loads[:, 1 + direction] = outboard
+        loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
+        return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)
+
+    def steady(self) -> tuple[np.ndarray, np.ndarray]:
+        """Outputs of steady rotation, and amplitudes of their variation by gravity within a turn.
+
+        Returns
+        -------
+        constant, amplitude : ndarray, shape (S, K)
+            At rest gravity counts in the constant outputs, as at the angle of rotation 0.
+        """
+        (rows, _), model, vectors = self._rows, self.model, self.model.equations.vectors
+        position, velocity = self._at_speed
+        zero, unloaded = np.zeros(rows.shape), np.zeros(model.equations.size)
+        static = np.linalg.solve(model.K, _sum(self._values(vectors), vectors, unloaded))
+        constant, amplitude = position @ static + _sum(self._values(rows.load), rows.load, zero), zero
+        accelerations = BaseMotion("n2").accelerations(model.scene.mount, model.speed)
+        for harmonic, given in accelerations.items() if model.scene.gravity else ():
+            s = 1j * harmonic * model.speed
+            load = _sum(given, vectors, unloaded)
+            q = np.linalg.solve(s**2 * model.M + s * model.C + model.K, load)
+            moved = position @ q + s * (velocity @ q)
+            output = model.scene.gravity * (_sum(given, rows.load, zero) + moved)
+            if harmonic:
+                amplitude = amplitude + np.abs(output)
+            else:
+                constant = constant + np.real(output)
+        return constant, amplitude
+
+    @cached_property
+    def _rows(self) -> tuple[LoadRows, np.ndarray]:
+        """Rows without accelerations, and the outputs (S, K, n) of a unit force on each coordinate."""
+        model, n = self.model, self.model.equations.size
+        rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
+        acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
+        flat = np.linalg.solve(model.M.T, acceleration.reshape(-1, n).T).T
+        by_force = np.einsum("spk,skn->spn", self.outputs.matrix, flat.reshape(acceleration.shape))
+        return rows.in_motion(model.equations).through(self.outputs.matrix), by_force
+
+    @cached_property
+    def _at_speed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Outputs (S, K, n) by coordinates and velocities, in steady rotation."""
+        rows, _ = self._rows
+        zero = np.zeros((*rows.shape, self.model.equations.size))
+        position, velocity = (_sum(self._values(row), row, zero) for row in (rows.position, rows.velocity))
+        return position, velocity
+
+    def _values(self, by_quantity: Mapping[Quantity, np.ndarray]) -> dict[Quantity, np.ndarray]:
+        """Values in steady rotation of the quantities of the root's motion that count."""
+        root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
+        return {name: getattr(root, name) for name in by_quantity}
+
+
+def _sum(
+    values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
+) -> np.ndarray:
+    """Sum of arrays times the values of the quantities of the root's motion."""
+    return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
+
+
+def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum) -> np.ndarray:
+    """Mean square (S, K) at the angle of rotation at which it is largest."""
+    total = sum(each.mean_square(spectrum) for each in fractions)
+    if len(fractions) == 1:
+        return np.asarray(total)
+    forward, backward = sorted(fractions, key=lambda each: -each.shift)
+    return total + 2 * np.abs(forward.together_with(backward, spectrum))
+
+
+# Statistics ----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
 from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, random_input, warn_of_band
-from beamdyn.loads.load_fractions import LoadFractions
 from beamdyn.loads.load_statistics import (
     InputAndOutputs,
+    LoadFractions,
     RandomStatistics,
     error_of_largest,
     expected_factor,
@@ -105,7 +105,7 @@ class RandomLoads(SpanLoads):
         return self._of(quantity, self.statistics_error.rms)
 
     def rms_in_turn(self, quantity: str = "strain") -> np.ndarray:
-        """The same at the angle of rotation at which it is largest, shape (S, k)."""
+        """Root mean square at the angle of rotation at which it is largest, shape (S, k)."""
         return self._of(quantity, self.statistics.rms_in_turn)
 
     def mean(self, quantity: str = "strain") -> np.ndarray:

@@ -36,7 +36,7 @@ REMEDIES = {
 
 
 class Case(NamedTuple):
-    """What the first axis of the arrays is, its unit, and the field that has its values."""
+    """First axis of the arrays: its name, its unit, and the field that has its values."""
 
     name: str
     unit: str
@@ -239,7 +239,7 @@ class SpanLoads(Result):
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
         """Draw values (C, S, k) of a quantity along the span, if the result has it."""
-        from beamdyn.common.plots.plots_along_span import plot_along_span
+        from beamdyn.common.plots.curves import plot_along_span
 
         self.check_known(quantity)
         named = self.components(quantity)
@@ -257,7 +257,7 @@ def with_unit(quantity: str) -> str:
 
 @dataclass(frozen=True)
 class AskedLoads:
-    """What is asked for along the span of a scene, from which the results of all kinds are made.
+    """Stations and outputs that are asked for along the span, from which results of all kinds are made.
 
     Parameters
     ----------

@@ -11,7 +11,6 @@ import numpy as np
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.mode_error import mode_error, with_neighbours
 from beamdyn.loads.span_loads import (
     SPEEDS,
     AskedLoads,
@@ -20,15 +19,28 @@ from beamdyn.loads.span_loads import (
     refuse_large_deflection,
     with_unit,
 )
-from beamdyn.loads.stations import UNITS, Positions, SectionPoints, SpanStations, StationOutputs
+from beamdyn.loads.stations import (
+    UNITS,
+    Positions,
+    SectionPoints,
+    SpanStations,
+    StationOutputs,
+    mode_error,
+    with_neighbours,
+)
 from beamdyn.scene.motion import Line
-from beamdyn.steady.excitation_phases import check_steady_state, expand_quantities, name_line
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import Pair, generate_harmonics, list_harmonics
+from beamdyn.steady.periodic_system import (
+    Pair,
+    check_steady_state,
+    expand_quantities,
+    generate_harmonics,
+    list_harmonics,
+    name_line,
+)
 from beamdyn.steady.response import SteadyResponse
-from beamdyn.steady.tip_lines import combine_pairs
-from beamdyn.steady.vibration import vibration_of
+from beamdyn.steady.vibration import combine_pairs, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

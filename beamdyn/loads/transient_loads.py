@@ -165,7 +165,7 @@ class TransientLoads(SpanLoads):
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
-        from beamdyn.common.plots.plots_along_span import plot_load_over_time
+        from beamdyn.common.plots.curves import plot_load_over_time
 
         values, labels = self.values(quantity)[:, station], self.components(quantity)
         label = f"{quantity} at {self.x[station]:.6g} m [{UNITS[quantity] or '-'}]"

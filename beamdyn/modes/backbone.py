@@ -14,15 +14,15 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, real
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.elastica import DeflectedState
-from beamdyn.equations.root_motion import RootMotion, root_motion
-from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -128,9 +128,9 @@ def backbone(
     if not (s.imag > 0 and s.real <= 0):
         bound = f"it does not vibrate about the equilibrium at {speeds[0]:g} rad/s"
         raise InvalidValue("mode", mode, bound, 'another speed or Physics(branch="bent")')
-    found = [FreeVibration.of(model, float(speeds[0]), mode) for model in (solution.model, solution.coarse)]
+    models = solution.model, solution.model.coarser
+    found = [FreeVibration.of(model, float(speeds[0]), mode) for model in models]
     k, coarse = (each.coefficient(SMALL / 2) for each in found)
-    names = str(solution.model.discretization), str(solution.coarse.discretization)
     return Backbone(
         speed=float(speeds[0]),
         mode=mode,
@@ -138,7 +138,7 @@ def backbone(
         coefficient=k,
         error=abs(k - coarse) + abs(k - found[0].coefficient(SMALL)),
         warnings=tuple(found[0].warnings()),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        provenance=provenance_of(solution, start),
         scene=scene,
     )
 
@@ -193,13 +193,10 @@ class FreeVibration:
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
         """Dynamic stiffness (n, n) at a multiple of the frequency."""
-        state, w = self.state, harmonic * self.omega
-        return self._stiffness + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
-
-    @property
-    def _stiffness(self) -> np.ndarray:
-        pencil = self.state.linearized().steady()
-        return pencil.K0 + self.speed**2 * pencil.K2
+        state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
+        return (
+            pencil.K0 + self.speed**2 * pencil.K2 + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
+        )
 
     def _shift(self, eps: float) -> float:
         """Change of the angular frequency over eps^2 [rad/s]."""
@@ -219,13 +216,9 @@ class FreeVibration:
             np.real(np.sum([(1j * h * self.omega) ** k * wave for h, wave in waves.items()], axis=0))
             for k in range(3)
         )
-        elastica = self.state.elastica
-        return elastica.at(self.state.q + q).work(rate, acceleration, self._root)
-
-    @property
-    def _root(self) -> RootMotion:
-        sample = MotionSample.steady(np.full(_SAMPLES, self.speed))
-        return root_motion(self.state.elastica.linear.mount, sample)
+        elastica, sample = self.state.elastica, MotionSample.steady(np.full(_SAMPLES, self.speed))
+        root = root_motion(elastica.linear.mount, sample)
+        return elastica.at(self.state.q + q).work(rate, acceleration, root)
 
 
 def _harmonic(samples: np.ndarray, harmonic: int) -> np.ndarray:

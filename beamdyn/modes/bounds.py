@@ -1,7 +1,6 @@
 """Guaranteed bounds, from below and above, of the natural frequencies of bending, and of critical speeds.
 
-The theorem is that of `beamdyn.modes.split`, for coupled planes of `beamdyn.modes.coupled_split`; here,
-heads grow until the bounds hardly narrow.
+The theorem is that of `beamdyn.modes.residual_bound`; here, the Ritz part grows until they hardly narrow.
 """
 
 from __future__ import annotations
@@ -19,14 +18,12 @@ from beamdyn.common.results.one_line import listed, spanned, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.coupled_head import MOST_MOMENTS
-from beamdyn.modes.coupled_split import CoupledSplit
 from beamdyn.modes.flexibility import bound_flexibility
-from beamdyn.modes.head import basis, most_functions, segments_with_functions
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.modes.planes import refuse_uncovered, separate_planes
-from beamdyn.modes.split import Enclosure, Split
+from beamdyn.modes.residual_bound import CoupledEnclosure, Enclosure, PlaneEnclosure
+from beamdyn.modes.ritz_part import MOST_MOMENTS, basis, most_functions, segments_with_functions
 from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
@@ -130,8 +127,25 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     check_scene(scene)
     unresolved, scene = scene, plain_physics(scene)
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
-    _check_input(scene, speed, modes)
-    lower, upper, method = _enclose_planes(scene, speed, modes)
+    refuse_uncovered(scene, speed)
+    check_speeds(speed, "speed")
+    planes = separate_planes(scene, speed != 0)
+    parts = (most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)
+    most = min(parts, default=MOST_MOMENTS)
+    if modes > most:
+        raise ValueError(
+            f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
+            "degree of its properties, the less"
+        )
+    enclosed = [_enclose(plane, speed, modes) for plane in planes or (scene,)]
+    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
+    lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
+    upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
+    method = max((ritz for _, _, ritz in enclosed), key=lambda ritz: ritz.functions)
+    speeds = np.array([speed])  # at which rotation may bend the beam too far for the model that is bounded
+    tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
+    deflection = np.linalg.norm(tips, axis=1)
+    bent = warn_of_static_deflection(deflection, scene.beam.length, speeds)
     low, high = _frequency(lower, -8), _frequency(upper, 8)
     return FrequencyBounds(
         speed=speed,
@@ -141,7 +155,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         upper_squared=upper,
         width=high / low - 1,
         how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
-        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *_warn_of_bending(scene, speed)),
+        warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *bent),
         provenance=Provenance(__version__, str(method), "its complement", perf_counter() - start),
         scene=scene,
     )
@@ -159,47 +173,6 @@ def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.n
     return np.where(np.isinf(lowest), np.nan, lowest)
 
 
-def _enclose_planes(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of the squared angular frequencies, and the last and largest basis."""
-    planes = separate_planes(scene, speed != 0)
-    if not planes:
-        return _enclose_scaled(_enclose_coupled, scene, speed, modes)
-    enclosed = [_enclose_scaled(_enclose, plane, speed, modes) for plane in planes]
-    lower, upper, bases = zip(*enclosed, strict=True)
-    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
-    low, high = _lowest(lower, modes, -np.inf), _lowest(upper, modes, np.inf)
-    return low, high, max(bases, key=lambda ritz: ritz.functions)
-
-
-def _enclose_scaled(
-    enclose: Callable, scene: Scene, speed: float, modes: int
-) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of the squared angular frequencies by those of the scaled problem, and the last basis."""
-    scaled, time = _nondimensional(scene)
-    lower, upper, ritz = enclose(scaled, speed * time, modes)
-    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
-
-
-def _check_input(scene: Scene, speed: float, modes: int) -> None:
-    refuse_uncovered(scene, speed)
-    check_speeds(speed, "speed")
-    planes = separate_planes(scene, speed != 0)
-    parts = (most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)
-    most = min(parts, default=MOST_MOMENTS)
-    if modes > most:
-        raise ValueError(
-            f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
-            "degree of its properties, the less"
-        )
-
-
-def _warn_of_bending(scene: Scene, speed: float) -> Iterator[Statement]:
-    """Yield a warning if rotation bends the beam too far for the model whose frequencies are bounded."""
-    speeds = np.array([speed])
-    tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
-    yield from warn_of_static_deflection(np.linalg.norm(tips, axis=1), scene.beam.length, speeds)
-
-
 def _widen(values: np.ndarray, units: int) -> np.ndarray:
     """Move values up (units > 0) or down (units < 0) by a number of rounding units."""
     return values + units * _EPS * np.abs(values)
@@ -211,24 +184,21 @@ def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
 
 
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
-    missing, unstable, undecided = np.isnan(lower), upper <= 0, (lower <= 0) & (upper > 0)
-    if missing.any():
-        why = "the functions left out could not be bounded, even with the largest basis"
-        yield Statement(f"no lower bound of mode(s) {_list_modes(missing)}: {why}", kind=NO_ANSWER)
-    if unstable.any():
-        said = f"mode(s) {_list_modes(unstable)} are unstable: see the bounds of the squares"
-        yield Statement(said, kind=GROWING)
-    if undecided.any():
-        said = (
-            f"mode(s) {_list_modes(undecided)} may be stable or not: the bounds of the squares enclose zero"
-        )
-        yield Statement(said, kind=GROWING)
-
-
-def _list_modes(mask: np.ndarray) -> str:
-    """List the numbers of the masked modes in words."""
-    numbers = np.flatnonzero(mask) + 1
-    return ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
+    missing = (
+        "no lower bound of ",
+        ": the functions left out could not be bounded, even with the largest basis",
+    )
+    unstable = "", " are unstable: see the bounds of the squares"
+    undecided = "", " may be stable or not: the bounds of the squares enclose zero"
+    for mask, kind, (begin, end) in (
+        (np.isnan(lower), NO_ANSWER, missing),
+        (upper <= 0, GROWING, unstable),
+        ((lower <= 0) & (upper > 0), GROWING, undecided),
+    ):
+        numbers = np.flatnonzero(mask) + 1
+        if len(numbers):
+            few = ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
+            yield Statement(f"{begin}mode(s) {few}{end}", kind=kind)
 
 
 def _nondimensional(scene: Scene) -> tuple[Scene, float]:
@@ -236,20 +206,17 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip = _nondimensional_tip(beam.tip or TipMass(0.0), m * length, length)
+    tip, unit = beam.tip or TipMass(0.0), m * length  # of mass
+    moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
+    tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)
-    lumps = tuple(PointMass(x, lump / (m * length)) for x, lump in zip(xi, lumped, strict=True))
+    lumps = tuple(PointMass(x, lump / unit) for x, lump in zip(xi, lumped, strict=True))
     scaled = Beam(1.0, mass, stiffness, tip=tip, point_masses=lumps)
     if scene.physics.planes == 2 and beam.second_bending_stiffness is not None:
         second = beam.second_bending_stiffness.scaled(1 / e)
         scaled = replace(scaled, second_bending_stiffness=second, twist=beam.twist)
     mount = replace(scene.mount, radius=scene.mount.radius / length)
     return Scene(scaled, mount, physics=scene.physics), length**2 * float(np.sqrt(m / e))
-
-
-def _nondimensional_tip(tip: TipMass, mass: float, length: float) -> TipMass:
-    moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
-    return TipMass(tip.mass / mass, tip.offset / length, *(j / (mass * length**2) for j in moments))
 
 
 def bound_critical_speed(scene: Scene) -> float:
@@ -264,48 +231,44 @@ def bound_critical_speed(scene: Scene) -> float:
     proved, most, segments = 0.0, most_functions(scaled.beam), segments_with_functions(scaled.beam)
     for total in _PROOF_SIZES:
         size = min(most, max(6, total // segments))
-        split = Split(scaled, size, 1.0, flexibility)
-        proved = max(proved, _prove_stiff(split))
+        split = PlaneEnclosure(scaled, size, 1.0, flexibility)
+        softening = float(np.maximum(-split.spin, 0) @ split.tails)
+        largest = min(1 / max(softening, _EPS), split.ritz_critical_speed**2)
+        for squared in largest * _SHARES:
+            form = split.stiffness_form(squared)
+            if form is not None and np.isfinite(form).all() and np.linalg.eigvalsh(form)[0] >= 0:
+                proved = max(proved, float(squared))
+                break
         if proved >= _CLOSE * split.ritz_critical_speed**2:
             break
     return float(_widen(np.sqrt(np.array(proved)), -8) / time)
-
-
-def _prove_stiff(split: Split) -> float:
-    """Largest squared speed, of a descending list, for which the stiffness is proved positive; 0 if none."""
-    softening = float(np.maximum(-split.spin, 0) @ split.tails)
-    largest = min(1 / max(softening, _EPS), split.ritz_critical_speed**2)
-    for squared in largest * _SHARES:
-        form = split.stiffness_form(squared)
-        if form is not None and np.isfinite(form).all() and np.linalg.eigvalsh(form)[0] >= 0:
-            return float(squared)
-    return 0.0
 
 
 # The search ---------------------------------------------------------------------------------------
 
 
 def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of z in one plane, and the last basis."""
-    flexibility = bound_flexibility(scene.beam.bending_stiffness)
-    lower, upper, functions = _narrow(
-        lambda size: Split(scene, size, speed, flexibility), _sizes(scene.beam, modes), modes, _NARROW
-    )
-    return lower, upper, basis(scene.beam, functions)
-
-
-def _enclose_coupled(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of z in two coupled planes, and the last basis; none where 1/EI could not be bounded."""
-    beam = scene.beam
-    assert beam.second_bending_stiffness is not None
-    first, second = map(bound_flexibility, (beam.bending_stiffness, beam.second_bending_stiffness))
-    if first is None or second is None:
-        return np.full(modes, np.nan), np.full(modes, np.nan), Ritz(1, "moments")
-    sizes = _numbers_of_moments(modes)
-    lower, upper, moments = _narrow(
-        lambda size: CoupledSplit(scene, size, speed, (first, second)), sizes, modes, _RESOLVED
-    )
-    return lower, upper, Ritz(moments, "moments")
+    """Bounds of the squared angular frequencies in one plane, or in two coupled ones, and the last basis."""
+    scaled, time = _nondimensional(scene)
+    beam, speed = scaled.beam, speed * time
+    first = bound_flexibility(beam.bending_stiffness)
+    if scene.physics.planes == 1:
+        sizes = _growing(max(6, (16 + 2 * modes) // segments_with_functions(beam)), most_functions(beam))
+        lower, upper, functions = _narrow(
+            lambda size: PlaneEnclosure(scaled, size, speed, first), sizes, modes, _NARROW
+        )
+        ritz = basis(beam, functions)
+    else:
+        assert beam.second_bending_stiffness is not None
+        second = bound_flexibility(beam.second_bending_stiffness)
+        if first is None or second is None:
+            return np.full(modes, np.nan), np.full(modes, np.nan), Ritz(1, "moments")
+        both, sizes = (first, second), _growing(min(MOST_MOMENTS, 12 + 2 * modes), MOST_MOMENTS)
+        lower, upper, moments = _narrow(
+            lambda size: CoupledEnclosure(scaled, size, speed, both), sizes, modes, _RESOLVED
+        )
+        ritz = Ritz(moments, "moments")
+    return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
 def _narrow(
@@ -326,17 +289,8 @@ def _narrow(
     return lower, upper, size
 
 
-def _sizes(beam: Beam, modes: int) -> Iterator[int]:
-    """Yield growing numbers of functions on each segment."""
-    return _growing(max(6, (16 + 2 * modes) // segments_with_functions(beam)), most_functions(beam))
-
-
-def _numbers_of_moments(modes: int) -> Iterator[int]:
-    """Yield growing numbers of bending moments in each direction."""
-    return _growing(min(MOST_MOMENTS, 12 + 2 * modes), MOST_MOMENTS)
-
-
 def _growing(size: int, most: int) -> Iterator[int]:
+    """Yield growing numbers of functions."""
     while size < most:
         yield size
         size = 4 * size // 3

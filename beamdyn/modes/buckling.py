@@ -40,18 +40,45 @@ with S_1 = int rho A x + m (L + eps).  If F(x) < 0, the beam is unstable at ever
 
 **Rotary inertia** of sections that tilt out of the plane of rotation, and a tip body with a product of
 inertia between both planes, may lower F without limit in a bend of no length.  Where F without them is
-positive, `beamdyn.modes.toppling` says below which speed they buckle nothing, usually one at which the
-axial strain of the beam has passed 1 %, where linear theory ends.
+positive, the last section says below which speed they buckle nothing, usually one at which the axial strain
+of the beam has passed 1 %, where linear theory ends.
 
 **String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
 decides; it converges fast, as without bending stiffness there are no thin layers.
+
+**Toppling.**  Let F0 be the form of above for a slender beam, and E twice the energy of bending and of
+the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
+it), the tensor I of their rotary inertia and that of the tip body, B, rotation adds to F0
+
+    -int (I33 theta3^2 + I23 theta2 theta3) + B23 theta2 theta3 at the tip
+    + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
+
+in which B33 theta3^2 at the tip counts to F0.  With the compliance C(x), the integral of the sections' from
+the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what rotation adds is at least -r E per
+squared speed, with
+
+    r = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
+
+with the smaller EI at x.  **If F0 >= 0, no speed below r^(-1/2) is critical.**  For a uniform beam that is
+2^(1/2) times the speed of sound in its material, over the length.
+
+At a hinge C is infinite.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
+mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If S = int N - 2 int I33 > 0,
+
+    r = 2 e int I33 + A^2 / (4 S) + A e^(1/2) + G,    G = (int g^2 C22 / EI)^(1/2),
+    A = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
+
+With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
+
+Precone eta multiplies all but B23 by cos^2 eta <= 1, and adds sin^2 eta I to the form, which is not negative;
+B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a short bend are not used then.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import eigh
@@ -60,14 +87,8 @@ from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.fields.transverse import plane_components
 from beamdyn.equations.mass import axial_tension, gram_by_mass, moments_about_root
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.toppling import (
-    least_toppling_speed,
-    strain_limit_comes_first,
-    topples_in_slender_limit,
-)
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
-from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
@@ -75,6 +96,10 @@ _ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
 _SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
 _RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
+_CELLS = 2000  # of the midpoint rule on all segments together
+_MARGIN = 1.01  # for its error
+_LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
+_ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 
 
 @dataclass(frozen=True)
@@ -105,130 +130,73 @@ def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module."""
     if (turning := _least_turning(scene)) < 0:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
-    by_plane = [_decide_in_plane(form) for form in _SpinForm.of_planes(scene)]
-    found = next((b for b in by_plane if b.exists), None) or next(
-        (b for b in by_plane if b.exists is None), None
-    )
-    if found is not None:
-        return found
-    if math.isfinite(toppling := least_toppling_speed(scene)):
-        return _decide_toppling(scene, toppling)
+    beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # 0 without precone
+    if scene.physics.planes == 1:
+        cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
+        tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
+        by_plane = [_decide_in_plane(beam, a, cos2 + slope2, sin2 - slope2, tilt)]
+    else:
+        (d, n), B = map(np.array, plane_components(scene)), centrifugal_inertia(tip, beam.tip_twist)
+        tilts = -slope2 * float(d @ B @ d), (1.0 - slope2) * float(n @ B @ n)
+        by_plane = [
+            _decide_in_plane(beam, a, 1.0 + slope2, -slope2, tilts[0]),
+            _decide_in_plane(beam, a, slope2, 1.0 - slope2, tilts[1]),
+        ]
+    for exists in (True, None):
+        if found := [each for each in by_plane if each.exists is exists]:
+            return found[0]
+    if (toppling := _decide_toppling(scene)) is not None:
+        return toppling
     if turning == 0:
-        return Buckling(
-            False, "the rotation stiffens the beam against every deflection but a turn about its hinge"
-        )
+        why = "the rotation stiffens the beam against every deflection but a turn about its hinge"
+        return Buckling(False, why)
     return by_plane[0]
 
 
-def _decide_toppling(scene: Scene, none_below: float) -> Buckling:
-    """Decide where the rotation stiffens the beam, but for the inertia of what tilts."""
-    why = (
-        "the rotation stiffens the beam; only the rotary inertia of what tilts out of the plane can buckle it"
-    )
-    exists = True if topples_in_slender_limit(scene) else None
-    return Buckling(exists, why, math.inf if strain_limit_comes_first(scene) else None, none_below)
+def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
+    """Decide for a slender beam in one plane, at last by the string: if its lowest eigenvalue > 1, F >= 0.
 
-
-def _decide_in_plane(form: _SpinForm) -> Buckling:
-    """Decide for a slender beam in one plane."""
-    if form.tension_at_root < 0 or form.tension_at_tip < 0:
-        return Buckling(True, "the rotation compresses a part of the beam")
-    if form.toppling < 0 or (form.toppling == 0 and form.coupling):
-        return Buckling(True, "the rotation topples the tip body, however stiff the beam")
-    if form.stiffens:
-        return Buckling(False, "the rotation stiffens the beam against every deflection")
-    return _decide_by_string(form)
-
-
-@dataclass(frozen=True)
-class _SpinForm:
-    """The form F of a scene.
-
-    Parameters
-    ----------
-    beam : Beam
-        The beam.
-    inward : float
-        a [m].
-    cos_squared : float
-        c^2, above 1 in the plane of rotation with precone.
-    tip_mass : float
-        m [kg].
-    tension_at_root, tension_at_tip : float
-        N(0) and N(L) [kg m].
-    toppling : float
-        T_22 [kg m2].
-    coupling : float
-        -T_12 [kg m].
-    tip_determinant : float
-        Determinant of T, times L / m [kg m3].
+    The numbers are the distance a of the root from the axis, against the direction of the beam [m], c^2 and
+    s^2, and what is said of J_e - J_1 [kg m2].
     """
+    L, tip = beam.length, beam.tip or TipMass(0.0)
+    m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
+    n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
+    lump = float(lumped[xi > 1 - _SHORTEST].sum())
+    at_root, at_tip = _sum(n_b, -a * n_a), _sum((m + lump) * L, m * eps, -(m + lump) * a)
+    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)  # T_22
+    coupling = cos2 * m * eps  # -T_12
+    if at_root < 0 or at_tip < 0:
+        return Buckling(True, "the rotation compresses a part of the beam")
+    if toppling < 0 or (toppling == 0 and coupling):
+        return Buckling(True, "the rotation topples the tip body, however stiff the beam")
+    determinant = _sum(  # of T, times L / m
+        *(tilt * v for v in (sin2 * L, eps, -a)), *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a))
+    )
+    # With T_22 = 0, T_12 is 0, too, and T_11 has the sign of the tension at the tip.
+    pulled = a <= min(0.0, (1 - cos2) * L) and (toppling == 0 or determinant >= 0)
+    if cos2 == 0 or pulled:
+        return Buckling(False, "the rotation stiffens the beam against every deflection")
+    end_mass = cos2 * m + (coupling**2 / toppling if coupling else 0.0)  # c^2 m (1 + c^2 m eps^2 / T_22)
+    coarse, fine = (_lowest_of_string(beam, a, cos2, end_mass, size) for size in _STRING_SIZES)
+    if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
+        return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
+    if fine - 1 > _RESOLVED * (coarse - fine) + _ROUNDING * _STRING_SIZES[-1]:
+        return Buckling(False, "the tension by rotation stiffens the beam more than rotation softens it")
+    return Buckling(None, "tension stiffens the beam by as much as rotation softens it, within the error")
 
-    beam: Beam
-    inward: float
-    cos_squared: float
-    tip_mass: float
-    tension_at_root: float
-    tension_at_tip: float
-    toppling: float
-    coupling: float
-    tip_determinant: float
 
-    @classmethod
-    def of_planes(cls, scene: Scene) -> Iterator[_SpinForm]:
-        """Yield the form of a beam in one plane, or those in the plane of rotation and out of it."""
-        beam, tip, a = scene.modelled_beam, scene.beam.tip or TipMass(0.0), _inward(scene)
-        cosine, sine = exact_cos_sin(scene.mount.precone)
-        slope2 = (sine / cosine) ** 2  # 0 without precone
-        B = centrifugal_inertia(tip, beam.tip_twist)
-        if scene.physics.planes == 1:
-            cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
-            tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
-            yield cls.of(beam, a / cosine, cos2 + slope2, sin2 - slope2, tilt)
-            return
-        d, n = map(np.array, plane_components(scene))
-        yield cls.of(beam, a / cosine, 1.0 + slope2, -slope2, -slope2 * float(d @ B @ d))
-        yield cls.of(beam, a / cosine, slope2, 1.0 - slope2, (1.0 - slope2) * float(n @ B @ n))
-
-    @classmethod
-    def of(cls, beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> _SpinForm:
-        """Compute the numbers of a beam that bends in one plane; `tilt` is what is said of J_e - J_1."""
-        L, tip = beam.length, beam.tip or TipMass(0.0)
-        m, eps, reach = tip.mass, tip.offset, L + tip.offset - a
-        n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
-        xi, lumped = beam.lumps
-        lump = float(lumped[xi > 1 - _SHORTEST].sum())
-        return cls(
-            beam=beam,
-            inward=a,
-            cos_squared=cos2,
-            tip_mass=m,
-            tension_at_root=_sum(n_b, -a * n_a),
-            tension_at_tip=_sum((m + lump) * L, m * eps, -(m + lump) * a),
-            toppling=_sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps),
-            coupling=cos2 * m * eps,
-            tip_determinant=_sum(
-                *(tilt * v for v in (sin2 * L, eps, -a)),
-                *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a)),
-            ),
-        )
-
-    @property
-    def stiffens(self) -> bool:
-        """Whether F >= 0 is known without the string."""
-        if min(self.tension_at_root, self.tension_at_tip, self.toppling) < 0:
-            return False
-        flat = self.toppling == 0  # then T_12 is 0, too, and T_11 has the sign of the tension at the tip
-        if self.cos_squared == 0:
-            return True
-        pulled = self.inward <= min(0.0, (1 - self.cos_squared) * self.beam.length)
-        return pulled and (flat or self.tip_determinant >= 0)
-
-    @property
-    def end_mass(self) -> float:
-        """Mass c^2 m (1 + c^2 m eps^2 / T_22) at the end of the string [kg]."""
-        swing = self.coupling**2 / self.toppling if self.coupling else 0.0
-        return self.cos_squared * self.tip_mass + swing
+def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: int) -> float:
+    """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
+    space = Ritz(max(2, size // (len(beam.breakpoints) - 1))).spaces(beam).functions(FIXED)
+    n_a, n_b = axial_tension(beam)
+    tension = space.gram(n_b, 1) - a * space.gram(n_a, 1)
+    end, length = space.end(0), beam.length
+    spin = cos2 * length * gram_by_mass(beam, space)
+    spin += end_mass * length * np.outer(end, end)
+    return float(1 / eigh(spin, tension, eigvals_only=True)[-1])
 
 
 def _sum(*terms: float) -> float:
@@ -252,56 +220,104 @@ def _least_turning(scene: Scene) -> float:
     hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
         return math.inf
-    tip = scene.beam.tip or TipMass(0.0)
+    beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
     _, first, second = moments_about_root(scene.beam)
-    reach = scene.beam.length + tip.offset
-    d, n = plane_components(scene)
-    cosine, sine = exact_cos_sin(scene.mount.precone)
+    reach = beam.length + tip.offset
+    (d, n), (cosine, sine) = map(np.array, plane_components(scene)), exact_cos_sin(scene.mount.precone)
+    B = centrifugal_inertia(tip, beam.tip_twist)
+    for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
+        B[i, j] -= beam.length * float(inertia.outboard_integral()(np.zeros(1))[0])
+    turned = np.outer(n, n @ B)
+    of_bodies = cosine**2 * (turned + turned.T) / 2 - sine**2 * B
     by_turn = (cosine**2 - sine**2) * np.outer(n, n) - sine**2 * np.outer(d, d)
-    tilting = _tilting_resistance(scene) + by_turn * (second + tip.mass * reach**2)
+    tilting = of_bodies + by_turn * (second + tip.mass * reach**2)
     form = tilting - cosine * _inward(scene) * (first + tip.mass * reach) * np.eye(2)
     least = float(np.linalg.eigvalsh(form[np.ix_(hinges, hinges)])[0])
     size = float(np.abs(tilting).max() + abs(_inward(scene)) * (first + tip.mass * reach))
     return least if abs(least) > _ROUNDING * size else 0.0
 
 
-def _tilting_resistance(scene: Scene) -> np.ndarray:
-    """Form (2, 2) of the spin of tip body and sections in a rigid turn [kg m2]."""
-    beam = scene.modelled_beam
-    B = centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist)
-    for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
-        B[i, j] -= beam.length * _integral(inertia)
-    n = np.array(plane_components(scene)[1])
-    turned = np.outer(n, n @ B)
-    cosine, sine = exact_cos_sin(scene.mount.precone)
-    return cosine**2 * (turned + turned.T) / 2 - sine**2 * B
+# The inertia of what tilts --------------------------------------------------------------------------
 
 
-def _integral(profile: Profile) -> float:
-    """Integral over x/L."""
-    return float(profile.outboard_integral()(np.zeros(1))[0])
+def _decide_toppling(scene: Scene) -> Buckling | None:
+    """Decide where the rotation stiffens the beam, but for the inertia of what tilts; None without any.
 
-
-# The string ---------------------------------------------------------------------------------------
-
-
-def _decide_by_string(form: _SpinForm) -> Buckling:
-    """Compare the lowest eigenvalue of the string with 1, above which F >= 0."""
-    coarse, fine = (_lowest_of_string(form, size) for size in _STRING_SIZES)
-    if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
-        return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
-    if fine - 1 > _RESOLVED * (coarse - fine) + _ROUNDING * _STRING_SIZES[-1]:
-        return Buckling(False, "the tension by rotation stiffens the beam more than rotation softens it")
-    return Buckling(None, "tension stiffens the beam by as much as rotation softens it, within the error")
-
-
-def _lowest_of_string(form: _SpinForm, size: int) -> float:
-    """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
-    beam, segments = form.beam, len(form.beam.breakpoints) - 1
-    space = Ritz(max(2, size // segments)).spaces(beam).functions(FIXED)
+    Integrals are sums over n cells; tensors (n, 2, 2) have the directions in the plane of rotation and out of
+    it.
+    """
+    beam, planes, mount, shear = scene.modelled_beam, scene.physics.planes, scene.mount, scene.physics.shear
+    ends = np.array(beam.breakpoints)
+    per_segment = max(20, _CELLS // (len(ends) - 1))
+    edges = np.unique(np.concatenate([np.linspace(a, b, per_segment + 1) for a, b in pairwise(ends)]))
+    xi, width = (edges[1:] + edges[:-1]) / 2, np.diff(edges) * beam.length
+    components = np.array(plane_components(scene))[:, :planes]
+    rotary = _tensor(beam, "rotary_inertia", xi, planes)
+    moments, products, body = _tilting_inertia(scene, components, rotary)
+    oblique = bool(body or products.any())
+    if not (oblique or moments.any()):
+        return None
+    bending, springs = (
+        _tensor(beam, "bending_stiffness", xi, planes),
+        np.array(mount.root_stiffnesses)[:planes],
+    )
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # by the smaller stiffness
+    root = np.diag([1 / k if k else 0.0 for k in springs])  # of hinges that matter there is no bound
+    by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
+    C = components @ (root + by_bending) @ components.T
+    torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
     n_a, n_b = axial_tension(beam)
-    tension = space.gram(n_b, 1) - form.inward * space.gram(n_a, 1)
-    end, length = space.end(0), beam.length
-    spin = form.cos_squared * length * gram_by_mass(beam, space)
-    spin += form.end_mass * length * np.outer(end, end)
-    return float(1 / eigh(spin, tension, eigvals_only=True)[-1])
+    at = np.append(xi[:-1], 1.0)  # with that at the tip in the last cell
+    tension = n_b(at) - _inward(scene) * n_a(at)
+    ratios = [np.inf]  # r by the two arguments
+    if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
+        both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
+        ratio = width @ (moments * C[:, 1, 1] + np.abs(products) * both)
+        twisting = np.sqrt(width @ (torque**2 * np.trace(C, axis1=1, axis2=2) * flexibility))
+        ratios.append(float(ratio + abs(body) * both[-1] + twisting))
+    in_plane = components[0][springs == 0] * oblique if planes == 2 else components[0]
+    spare = float(width @ tension) / (2 if shear else 1) - 2 * float(width @ moments)
+    if not mount.precone and spare > 0 and (tension >= 0).all() and not in_plane.any():
+        g2 = torque**2 * flexibility * width
+        A = float(width @ (np.abs(products) * slope) + abs(body) * slope[-1] + np.sqrt(g2.sum()))
+        e, G = float(width @ flexibility), float(np.sqrt(g2 @ slope**2))
+        ratio = 2 * float(width @ moments) * e + A**2 / (4 * spare) + A * e**0.5 + G
+        if shear:
+            smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
+            ratio = max(ratio, float((tension / smaller).max()))
+        ratios.append(ratio)
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # and speed of sound over the length
+    if inertia := float(width @ rotary[:, 0, 0]):
+        sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
+    speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
+    # In a bend of no length, sections or a tip body may surely topple whatever the stiffness.
+    free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
+    surely = not mount.precone and bool(shear or oblique or free_end)
+    why = "only the rotary inertia of what tilts out of the plane can buckle it"
+    return Buckling(surely or None, f"the rotation stiffens the beam; {why}", speed, slowest)
+
+
+def _tilting_inertia(
+    scene: Scene, components: np.ndarray, rotary: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """I33, or all of it in one plane, and I23 of the sections (n,) [kg m], and B23 of the tip body [kg m2].
+
+    Products are 0 within rounding; B23 is at least as large as the factor of its work where there is precone.
+    """
+    if scene.physics.planes == 1:
+        return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0
+    beam, turned = scene.modelled_beam, components @ rotary @ components.T
+    B = components @ centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist) @ components.T
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    body = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
+    oblique = np.abs(turned[:, 0, 1]) > _ALIGNED * np.abs(turned).max()
+    products = np.where(oblique, turned[:, 0, 1], 0.0)
+    return turned[:, 1, 1], products, body * max(1.0, abs(cosine**2 - 2 * sine**2))
+
+
+def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
+    """A property of the sections in the directions of bending: shape (n, planes, planes)."""
+    values = np.zeros((len(xi), planes, planes))
+    for (i, j), profile in section_tensor(beam, name).items():
+        values[:, i, j] = profile(xi)
+    return values

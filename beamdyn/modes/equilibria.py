@@ -23,15 +23,15 @@ from beamdyn.modes.modal.continuation import (
     follow,
     start_curve,
 )
-from beamdyn.modes.modal.deflected import DeflectedSolver
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
     choose_model,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -109,7 +109,7 @@ class Equilibrium(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam."""
-        from beamdyn.common.plots.plots_of_equilibria import plot_bent_beam
+        from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 
         across = _direction(self.scene)
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
@@ -168,11 +168,21 @@ def equilibrium(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
-    solver, coarse = _solver(solution.model), _solver(solution.coarse)
+    solver, coarse = _solver(solution.model), _solver(solution.model.coarser)
     q = solver.equilibria(speeds)[0]
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
-    names = str(solution.model.discretization), str(solution.coarse.discretization)
+    remedy = 'branch="bent" asks for the stable one beside it'
+    unstable = Statement(
+        "the equilibrium is unstable at ",
+        Speeds(float(speeds[0])),
+        f": a small motion grows at {growth:.3g} 1/s; {remedy}",
+        kind=GROWING,
+        quantity="growth rate [1/s]",
+        value=growth,
+        limit=0.0,
+        remedy=remedy,
+    )
     return Equilibrium(
         speed=float(speeds[0]),
         branch=scene.physics.branch,
@@ -181,24 +191,10 @@ def equilibrium(
         error=float(error) + _ROUNDING * scene.beam.length,
         stable=growth <= 0,
         growth_rate=max(growth, 0.0),
-        warnings=() if growth <= 0 else (_describe_unstable(growth, float(speeds[0])),),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        warnings=() if growth <= 0 else (unstable,),
+        provenance=provenance_of(solution, start),
         scene=scene,
         model=solution.model,
-    )
-
-
-def _describe_unstable(growth: float, speed: float) -> Statement:
-    remedy = 'branch="bent" asks for the stable one beside it'
-    return Statement(
-        "the equilibrium is unstable at ",
-        Speeds(speed),
-        f": a small motion grows at {growth:.3g} 1/s; {remedy}",
-        kind=GROWING,
-        quantity="growth rate [1/s]",
-        value=growth,
-        limit=0.0,
-        remedy=remedy,
     )
 
 
@@ -306,7 +302,7 @@ class EquilibriumBranches(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        from beamdyn.common.plots.plots_of_equilibria import plot_branches
+        from beamdyn.common.plots.plots import plot_branches
 
         across, length = _direction(self.scene), self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
@@ -349,9 +345,17 @@ def equilibrium_branches(
     check_speeds(top, "top_speed")
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
     solver = _solver(model)
-    branches = [_straight(solver.load, top, scene)]
-    try:
-        branches.append(_bent(solver.load, top, scene))
+    load, rest = solver.load, np.zeros(solver.size)
+    if load.transverse:
+        branches = [_collect("straight", load, start_curve(load, rest, 0.0, 1.0), top, scene)]
+    else:
+        speeds = np.linspace(0, top, 101)
+        stable = np.array([np.linalg.eigvalsh(load.jacobian(rest, v**2))[0] >= 0 for v in speeds])
+        tips = np.tile(_in_space(load.elastica.tip(rest), scene), (len(speeds), 1))
+        branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
+    try:  # that beside it, from the top speed down and through its turning points
+        start_of_bent = start_curve(load, find_bent(load, top), top**2, -1.0)
+        branches.append(_collect("bent", load, start_of_bent, top, scene))
         warnings = ()
     except NoEquilibrium as error:
         warnings = (str(error),)
@@ -365,27 +369,14 @@ def equilibrium_branches(
     )
 
 
-def _straight(load: SteadyLoad, top: float, scene: Scene) -> EquilibriumBranch:
-    """The branch from rest."""
-    if load.transverse:
-        return _collect(
-            "straight", load, start_curve(load, np.zeros(load.elastica.size), 0.0, 1.0), top, scene
-        )
-    speeds, q = np.linspace(0, top, 101), np.zeros(load.elastica.size)
-    stable = [np.linalg.eigvalsh(load.jacobian(q, speed**2))[0] >= 0 for speed in speeds]
-    tips = np.tile(_in_space(load.elastica.tip(q), scene), (len(speeds), 1))
-    return EquilibriumBranch("straight", speeds, tips, np.array(stable), np.empty(0))
-
-
-def _bent(load: SteadyLoad, top: float, scene: Scene) -> EquilibriumBranch:
-    """The branch beside that from rest, from the top speed down and through its turning points."""
-    return _collect("bent", load, start_curve(load, find_bent(load, top), top**2, -1.0), top, scene)
-
-
 def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene) -> EquilibriumBranch:
     """The points of a branch until it passes the top speed, or the beam has made a turn."""
-    points, turning = [start], []
-    for point in _steps(load, start):
+    points, turning, curve = [start], [], follow(load, start, _FINE)
+    while True:
+        try:
+            point = next(curve)
+        except NotConverged:  # it cannot be followed further
+            break
         if point.p_rate * points[-1].p_rate < 0:
             turning.append(find_turning_point(load, points[-1], point))
             points.append(turning[-1])
@@ -403,13 +394,3 @@ def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene
         np.array([count_negative(load, point) == 0 for point in points]),
         np.sqrt([point.p for point in turning]),
     )
-
-
-def _steps(load: SteadyLoad, start: Point) -> Iterator[Point]:
-    """The points of a curve, as far as it can be followed."""
-    curve = follow(load, start, _FINE)
-    while True:
-        try:
-            yield next(curve)
-        except NotConverged:
-            return

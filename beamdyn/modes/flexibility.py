@@ -1,6 +1,6 @@
 """Upper bounds of the flexibility 1/EI, and of what all deflections of unit energy do to the loads.
 
-All quantities are nondimensional, as in `beamdyn.modes.split`.
+All quantities are nondimensional, as in `beamdyn.modes.residual_bound`.
 """
 
 from __future__ import annotations

@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import ascending, count
+from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.modes.modal.discretization_choice import (
+    TOLERANCES,
     DiscretizationChoice,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model, plane_share
 from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import left_out_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
     check_speeds,
@@ -34,7 +34,6 @@ from beamdyn.scene.validity import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 from beamdyn.modes.modes import (
-    check_tolerance,
     drawn_order,
     frequency_of,
     provenance_of,
@@ -133,8 +132,9 @@ class Locus(StatesModelError):
     def _judged(self) -> np.ndarray:
         """Indices of the speeds at which the model error is computed (k,)."""
         changed = (self.status[1:] != self.status[:-1]).any(axis=1)
-        before = np.flatnonzero(changed)[:_MOST_JUDGED]
-        return np.unique(np.concatenate([_spread(len(self.speeds), _MOST_JUDGED), before, before + 1]))
+        before, count = np.flatnonzero(changed)[:_MOST_JUDGED], len(self.speeds)
+        spread = np.linspace(0, count - 1, min(count, _MOST_JUDGED)).round().astype(int)
+        return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
         """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
@@ -147,8 +147,7 @@ class Locus(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
-        from beamdyn.common.plots.plots import plot_locus
-        from beamdyn.common.plots.plots_by_plane import plot_locus_by_plane
+        from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 
         units = self.display_units
         if self.scene.physics.planes == 2:
@@ -206,12 +205,16 @@ def frequency_locus(
     check_scene(scene)
     speeds, modes = ascending("speeds", speeds), count("modes", modes)
     check_speeds(speeds)
-    tolerance = check_tolerance(tolerance)
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
     order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
-    s = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes]
-    error = _track_error(solution, order[:, :modes])
+    s, followed = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes], order[:, :modes]
+    # An extra mode gets the largest error at its speed.
+    errors = np.repeat(solution.error.max(axis=1, keepdims=True), followed.max(initial=0) + 1, axis=1)
+    errors[:, :modes] = solution.error[:, : errors.shape[1]]
+    error = np.take_along_axis(errors, followed, axis=1)
+    shares = plane_share(solution.model.equations, solution.eigen.vector)
     growth_rate = np.real(s) + 0.0
     deflection, strain = static_load(solution.model, speeds)
     return Locus(
@@ -222,7 +225,7 @@ def frequency_locus(
         error=error,
         status=status_of(s),
         eigenvalue=s,
-        plane_share=_track_shares(solution, order[:, :modes]),
+        plane_share=np.take_along_axis(shares, followed[:, :, None], axis=1),
         static_deflection=deflection,
         axial_strain=strain,
         warnings=tuple(
@@ -232,24 +235,5 @@ def frequency_locus(
         scene=scene,
         model=solution.model,
         ascending=solution.eigen.eigenvalue,
-        place=order[:, :modes],
+        place=followed,
     )
-
-
-def _spread(count: int, most: int) -> np.ndarray:
-    """Indices of at most so many of a number of speeds, evenly spread, the ends among them."""
-    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
-
-
-def _track_shares(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
-    """Shares of the planes (S, m, 2) in tracked order."""
-    shares = plane_share(solution.model.equations, solution.eigen.vector)
-    return np.take_along_axis(shares, order[:, :, None], axis=1)
-
-
-def _track_error(solution: EstimatedModes, order: np.ndarray) -> np.ndarray:
-    """Errors in tracked order; an extra mode gets the largest error at its speed."""
-    modes = solution.error.shape[1]
-    errors = np.repeat(solution.error.max(axis=1, keepdims=True), order.max(initial=0) + 1, axis=1)
-    errors[:, :modes] = solution.error[:, : errors.shape[1]]
-    return np.take_along_axis(errors, order, axis=1)

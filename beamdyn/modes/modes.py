@@ -119,7 +119,7 @@ class Modes(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects that the model leaves out would change in each frequency (m,)."""
-        from beamdyn.modes.model_error.of_modes import (
+        from beamdyn.modes.model_error.left_out_changes import (
             left_out_of_modes,
         )  # here, for the time that it takes to import
 
@@ -138,8 +138,7 @@ class Modes(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""
-        from beamdyn.common.plots.plots import plot_shapes
-        from beamdyn.common.plots.plots_by_plane import plot_shapes_by_plane
+        from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane
 
         x = np.linspace(0, self.scene.beam.length, 201)
         if self.scene.physics.planes == 2:
@@ -157,19 +156,14 @@ class Modes(StatesModelError):
 
     def labels(self) -> list[str]:
         """One line of text for each mode."""
-        return [
-            _label(i, f, g) for i, (f, g) in enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
-        ]
+        values = enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
+        return [f"mode {i}: {g:.4g} 1/s" if np.isnan(f) else f"mode {i}: {f:.5g} Hz" for i, (f, g) in values]
 
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
     """Directions that are drawn solid and dashed, and their names."""
     solid, names = first_drawn(scene), name_directions(scene)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
-
-
-def _label(i: int, frequency: float, growth: float) -> str:
-    return f"mode {i}: {growth:.4g} 1/s" if np.isnan(frequency) else f"mode {i}: {frequency:.5g} Hz"
 
 
 @announced
@@ -223,7 +217,7 @@ def natural_modes(
     check_scene(scene)
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
     check_speeds(speeds, "speed")
-    tolerance = check_tolerance(tolerance)
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     if scene.chooses_physics:
         from beamdyn.modes.model_error.effect_choice import (
             choose_physics,  # here, for the time that it takes to import
@@ -232,7 +226,12 @@ def natural_modes(
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
-    vectors = _with_positive_tip(equations.tips, solution.eigen.vector[0])
+    vectors = solution.eigen.vector[0]
+    tips = equations.tips @ vectors  # the larger becomes real and positive
+    larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
+    larger[larger == 0] = 1.0
+    vectors = vectors / (larger / np.abs(larger))
+    along, across = np.real([equations.tips[0] @ vectors, equations.tips[-1] @ vectors])
     deflection, strain = static_load(solution.model, speeds)
     growth_rate = np.real(s) + 0.0
     warnings = warn_of_modes(
@@ -245,8 +244,8 @@ def natural_modes(
         growth_rate=growth_rate,
         status=status_of(s),
         eigenvalue=s,
-        tip=np.real(equations.tip @ vectors),
-        tip_across=np.real(equations.tip_across @ vectors),
+        tip=along,
+        tip_across=across if equations.planes == 2 else np.zeros_like(along),
         plane_share=plane_share(equations, vectors[None])[0],
         load=np.real(equations.P(0) @ vectors),
         load_across=np.real(equations.P(1) @ vectors),
@@ -260,19 +259,6 @@ def natural_modes(
         vectors=vectors,
         model=solution.model,
     )
-
-
-def check_tolerance(tolerance: float | None) -> float | None:
-    """Refuse a tolerance that no model is chosen for."""
-    return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
-
-
-def _with_positive_tip(tips: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Give the vectors the phase at which the larger of their tip deflections is real and positive."""
-    each = tips @ vectors
-    deflection = each[np.abs(each).argmax(axis=0), np.arange(each.shape[1])]
-    deflection[deflection == 0] = 1.0
-    return vectors / (deflection / np.abs(deflection))
 
 
 def status_of(s: np.ndarray) -> np.ndarray:
@@ -326,5 +312,5 @@ def warn_of_modes(
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
     """How modes were found, since a start by `perf_counter` [s]."""
-    names = str(solution.model.discretization), str(solution.coarse.discretization)
+    names = str(solution.model.discretization), str(solution.model.coarser.discretization)
     return Provenance(__version__, *names, wall_time=perf_counter() - start)

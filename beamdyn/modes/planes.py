@@ -39,11 +39,24 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
         return ()
     if spinning and (scene.mount.precone or 0.0 not in aligned_cos_sin(scene.mount.bending_angle)):
         return ()
-    angle = scene.mount.bending_angle
-    across = angle - math.copysign(_QUARTER, angle)
-    section = _one_plane(scene.beam), _other_plane(scene.beam)
-    first, second = section if quarters % 2 == 0 else reversed(section)
-    return _bending(scene, first, angle), _bending(scene, second, across)
+    beam, tip, angle = scene.beam, scene.beam.tip, scene.mount.bending_angle
+    assert beam.second_bending_stiffness is not None
+    properties = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
+    unread = (*(f"second_{name}" for name in properties), *properties[1:], "twist")
+    first = replace(beam, **dict.fromkeys(unread))
+    if tip is not None:  # which turns about another axis in the second direction of the section
+        moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
+        tip = TipMass(tip.mass, tip.offset, *moments)
+    second = replace(first, bending_stiffness=beam.second_bending_stiffness, tip=tip, outer_fibre=None)
+    bent = zip(
+        (first, second)[:: -1 if quarters % 2 else 1],
+        (angle, angle - math.copysign(_QUARTER, angle)),
+        strict=True,
+    )
+    return tuple(
+        replace(scene, beam=each, mount=replace(scene.mount, bending_angle=at), physics=Physics())
+        for each, at in bent
+    )
 
 
 def refuse_uncovered(scene: Scene, speed: float) -> None:
@@ -55,7 +68,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         With the remedy.
     """
     bound = "bounds are known for an undamped slender beam on a clamped root"
-    for name in ("shear", "rotary_inertia", "stretch", "large_deflection"):
+    for name in ("shear", "rotary_inertia", "plate", "stretch", "large_deflection"):
         if getattr(scene.physics, name):
             raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
     if scene.damping_ratio:
@@ -68,21 +81,16 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
     for name, value in springs.items():
         if math.isfinite(value):
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
-    _refuse_coupled_lumps(scene, speed)
+    lumps = scene.beam.point_masses
+    if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
+        of_lumps = "bounds of two planes that twist or bending angle couples are known without point masses"
+        raise InvalidValue("point_masses", len(lumps), of_lumps, "leave them out, or model one plane")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
         gyroscopic = (
             "it couples the velocities of two planes, and bounds are of equations without such forces"
         )
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
-
-
-def _refuse_coupled_lumps(scene: Scene, speed: float) -> None:
-    """Refuse point masses on a beam whose two planes are coupled."""
-    lumps = scene.beam.point_masses
-    if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
-        bound = "bounds of two planes that twist or bending angle couples are known without point masses"
-        raise InvalidValue("point_masses", len(lumps), bound, "leave them out, or model one plane")
 
 
 def _quarter_turns(beam: Beam) -> int | None:
@@ -94,25 +102,3 @@ def _quarter_turns(beam: Beam) -> int | None:
     turned = {row[0] / _QUARTER for row in beam.twist.coefficients}
     whole = {round(c) for c in turned if abs(c - round(c)) <= RIGHT_ANGLE / _QUARTER * max(1.0, abs(c))}
     return whole.pop() if len(whole) == len(turned) == 1 else None
-
-
-def _one_plane(beam: Beam) -> Beam:
-    """The beam as it bends in the first direction of its section."""
-    unread = ("second_bending_stiffness", "twist", "shear_stiffness", "second_shear_stiffness")
-    inertia = ("rotary_inertia", "second_rotary_inertia")
-    return replace(beam, **dict.fromkeys((*unread, *inertia)))
-
-
-def _other_plane(beam: Beam) -> Beam:
-    """The beam as it bends in the second direction, where the tip body turns about another axis."""
-    assert beam.second_bending_stiffness is not None
-    tip = beam.tip
-    if tip is not None:
-        moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
-        tip = TipMass(tip.mass, tip.offset, *moments)
-    stiffness = beam.second_bending_stiffness
-    return replace(_one_plane(beam), bending_stiffness=stiffness, tip=tip, outer_fibre=None)
-
-
-def _bending(scene: Scene, beam: Beam, angle: float) -> Scene:
-    return replace(scene, beam=beam, mount=replace(scene.mount, bending_angle=angle), physics=Physics())

@@ -16,12 +16,11 @@ from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
-from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     choose_model,
 )
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
@@ -120,24 +119,39 @@ def setting_angle_limits(
         bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
         remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
-    _refuse_hinge(scene)
+    for name in ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]:
+        if getattr(scene.mount, name) == 0:
+            bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
+            raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
     if scene.mount.precone:
         bound = "only a beam that points outward has a precone, and the limits are setting angles of others"
         raise InvalidValue("precone", scene.mount.precone, bound, "leave it out", "rad")
-    top_speed = _check_top_speed(top_speed, bounded=isinstance(discretization, str))
+    bounded = isinstance(discretization, str) or not isinstance(top_speed, float) or top_speed != np.inf
+    if bounded:
+        remedy = (
+            "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
+        )
+        top_speed = positive("top_speed", top_speed, "rad/s", remedy)
+        check_speeds(top_speed, "top_speed")
     unresolved, scene = scene, plain_physics(scene)
     scene = replace(scene.undamped, physics=replace(scene.physics, stretch=False))
-    speeds = np.array([top_speed if np.isfinite(top_speed) else 0.0])
+    speeds = np.array([top_speed if bounded else 0.0])
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = choose_model(tangential, discretization, speeds, 1)
     first, second = _limits(model, top_speed)
-    coarse = model.coarser
-    coarse_limits = _limits(coarse, top_speed)
-    deflection = _static_deflection(scene, second, top_speed, model)
+    error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are those of the given basis
+    if bounded:
+        distances = np.subtract((first, second), _limits(coarse, top_speed))
+        error += float(np.nanmax([*np.abs(distances), 0.0]))
+    deflection = np.nan  # over the length, at the second limit
+    if bounded and not np.isnan(second):
+        mounted = replace(scene, mount=replace(scene.mount, setting_angle=second))
+        tip, _ = static_load(Model(mounted, model.discretization), speeds)
+        deflection = float(abs(tip[0]) / scene.beam.length)
     return SettingAngleLimits(
         first=first,
         second=second,
-        error=_limits_error(first, second, coarse_limits, top_speed) if model.exceeds_coarser else np.inf,
+        error=error if model.exceeds_coarser else np.inf,
         top_speed=top_speed,
         static_deflection=deflection,
         warnings=(*warn_of_plain(unresolved), *_limit_warnings(first, second, deflection)),
@@ -145,25 +159,6 @@ def setting_angle_limits(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
     )
-
-
-def _refuse_hinge(scene: Scene) -> None:
-    """Refuse a root that turns freely: there is no first frequency at rest that rises or falls."""
-    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
-    for name in names:
-        if getattr(scene.mount, name) == 0:
-            bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
-            raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
-
-
-def _check_top_speed(top_speed: float, bounded: bool) -> float:
-    """The top speed [rad/s], which may be infinite unless it is bounded."""
-    if not bounded and isinstance(top_speed, float) and top_speed == np.inf:
-        return top_speed
-    remedy = "a converged limit needs a finite top speed; discretization=Ritz(5, 'eigenfunctions') allows inf"
-    top_speed = positive("top_speed", top_speed, "rad/s", remedy)
-    check_speeds(top_speed, "top_speed")
-    return top_speed
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
@@ -175,52 +170,31 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
     first = _arccos(float(v @ A @ v), float(v @ B @ v))
     if np.isinf(top_speed):
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
-    return first, _second_limit(pencil, A, B, first, top_speed)
-
-
-def _limits_error(first: float, second: float, coarse: tuple[float, float], top_speed: float) -> float:
-    """Distance from the coarser model [rad]; at infinite speed the limits are those of the given basis."""
-    if np.isinf(top_speed):
-        return _ROUNDING
-    return float(np.nanmax([abs(first - coarse[0]), abs(second - coarse[1]), 0.0])) + _ROUNDING
-
-
-def _arccos(a: float, b: float) -> float:
-    return float(np.arccos(a / b)) if abs(a) <= abs(b) and b else np.nan
-
-
-def _second_limit(
-    pencil: SteadyPencil, A: np.ndarray, B: np.ndarray, first: float, top_speed: float
-) -> float:
-    """Setting angle [rad] at which the slope of the first squared frequency vanishes at the top speed."""
 
     def slope(phi: float) -> float:
+        """Slope of the first squared frequency at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)
 
     low = 0.0 if np.isnan(first) else first
     if slope(low) * slope(np.pi) >= 0:
-        return np.nan
-    return float(brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15))  # pyright: ignore[reportArgumentType]
+        return first, np.nan
+    root = brentq(slope, low, np.pi, xtol=1e-15, rtol=1e-15)  # pyright: ignore[reportArgumentType]
+    return first, float(root)
 
 
-def _static_deflection(scene: Scene, phi: float, top_speed: float, model: Model) -> float:
-    """Static tip deflection at a setting angle, relative to the length; nan if unknown."""
-    if np.isnan(phi) or np.isinf(top_speed):
-        return np.nan
-    mounted = replace(scene, mount=replace(scene.mount, setting_angle=phi))
-    deflection, _ = static_load(Model(mounted, model.discretization), np.array([top_speed]))
-    return float(abs(deflection[0]) / scene.beam.length)
+def _arccos(a: float, b: float) -> float:
+    return float(np.arccos(a / b)) if abs(a) <= abs(b) and b else np.nan
 
 
 def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[Statement]:
-    if np.isnan(first):
-        said = "no first limit: at rest the first frequency changes the same way at every setting angle"
-        yield Statement(said, kind=NO_ANSWER)
-    if np.isnan(second):
-        said = "no second limit: at the top speed the frequency changes the same way at every setting angle"
-        yield Statement(said, kind=NO_ANSWER)
+    for limit, said in (
+        (first, "no first limit: at rest the first frequency"),
+        (second, "no second limit: at the top speed the frequency"),
+    ):
+        if np.isnan(limit):
+            yield Statement(f"{said} changes the same way at every setting angle", kind=NO_ANSWER)
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text

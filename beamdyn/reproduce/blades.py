@@ -8,18 +8,10 @@ from typing import Any
 
 import numpy as np
 
+import beamdyn as bd
 from beamdyn.common.results.comparison import Comparison
-from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.published import load
-from beamdyn.reproduce.entries import PrintedValue
-from beamdyn.scene.beam import Beam
-from beamdyn.scene.mount import Mount
-from beamdyn.scene.physics import Physics
-from beamdyn.scene.profile import Table
-from beamdyn.scene.scene import Scene
-
-_NOT_MODELLED = "not all is modelled (10)"
-_TWO_PLANES = Physics(planes=2)
+from beamdyn.reproduce.entries import PrintedValue, compare_modes
 
 
 def stations(name: str) -> dict[str, Any]:
@@ -30,45 +22,47 @@ def stations(name: str) -> dict[str, Any]:
     return given | arrays
 
 
-def blade_scene(name: str, physics: Physics = _TWO_PLANES, twisted: bool = True) -> Scene:
+def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = True) -> bd.Scene:
     """The blade on its hub: it points outward and, where the twist is 0, the flap bends out of the plane."""
     data = stations(name)
 
-    def along(values: np.ndarray) -> Table:
-        return Table(data["stations"].tolist(), values.tolist())
+    def along(values: np.ndarray) -> bd.Table:
+        return bd.Table(data["stations"].tolist(), values.tolist())
 
-    beam = Beam.from_stiffness(
+    beam = bd.Beam.from_stiffness(
         data["length"],
         along(data["mass_per_length"]),
         along(data["flap_stiffness"]),
         second_bending_stiffness=along(data["edge_stiffness"]),
         twist=along(np.radians(-data["twist_deg"])) if twisted else None,  # docs/decks.md has the signs
     )
-    return Scene(beam, Mount(data["hub_radius"], math.pi, math.pi / 2), physics=physics)
+    mount = bd.Mount(data["hub_radius"], math.pi, math.pi / 2)
+    return bd.Scene(beam, mount, physics=physics or bd.Physics(planes=2))
+
+
+def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
+    """Compare the frequencies [Hz] that stand under a key with ours, each with the name of its blade."""
+    for row in load("blades")["blade"]:
+        if printed := row.get(key):
+            scene = blade_scene(row["name"], twisted=key != "frequency_without_twist")
+            modes = bd.natural_modes(scene, row["speed_rpm"] * math.pi / 30, len(printed), discretization)
+            for entry in compare_modes(f"{row['speed_rpm']:g} rpm", printed, modes.frequency, modes.error):
+                yield row["name"], entry
 
 
 def entries_of_blades(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the frequencies [Hz] of all blades, each under the title of its blade."""
-    for row in load("blades")["blade"]:
-        title, where = stations(row["name"])["title"], f"{row['speed_rpm']:g} rpm"
-        for key, twisted in (("frequency", True), ("frequency_without_twist", False)):
-            if printed := row.get(key):
-                modes = _modes(row, len(printed), discretization, twisted)
-                for i, text in enumerate(printed):
-                    error = float(modes.error[i] * modes.frequency[i])
-                    yield title, PrintedValue(where, i + 1, text, float(modes.frequency[i]), error)
+    for key in ("frequency", "frequency_without_twist"):
+        for name, entry in _compare_blades(key, discretization):
+            yield stations(name)["title"], entry
 
 
 def printed_by_bmodes() -> Iterator[Comparison]:
     """Compare with what BModes prints of its own blade, whose sections also twist and are offset [Hz]."""
-    for row in load("blades")["blade"]:
-        if printed := row.get("frequency_printed_by_bmodes"):
-            modes = _modes(row, len(printed), "ritz")
-            for i, text in enumerate(printed):
-                ours, error = float(modes.frequency[i]), float(modes.error[i] * modes.frequency[i])
-                decimals = len(text.partition(".")[2])
-                what = f"{row['speed_rpm']:g} rpm, mode {i + 1}"
-                yield Comparison(what, "BModes 3", float(text), ours, error, decimals, _NOT_MODELLED)
+    for _, entry in _compare_blades("frequency_printed_by_bmodes"):
+        what, decimals = f"{entry.where}, mode {entry.mode}", len(entry.printed.partition(".")[2])
+        numbers = float(entry.printed), entry.ours, entry.error, decimals
+        yield Comparison(what, "BModes 3", *numbers, "not all is modelled (10)")
 
 
 def notes() -> Iterator[str]:
@@ -78,8 +72,3 @@ def notes() -> Iterator[str]:
         "torsion, inertia and offsets of the sections: rotary inertia is worth at most 0.3 %, the rest is, "
         "by elimination, torsion, offsets and its formulation."
     )
-
-
-def _modes(row: dict[str, Any], count: int, discretization: str, twisted: bool = True) -> Modes:
-    scene = blade_scene(row["name"], twisted=twisted)
-    return natural_modes(scene, row["speed_rpm"] * math.pi / 30, count, discretization)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -57,18 +57,12 @@ class PrintedValue:
         """Whether the print is proven to err: ours is the third value, which bounds enclose apart from it."""
         if not self.exact:
             return False
-        printed, exact = float(self.printed), float(self.exact)
-        confirmed = abs(self.ours - exact) <= self.error + half_unit(self.exact)
-        return confirmed and abs(printed - exact) > self.rounding and self._is_enclosed()
-
-    def _is_enclosed(self) -> bool:
-        """Whether guaranteed bounds, if any, hold the third value and exclude what rounds to the print."""
-        if self.bounds is None:
-            return True
-        low, high = self.bounds
-        printed, slack = float(self.printed), half_unit(self.exact)
-        apart = low > printed + self.rounding or high < printed - self.rounding
-        return apart and low - slack <= float(self.exact) <= high + slack
+        printed, exact, slack = float(self.printed), float(self.exact), half_unit(self.exact)
+        if abs(self.ours - exact) > self.error + slack or abs(printed - exact) <= self.rounding:
+            return False
+        low, high = self.bounds or (exact, exact)
+        excluded = low > printed + self.rounding or high < printed - self.rounding
+        return excluded and low - slack <= exact <= high + slack
 
     @property
     def off_by(self) -> float:
@@ -82,7 +76,7 @@ class PrintedValue:
 
     @property
     def relative_deviation(self) -> float:
-        """Of ours from the print."""
+        """Deviation of ours from the print, over the print."""
         return abs(self.ours / float(self.printed) - 1)
 
     def cells(self) -> list[str]:
@@ -99,6 +93,14 @@ def half_unit(text: str) -> float:
     exponent = Decimal(text).as_tuple().exponent
     assert isinstance(exponent, int), f"{text} is a finite number"
     return 0.5 * 10.0**exponent
+
+
+def compare_modes(
+    where: str, printed: Iterable[object], ours: Iterable[float], errors: Iterable[float]
+) -> list[PrintedValue]:
+    """Compare the printed values of the modes of a row with ours, whose errors are relative."""
+    rows = enumerate(zip(map(str, printed), map(float, ours), map(float, errors), strict=False), 1)
+    return [PrintedValue(where, mode, text, value, error * abs(value)) for mode, (text, value, error) in rows]
 
 
 @dataclass(frozen=True)
@@ -142,39 +144,33 @@ class Summary:
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """Whether all agree, and how many do not, as the table says it."""
         if self.outside:
             return f"differs: {self.outside} value(s)"
-        if self.errata:
-            more = self.errata - self.last_digits
-            parts = _count(more, "erratum", "errata"), _count(self.last_digits, "last digit", "last digits")
-            return "agrees but " + ", ".join(part for part in parts if part)
-        return "agrees in all printed digits" if self.in_print else "agrees within error"
+        if not self.errata:
+            return "agrees in all printed digits" if self.in_print else "agrees within error"
+        more, last = self.errata - self.last_digits, self.last_digits
+        parts = f"{more} {'erratum' if more == 1 else 'errata'}", f"{last} last digit{'s' * (last != 1)}"
+        return "agrees but " + ", ".join(part for part in parts if not part.startswith("0 "))
 
     def cells(self) -> list[str]:
-        """Row of the table."""
+        """Row of the table of summaries."""
         numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
         return [self.source, self.discretization, str(self.values), *numbers, self.verdict]
-
-
-def _count(number: int, one: str, many: str) -> str:
-    """Number and noun; empty for none."""
-    return f"{number} {one if number == 1 else many}" if number else ""
 
 
 def summarize_entries(source: str, discretization: str, entries: Sequence[PrintedValue]) -> Summary:
     """Summarize the comparison of all values of a source."""
     right = [entry for entry in entries if not entry.is_erratum]
-    last_digits = sum(entry.is_erratum and abs(entry.off_by) < 1 for entry in entries)
     return Summary(
         source,
         discretization,
-        len(entries),
-        max(entry.rounding / float(entry.printed) for entry in entries),
-        max((entry.relative_deviation for entry in right), default=0.0),
-        max(entry.error / abs(entry.ours) for entry in entries),
-        sum(not entry.as_expected for entry in entries),
-        len(entries) - len(right),
-        last_digits,
-        all(entry.in_print for entry in right),
+        values=len(entries),
+        printed=max(entry.rounding / float(entry.printed) for entry in entries),
+        deviation=max((entry.relative_deviation for entry in right), default=0.0),
+        error=max(entry.error / abs(entry.ours) for entry in entries),
+        outside=sum(not entry.as_expected for entry in entries),
+        errata=len(entries) - len(right),
+        last_digits=sum(entry.is_erratum and abs(entry.off_by) < 1 for entry in entries),
+        in_print=all(entry.in_print for entry in right),
     )

@@ -1,9 +1,10 @@
-"""Comparison with the printed tables of other papers: every value, and errata with their proofs."""
+"""Comparison with the printed tables of other sources: every value, summaries, errata with their proofs."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,89 +12,85 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from rich.console import Group
 
+import beamdyn as bd
 from beamdyn.common.edge.tables import table
+from beamdyn.common.results.published import values_alone
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import FIXED, Discretization
-from beamdyn.equations.equations_of_motion import assemble_over
-from beamdyn.equations.fem import Fem
-from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.bounds import frequency_bounds
-from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load
 from beamdyn.reproduce.blades import entries_of_blades, stations
-from beamdyn.reproduce.entries import PrintedValue, Summary, summarize_entries
-from beamdyn.reproduce.others import nondimensional_scene
-from beamdyn.scene.beam import Beam
-from beamdyn.scene.mount import Mount
-from beamdyn.scene.physics import Physics
-from beamdyn.scene.scene import Scene
+from beamdyn.reproduce.entries import PrintedValue, Summary, compare_modes, summarize_entries
 
 PAPERS = ("bir_2009", "bir_2010", "hamza_cherif_houmat_2004", "ozdemir_kaya_2006", "code_aster")
 BLADES = ("iea_15", "nrel_5", "bmodes_test01")
 _DISCRETIZATIONS = {"Ritz": "ritz", "FE": "fem"}
 _STRETCHED: dict[str, tuple[Discretization, Discretization]] = {
-    "ritz": (Ritz(16), Ritz(24)),
-    "fem": (Fem(40), Fem(80)),
+    "ritz": (bd.Ritz(16), bd.Ritz(24)),
+    "fem": (bd.Fem(40), bd.Fem(80)),
 }
 _ROUNDING = 1e-13  # relative error of a converged stretch
 
+Entries = Mapping[str, Sequence[PrintedValue]]  # by their source
 Errata = Sequence[tuple[str, PrintedValue]]
+
+
+def _by_source(entries: Iterable[tuple[str, PrintedValue]]) -> Entries:
+    groups: dict[str, list[PrintedValue]] = {}
+    for source, entry in entries:
+        groups.setdefault(source, []).append(entry)
+    return groups
+
+
+def summarize(entries_by: Callable[[str], Entries]) -> list[Summary]:
+    """Summaries of entries by a discretization, for each source and discretization."""
+    found = {name: entries_by(discretization) for name, discretization in _DISCRETIZATIONS.items()}
+    sources = next(iter(found.values()))
+    return [summarize_entries(source, name, found[name][source]) for source in sources for name in found]
+
+
+# Tables of papers ------------------------------------------------------------------------------------
 
 
 def compare_papers() -> tuple[list[Summary], Errata]:
     """Compare all values: summaries by source and discretization, and the errata with their sources."""
-    summaries: list[Summary] = []
-    errata: dict[tuple[str, str, int], tuple[str, PrintedValue]] = {}
-    for source in all_entries("ritz"):
-        for name, discretization in _DISCRETIZATIONS.items():
-            entries = all_entries(discretization)[source]
-            summaries.append(summarize_entries(source, name, entries))
-            for entry in entries:
-                if entry.exact:
-                    errata.setdefault((source, entry.where, entry.mode), (source, entry))
-    return summaries, [*errata.values()]
+    found = all_entries(next(iter(_DISCRETIZATIONS.values())))
+    errata = [(source, entry) for source, entries in found.items() for entry in entries if entry.exact]
+    return summarize(all_entries), errata
 
 
 @cache
-def all_entries(discretization: str) -> Mapping[str, Sequence[PrintedValue]]:
-    """All values by their source."""
-    groups: dict[str, list[PrintedValue]] = {}
-    for paper in PAPERS:
-        for case in cases(paper):
-            groups.setdefault(case["name"], []).extend(entries_of_case(case, discretization))
-    for source, entry in (*_cable(discretization), *_stretch(discretization)):
-        groups.setdefault(source, []).append(entry)
-    for source, entry in entries_of_blades(discretization):
-        groups.setdefault(f"{source}, computed", []).append(entry)
-    return groups
+def all_entries(discretization: str) -> Entries:
+    """All values of papers and blades."""
+    rows = ((case, entries_of_case(case, discretization)) for paper in PAPERS for case in cases(paper))
+    return _by_source(
+        [
+            *((case["name"], entry) for case, entries in rows for entry in entries),
+            *_cable(discretization),
+            *_stretch(discretization),
+            *((f"{source}, computed", entry) for source, entry in entries_of_blades(discretization)),
+        ]
+    )
 
 
 def cases(paper: str) -> Iterator[dict[str, Any]]:
     """Cases of the tables of a paper: a row each, with what the rows of its table share.
 
-    Besides the keys of ``rotating_beams.toml`` they have ``where``, the row in words, ``factor`` of the
-    printed values over the nondimensional ones, and ``exact``, third values by the number of the mode.
+    Besides the keys of ``rotating_beams.toml`` they have ``where``, which names the row, ``factor`` of the
+    printed values over the nondimensional ones, and ``exact``, third values by the number of the mode. Mass
+    and stiffness are those of a rectangular section that tapers linearly, unless they are given.
     """
     for printed in load(paper).get("table", []):
         shared = {"factor": 1.0} | {key: value for key, value in printed.items() if key != "rows"}
         for row in printed["rows"]:
-            yield shared | {"where": _where(row), "exact": {}} | _section(row) | row
-
-
-def _where(row: Mapping[str, Any]) -> str:
-    if "gamma" in row:
-        return f"gamma {row['gamma']:g}"
-    return f"b {row['width_taper']:g}, h {row['thickness_taper']:g}"
-
-
-def _section(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Mass and stiffness of a rectangular section that tapers linearly, as polynomials in x/L."""
-    width = Polynomial([1.0, -row.get("width_taper", 0.0)])
-    thickness = Polynomial([1.0, -row.get("thickness_taper", 0.0)])
-    return {"mass": (width * thickness).coef, "stiffness": (width * thickness**3).coef}
+            taper = row.get("width_taper", 0.0), row.get("thickness_taper", 0.0)
+            width, thickness = (Polynomial([1.0, -share]) for share in taper)
+            section = {"mass": (width * thickness).coef, "stiffness": (width * thickness**3).coef}
+            where = f"gamma {row['gamma']:g}" if "gamma" in row else "b {:g}, h {:g}".format(*taper)
+            yield shared | {"where": where, "exact": {}} | section | row
 
 
 def beams() -> dict[str, str]:
-    """The beam of each table of the papers, in words, by the name of the table."""
+    """Which beam each table of the papers is of, by the name of the table."""
     papers = [load(name) for name in PAPERS]
     alone = [paper[key] for paper in papers for key in ("cable", "stretch") if key in paper]
     tables = [table for paper in papers for table in paper.get("table", [])]
@@ -101,57 +98,129 @@ def beams() -> dict[str, str]:
 
 
 def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[PrintedValue]:
-    """Compare the values of a case."""
-    scene, printed, factor = nondimensional_scene(dict(case)), case["frequency"], case["factor"]
-    modes = natural_modes(scene, case["gamma"], len(printed), discretization)
-    for i, text in enumerate(printed):
-        ours = float(factor * abs(modes.eigenvalue[i]))
-        exact = case["exact"].get(str(i + 1), "")
-        bounds = _guaranteed(scene, case["gamma"], i, factor) if exact else None
-        yield PrintedValue(case["where"], i + 1, text, ours, float(modes.error[i]) * ours, exact, bounds)
+    """Compare the values of a case.
 
-
-def _guaranteed(scene: Scene, speed: float, index: int, factor: float) -> tuple[float, float] | None:
-    """Guaranteed bounds of a frequency [rad/s], times a factor; None with stretch: no theorem covers it."""
-    if scene.physics.stretch:
-        return None
-    bounds = frequency_bounds(scene, speed, index + 1)
-    unit = 2 * math.pi * factor
-    return unit * float(bounds.lower[index]), unit * float(bounds.upper[index])
+    An erratum has guaranteed bounds too, but with stretch, which their theorem does not cover.
+    """
+    scene, printed, factor = nondimensional_scene(case), case["frequency"], case["factor"]
+    modes = bd.natural_modes(scene, case["gamma"], len(printed), discretization)
+    entries = compare_modes(case["where"], printed, factor * np.abs(modes.eigenvalue), modes.error)
+    for entry in entries:
+        exact, bounds = case["exact"].get(str(entry.mode), ""), None
+        if exact and not scene.physics.stretch:
+            found, unit = bd.frequency_bounds(scene, case["gamma"], entry.mode), 2 * math.pi * factor
+            bounds = unit * float(found.lower[entry.mode - 1]), unit * float(found.upper[entry.mode - 1])
+        yield replace(entry, exact=exact, bounds=bounds)
 
 
 def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the frequencies over speed of a hinged beam of hardly any stiffness with those of a cable."""
     cable = load("bir_2009")["cable"]
     speed, printed = cable["gamma"], cable["ratio"]
-    mount = Mount(0.0, math.pi, math.pi / 2, root_stiffness=0.0)
-    modes = natural_modes(
-        Scene(Beam.from_stiffness(1.0, 1.0, 1.0), mount), speed, len(printed), discretization
+    scene = bd.Scene(
+        bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi, math.pi / 2, root_stiffness=0.0)
     )
-    for i, text in enumerate(printed):
-        ours = float(abs(modes.eigenvalue[i])) / speed
-        yield cable["name"], PrintedValue(f"gamma {speed:g}", i + 1, text, ours, float(modes.error[i]) * ours)
+    modes = bd.natural_modes(scene, speed, len(printed), discretization)
+    ratios = np.abs(modes.eigenvalue) / speed
+    for entry in compare_modes(f"gamma {speed:g}", printed, ratios, modes.error):
+        yield cable["name"], entry
 
 
 def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the centrifugal stretch [m] with its closed form."""
-    given = load("code_aster")["stretch"]
+    given = values_alone(load("code_aster")["stretch"])
     area = 1e-4  # m2: any, as the stretch does not depend on it
-    density, modulus = given["density"]["value"], given["youngs_modulus"]["value"]
-    beam = Beam.from_stiffness(given["length"]["value"], density * area, 1.0, axial_stiffness=modulus * area)
-    coarse, fine = (tip_stretch(beam, given["speed"]["value"], d) for d in _STRETCHED[discretization])
+    mass, stiffness = given["density"] * area, given["youngs_modulus"] * area
+    beam = bd.Beam.from_stiffness(given["length"], mass, 1.0, axial_stiffness=stiffness)
+    coarse, fine = (tip_stretch(beam, given["speed"], d) for d in _STRETCHED[discretization])
     error = abs(fine - coarse) + _ROUNDING * abs(fine)
     yield given["name"], PrintedValue("tip", 1, given["stretch"], fine, error)
 
 
-def tip_stretch(beam: Beam, speed: float, discretization: Discretization) -> float:
+def tip_stretch(beam: bd.Beam, speed: float, discretization: Discretization) -> float:
     """Stretch of the tip [m] of a beam that points outward from the axis, at a steady speed [rad/s]."""
-    scene = Scene(beam, Mount(0.0, math.pi), physics=Physics(stretch=True))
+    scene = bd.Scene(beam, bd.Mount(0.0, math.pi), physics=bd.Physics(stretch=True))
     spaces = discretization.spaces(scene.modelled_beam)
     equations = assemble_over(scene, spaces)
     pencil = equations.steady().part(equations.places(["stretch"]))
     q = np.linalg.solve(pencil.K0 + speed**2 * pencil.K2, speed**2 * pencil.f2)
-    return float(spaces.functions(FIXED.against("axial_stiffness")).end(0) @ q)
+    return float(spaces.functions(FIXED._replace(stiffness="axial_stiffness")).end(0) @ q)
+
+
+# Tables of rotating and of twisted beams -----------------------------------------------------------------
+
+
+@cache
+def reference_entries(discretization: str) -> Entries:
+    """All values of the tables of rotating beams, their critical speeds, and twisted and stocky beams."""
+    data = load("rotating_beams")
+    critical = [case | {"source": "critical speeds, computed"} for case in data["critical"]]
+    known = [*data["case"], *(case for case in critical if np.isfinite(case["gamma"]))]
+    return _by_source(
+        (case["source"], replace(entry, printed=str(float(entry.printed))))  # without the zeros at its end
+        for case in (*known, *load("twisted_beams")["case"])
+        for entry in entries_of_reference(case, discretization)
+    )
+
+
+def entries_of_reference(case: Mapping[str, Any], discretization: str) -> list[PrintedValue]:
+    """Compare the values of a case of ``rotating_beams.toml`` or ``twisted_beams.toml``."""
+    scene = twisted_scene(case) if "planes" in case else nondimensional_scene(case)
+    if "frequency" not in case:
+        point = bd.critical_point(scene, discretization)
+        return compare_modes(case["name"], [case["gamma"]], [point.speed], [point.error])
+    modes = bd.natural_modes(scene, case["gamma"], len(case["frequency"]), discretization)
+    return compare_modes(case["name"], case["frequency"], np.abs(modes.eigenvalue), modes.error)
+
+
+def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
+    """Build the scene of a nondimensional case: root stiffness, root mass per length and length are 1.
+
+    Parameters
+    ----------
+    case : mapping
+        A ``case`` or ``critical`` of ``rotating_beams.toml``.
+
+    Returns
+    -------
+    Scene
+        Scene whose eigenvalues at gamma rad/s have the magnitude lambda.
+    """
+    delta, alpha = case["delta"], case.get("alpha")
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        mass_per_length=Polynomial(case["mass"]),
+        bending_stiffness=Polynomial(case["stiffness"]),
+        axial_stiffness=alpha and alpha**2,
+        tip=bd.TipMass(**case["tip"]) if "tip" in case else None,
+    )
+    mount = bd.Mount(abs(delta), 0.0 if delta < 0 else np.pi, float(np.radians(case["bending_angle_deg"])))
+    return bd.Scene(beam, mount, physics=bd.Physics(stretch=alpha is not None))
+
+
+def twisted_scene(case: Mapping[str, Any]) -> bd.Scene:
+    """Build the scene of a case of ``twisted_beams.toml``; its speed is gamma rad/s."""
+    names = ("second_bending_stiffness", "twist", "shear_stiffness", "rotary_inertia")
+    given: dict[str, Any] = {name: Polynomial(case[name]) for name in names if name in case}
+    beam = bd.Beam.from_stiffness(
+        1.0, Polynomial(case["mass_per_length"]), Polynomial(case["bending_stiffness"]), **given
+    )
+    angles = (float(np.radians(case[name])) for name in ("setting_angle_deg", "bending_angle_deg"))
+    shear, rotary = "shear_stiffness" in case, "rotary_inertia" in case
+    physics = bd.Physics(planes=case["planes"], shear=shear, rotary_inertia=rotary)
+    return bd.Scene(beam, bd.Mount(case["radius"], *angles), physics=physics)
+
+
+# As printed on the screen --------------------------------------------------------------------------------
+
+
+def summary_table(rows: Iterable[Summary]) -> Group:
+    """Table of summaries."""
+    heads = ("source", "by", "values", "printed to", "deviation", "error", "verdict")
+    title = (
+        "Beams and blades of other sources: the worst deviation, errata apart, and estimated error, relative"
+    )
+    return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
 
 
 def errata_table(errata: Errata) -> Group:

@@ -76,7 +76,7 @@ def noted(draw: Callable[[], Figure], result: Any) -> Callable[[], Figure]:
     """A function that draws a figure, with the notes of a result below it."""
 
     def made() -> Figure:
-        from beamdyn.common.plots.notes import note_below
+        from beamdyn.common.plots.axes_and_lines import note_below
 
         return note_below(draw(), notes_of(result))
 

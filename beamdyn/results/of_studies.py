@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from beamdyn.studies.campbell.diagram import Campbell
     from beamdyn.studies.result import Study
     from beamdyn.studies.sensitivities.result import Sensitivities
-    from beamdyn.studies.tradeoffs import Diagram, Tradeoff
+    from beamdyn.studies.tradeoffs.measurements import Diagram
+    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
 _MOST_ROWS = 30  # of a table of a study
 _DIGITS = 10  # most digits of a speed or frequency

@@ -102,9 +102,8 @@ class Beam(FieldsOnly, OneLine):
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
-        required = ("mass_per_length", "bending_stiffness")
         given = (name for name in OPTIONAL_PROPERTIES if getattr(self, name) is not None)
-        for name in (*required, *given):
+        for name in (*_REQUIRED, *given):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
             if name != "twist":
                 check_positive(name, getattr(self, name))
@@ -275,36 +274,28 @@ class Beam(FieldsOnly, OneLine):
             the section's radius of gyration would exceed the outer fibre or the length; or if the twist seems
             to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
-
-        def profile(name: str, value: Property | None) -> Profile | None:
-            return None if value is None else as_profile(name, value, breakpoints)
-
-        beam = cls(
-            length=size("length", length, "m"),
-            mass_per_length=as_profile("mass_per_length", mass_per_length, breakpoints),
-            bending_stiffness=as_profile("bending_stiffness", bending_stiffness, breakpoints),
-            axial_stiffness=profile("axial_stiffness", axial_stiffness),
-            outer_fibre=profile("outer_fibre", outer_fibre),
-            tip=tip,
-            second_bending_stiffness=profile("second_bending_stiffness", second_bending_stiffness),
-            twist=None if twist is None else to_profile("twist", twist, breakpoints),
-            shear_stiffness=profile("shear_stiffness", shear_stiffness),
-            second_shear_stiffness=profile(
-                "second_shear_stiffness",
-                shear_stiffness if second_shear_stiffness is None else second_shear_stiffness,
-            ),
-            rotary_inertia=profile("rotary_inertia", rotary_inertia),
-            second_rotary_inertia=profile("second_rotary_inertia", second_rotary_inertia),
-            point_masses=point_masses,
-            point_springs=point_springs,
-        )
-        warn_of_stiffness(
-            beam.length,
-            beam.mass_per_length,
-            beam.bending_stiffness,
-            beam.axial_stiffness,
-            beam.outer_fibre,
-        )
+        other = shear_stiffness if second_shear_stiffness is None else second_shear_stiffness
+        given = {
+            "mass_per_length": mass_per_length,
+            "bending_stiffness": bending_stiffness,
+            "axial_stiffness": axial_stiffness,
+            "outer_fibre": outer_fibre,
+            "second_bending_stiffness": second_bending_stiffness,
+            "twist": twist,
+            "shear_stiffness": shear_stiffness,
+            "second_shear_stiffness": other,
+            "rotary_inertia": rotary_inertia,
+            "second_rotary_inertia": second_rotary_inertia,
+        }
+        length = size("length", length, "m")
+        made = {
+            name: (to_profile if name == "twist" else as_profile)(name, value, breakpoints)
+            for name, value in given.items()
+            if value is not None or name in _REQUIRED
+        }
+        beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
+        bending, axial = beam.bending_stiffness, beam.axial_stiffness
+        warn_of_stiffness(length, beam.mass_per_length, bending, axial, beam.outer_fibre)
         warn_of_twist(beam.twist)
         return beam
 
@@ -328,8 +319,8 @@ class Beam(FieldsOnly, OneLine):
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions x/L where a property may jump or have a kink, or a mass stands, with the ends 0 and 1."""
-        names = (name for name in OPTIONAL_PROPERTIES if name != "outer_fibre")
-        profiles = (self.mass_per_length, self.bending_stiffness, *(getattr(self, name) for name in names))
+        names = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
+        profiles = (getattr(self, name) for name in names)
         ends = {b for p in profiles if p is not None for b in p.breakpoints}
         return merge_breakpoints(np.concatenate([[*ends], self.points]))
 
@@ -376,15 +367,9 @@ PROPERTY_UNITS = {  # of what varies along a beam, but for its twist
     "outer_fibre": "m",
 }
 
-OPTIONAL_PROPERTIES = (
-    "axial_stiffness",
-    "outer_fibre",
-    "second_bending_stiffness",
-    "twist",
-    "shear_stiffness",
-    "second_shear_stiffness",
-    "rotary_inertia",
-    "second_rotary_inertia",
+_REQUIRED = ("mass_per_length", "bending_stiffness")
+OPTIONAL_PROPERTIES = tuple(
+    f.name for f in fields(Beam) if f.name in {**PROPERTY_UNITS, "twist": "rad"} and f.name not in _REQUIRED
 )
 
 

@@ -168,13 +168,6 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
         for path, value in values.items()
         if path != SPEED and not path.startswith("beam.")
     }
-    _check_there(scene, values)
-    with _naming_paths(values):
-        return with_parts(scene, others | ({"beam": _beam_with(scene.beam, of_beam)} if of_beam else {}))
-
-
-def _check_there(scene: Scene, values: Mapping[str, float]) -> None:
-    """Refuse numbers in lists, or of the motion, that the scene does not have."""
     for path in values:
         if ("[" not in path and not is_of_motion(path)) or number_at(scene, path) is not None:
             continue
@@ -188,6 +181,8 @@ def _check_there(scene: Scene, values: Mapping[str, float]) -> None:
             whose, otherwise = "scene's motion", "give the scene a motion that has it"
         remedy = f"give one of {', '.join(alike)}" if alike else otherwise
         raise InvalidValue("vary", path, f"the {whose} has no such number", remedy)
+    with _naming_paths(values):
+        return with_parts(scene, others | ({"beam": _beam_with(scene.beam, of_beam)} if of_beam else {}))
 
 
 @contextmanager

@@ -27,6 +27,8 @@ class Physics:
         Shear deformation (Timoshenko): sections stay plane but need not be normal to the axis.
     rotary_inertia : bool
         Rotary inertia of the sections (Rayleigh).
+    plate : bool
+        Torsion and camber of a thin rectangular section (Kirchhoff plate), which a clamped root hinders.
     stretch : bool
         Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
     large_deflection : bool
@@ -61,6 +63,7 @@ class Physics:
     ] = 1
     shear: Annotated[bool, Described(meaning="shear deformation")] = False
     rotary_inertia: Annotated[bool, Described(meaning="rotary inertia of the sections")] = False
+    plate: Annotated[bool, Described(meaning="torsion and camber of a thin rectangular section")] = False
     stretch: Annotated[bool, Described(meaning="stretch of the beam and its Coriolis coupling")] = False
 
     large_deflection: Annotated[bool, Described(meaning="slopes of any size: the elastica")] = False
@@ -71,7 +74,7 @@ class Physics:
 
     def __post_init__(self) -> None:
         set_fields(self, planes=count("physics.planes", self.planes, most=2))
-        for name in ("shear", "rotary_inertia", "stretch", "large_deflection"):
+        for name in ("shear", "rotary_inertia", "plate", "stretch", "large_deflection"):
             set_fields(self, **{name: flag(f"physics.{name}", getattr(self, name))})
         one_of("physics.branch", self.branch, ("straight", "bent"))
         if self.large_deflection:
@@ -79,7 +82,7 @@ class Physics:
 
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""
-        for name, without in (("planes", 1), ("shear", False), ("stretch", False)):
+        for name, without in (("planes", 1), ("shear", False), ("plate", False), ("stretch", False)):
             if (given := getattr(self, name)) != without:
                 bound = "it cannot be combined with large_deflection"
                 raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")

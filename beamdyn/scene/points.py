@@ -78,10 +78,7 @@ class TipMass:
         given = () if self.transverse_inertia is None else ("transverse_inertia",)
         for name in (*required, *given):
             set_fields(self, **{name: amount(f"tip.{name}", getattr(self, name), "kg m2")})
-        self._check_inertias()
-
-    def _check_inertias(self) -> None:
-        """Refuse a moment of inertia beyond the sum of the other two, which no rigid body has."""
+        # Refuse a moment of inertia beyond the sum of the other two, which no rigid body has.
         moments = {
             "inertia": self.inertia,
             "transverse_inertia": self.inertia_about_bending_direction,

@@ -157,6 +157,11 @@ class Profile(FieldsOnly):
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
+    def derivative(self) -> Profile:
+        """Derivative by x/L on each segment; jumps are left out."""
+        series = legendre.legder(self.series) if self.degree else np.zeros_like(self.series)
+        return _of_series(self.breakpoints, 2 / np.diff(self._ends) * series)
+
     def stepped(self, xi: np.ndarray, steps: np.ndarray) -> Profile:
         """Add to the property at all places inboard of each xi (k,) the step (k,) there."""
         if not len(xi):
@@ -258,7 +263,11 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
         If the property is not finite everywhere, or a callable is not vectorised or not smooth between
         breakpoints.
     """
-    ends = _segment_ends(breakpoints)
+    # Validate inner breakpoints and add the ends 0 and 1.
+    inner = real_array("breakpoints", breakpoints)
+    if inner.size and not (inner.min() > 0 and inner.max() < 1):
+        raise InvalidValue("breakpoints", breakpoints, "give fractions x/L between 0 and 1, ends excluded")
+    ends = merge_breakpoints(np.concatenate([[0.0], inner, [1.0]]))
     if isinstance(value, Profile):
         profile = value
     elif isinstance(value, Table):
@@ -287,14 +296,6 @@ def _check_sizes(name: str, values: np.ndarray) -> None:
 def _check_largest(name: str, values: np.ndarray) -> None:
     """Refuse values so large that powers and products of them overflow."""
     refuse(np.abs(values) > MOST, name, values, "", _SIZES, limit=MOST)
-
-
-def _segment_ends(breakpoints: Sequence[float]) -> tuple[float, ...]:
-    """Validate inner breakpoints and add the ends 0 and 1."""
-    inner = real_array("breakpoints", breakpoints)
-    if inner.size and not (inner.min() > 0 and inner.max() < 1):
-        raise InvalidValue("breakpoints", breakpoints, "give fractions x/L between 0 and 1, ends excluded")
-    return merge_breakpoints(np.concatenate([[0.0], inner, [1.0]]))
 
 
 def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
@@ -357,7 +358,10 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
     """Fit a Legendre series to a user's function on [a, b], with as few nodes as are exact to rounding."""
-    xi = _check_points(a, b)
+    # Points between a and b: some denser towards the ends, then all that no feature falls between two.
+    s = np.linspace(0, np.pi, _FEW + 2)[1:-1]
+    uniform = np.linspace(a, b, max(8, int(np.ceil((b - a) / _SPACING))) + 1)[1:-1]
+    xi = np.concatenate([a + (b - a) * (1 - np.cos(s)) / 2, uniform])
     exact = _sample(name, function, xi)
     bound, parts = _FIT_TOLERANCE * np.abs(exact).max(), 1 + len(xi) // _AT_ONCE
     samples = list(zip(np.array_split(xi, parts), np.array_split(exact, parts), strict=True))
@@ -374,13 +378,6 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
         f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place; "
         "if it varies quickly, several breakpoints about it, or a Table"
     )
-
-
-def _check_points(a: float, b: float) -> np.ndarray:
-    """Points between a and b: some denser towards the ends, then all that no feature falls between two."""
-    s = np.linspace(0, np.pi, _FEW + 2)[1:-1]
-    uniform = np.linspace(a, b, max(8, int(np.ceil((b - a) / _SPACING))) + 1)[1:-1]
-    return np.concatenate([a + (b - a) * (1 - np.cos(s)) / 2, uniform])
 
 
 def _misfit(

@@ -7,10 +7,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.special import zeta
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
-from beamdyn.scene.profile import Profile, as_profile
+from beamdyn.common.legendre import gauss_rule
+from beamdyn.scene.profile import Profile, as_profile, combine
 
+_POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
 
@@ -63,6 +66,16 @@ class Rectangle:
             "second_rotary_inertia": edge.scaled(rho / 12),
         }
 
+    @cached_property
+    def torsion_factor(self) -> Profile:
+        """Torsional constant J of the section over b t^3/3, that of an infinitely wide one (Saint-Venant)."""
+        return combine(_torsion_factor, self.width, self.thickness)[0]
+
+    @cached_property
+    def warping_factor(self) -> Profile:
+        """Warping constant of the section over b^3 t^3/144, that of a thin one."""
+        return combine(_warping_factor, self.width, self.thickness)[0]
+
     def check_thickness(self, length: float) -> None:
         """Refuse a thickness that exceeds the length [m] of the beam, or the width anywhere."""
         ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
@@ -74,6 +87,34 @@ class Rectangle:
         advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
         k = int((h > b).argmax())
         refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])
+
+
+def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """The series of 3 J/(b t^3) of sides (c, n) with b >= t, as shape (1, c, n).
+
+    With tanh = 1 its terms add up to a multiple of zeta(5); what is left falls as exp(-n pi b/t).
+    """
+    n = np.arange(1, 16, 2)[:, None, None]
+    left = ((1 - np.tanh(n * np.pi * b / (2 * t))) / n**5).sum(axis=0)
+    return (1 - 192 / np.pi**5 * t / b * (31 / 32 * zeta(5) - left))[None]
+
+
+def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """The mean square of the warping function of sides (c, n) with b >= t, over b^2 t^2/144: (1, c, n).
+
+    With y along the width and z along the thickness, Saint-Venant's warping function is y z minus
+    8 t^2/pi^3 sum over odd n of (-1)^((n-1)/2) sin(n pi z/t) sinh(n pi y/t)/(n^3 cosh(n pi b/2t)).
+    """
+    s, w = gauss_rule(_POINTS_OF_WARPING)
+    y, z = (s[:, None] * b.ravel()[:, None, None] / 2), s * t.ravel()[:, None, None] / 2
+    b, t, shape = b.ravel()[:, None, None], t.ravel()[:, None, None], b.shape
+    warped = y * z
+    for k, n in enumerate(range(1, 2 * _TERMS_OF_WARPING, 2)):
+        rising = np.exp(n * np.pi * (np.abs(y) - b / 2) / t) * -np.expm1(-2 * n * np.pi * np.abs(y) / t)
+        along = np.sign(y) * rising / (1 + np.exp(-n * np.pi * b / t))
+        warped = warped - (-1) ** k * 8 * t**2 / (np.pi * n) ** 3 * np.sin(n * np.pi * z / t) * along
+    mean = np.einsum("cyz,y,z->c", warped**2, w / 2, w / 2).reshape(shape)
+    return (mean / (b * t).reshape(shape) ** 2 * 144)[None]
 
 
 def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:

@@ -139,7 +139,7 @@ def draw(scene: Scene) -> RotorDrawing:
     xi = _places(beam)
     sides, known = _sides(beam, xi)
     depth = _depth(sides, mount.bending_angle + _twist(beam, xi))
-    magnification = _magnification(float(depth.max()), beam.length)
+    magnification = float(max(1, round(1 / round_below(float(depth.max()) / (_SEEN * beam.length)))))
     along, aside = _directions(mount.setting_angle)
     axis = np.array([mount.radius, 0.0]) + beam.length * np.cos(mount.precone) * xi[:, None] * along
     edge = magnification * depth[:, None] / 2 * aside
@@ -195,11 +195,6 @@ def _twist(beam: Beam, xi: np.ndarray) -> np.ndarray:
 def _depth(sides: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Height (k,) of turned sections in the plane of rotation [m]."""
     return sides[:, 0] * np.abs(np.cos(angle)) + sides[:, 1] * np.abs(np.sin(angle))
-
-
-def _magnification(depth: float, length: float) -> float:
-    """The least of 1, 2, 5, 10, ... by which a depth is seen."""
-    return float(max(1, round(1 / round_below(depth / (_SEEN * length)))))
 
 
 def _corners(sides: np.ndarray, angle: float) -> np.ndarray:

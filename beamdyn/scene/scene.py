@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
@@ -17,7 +19,7 @@ from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
 from beamdyn.scene.points import ACROSS
-from beamdyn.scene.profile import mean
+from beamdyn.scene.profile import Profile, mean
 
 _SLENDER = Physics(), Physics(stretch=True)  # in one plane
 
@@ -116,10 +118,17 @@ class Scene(OneLine):
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
             set_fields(self, physics_choice=None)  # of another physics
         _check_properties(self.beam, self.physics)
+        _check_plate(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
-        _check_damper(self)
+        # Refuse a damper that rounding does not tell from a support.
+        beam, damper = self.beam, self.damping.tip_damper
+        mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
+        mass += 0.0 if beam.tip is None else beam.tip.mass
+        most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
+        bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) with mass m: with more the tip does not move"
+        refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
     def headline(self) -> Iterator[str]:
         """Label, beam, mount, motion, and what else was given."""
@@ -245,16 +254,6 @@ def _check_point_springs(scene: Scene) -> None:
 _MOST_DAMPING = 1e6
 
 
-def _check_damper(scene: Scene) -> None:
-    """Refuse a damper that rounding does not tell from a support."""
-    beam, damper = scene.beam, scene.damping.tip_damper
-    mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
-    mass += 0.0 if beam.tip is None else beam.tip.mass
-    most = _MOST_DAMPING * math.sqrt(mean(beam.bending_stiffness) * mass / beam.length**3)
-    bound = "it must be at most {limit}, 1e6 sqrt(EI m/L^3) with mass m: with more the tip does not move"
-    refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
-
-
 # Properties that the physics needs ----------------------------------------------------------------
 
 _SECOND = "second_"  # of the properties of bending in the second direction of the section
@@ -288,11 +287,48 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
             raise InvalidValue(f"physics.{effect}", given, "it needs {other}", remedy, other=name)
 
 
+# Length over the local width of the parts at a clamped root in which a plate's corners are resolved.
+_CORNERS = 0.1, 0.4, 1.5
+_LAST_CORNER = 0.7  # of the length
+_JUMP = 1e-9  # of the width: a smaller one is rounding
+
+
+def _check_plate(beam: Beam, physics: Physics) -> None:
+    """Refuse a plate of a section that is not rectangular, turns, or jumps in width."""
+    if not physics.plate:
+        return
+    section = beam.section
+    if section is None or section.poissons_ratio is None:
+        lacking = "a rectangular section" if section is None else "poissons_ratio"
+        remedy = "Beam.rectangular(..., poissons_ratio=0.3) makes one of steel"
+        raise InvalidValue("physics.plate", True, "it needs {other}", remedy, other=lacking)
+    if beam.twist is not None:
+        bound, remedy = "with physics.plate the strip must be flat", "leave the plate or the twist out"
+        raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
+    left, right = section.width.end_values()
+    jumps = np.flatnonzero(np.abs(right[:-1] - left[1:]) > _JUMP * right[:-1])
+    if jumps.size:
+        at = section.width.breakpoints[jumps[0] + 1]
+        bound = "with physics.plate the width must not jump"
+        where = f" at x/L = {at:.3f}"
+        raise InvalidValue("width", float(left[jumps[0] + 1]), bound, "taper it", "m", where=where)
+
+
+def _with_corners(beam: Beam) -> Profile:
+    """Mass per length with breakpoints near the root, where stresses in the corners of a plate vary."""
+    assert beam.section is not None
+    part = float(beam.section.width(np.zeros(1))[0]) / beam.length
+    places = [part * each for each in _CORNERS if part * each < _LAST_CORNER]
+    return beam.mass_per_length.split((0.0, *places, 1.0))
+
+
 @lru_cache(maxsize=256)
 def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     """The beam without the properties that a model with this physics does not read."""
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
     unread = (optional | {_SECOND + _BENDING}) - _needed_properties(physics).keys()
     unread |= {"twist"} if physics.planes == 1 else set()
-    given = {name: None for name in unread if getattr(beam, name) is not None}
+    given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
+    if physics.plate:
+        given["mass_per_length"] = _with_corners(beam)
     return replace(beam, **given) if given else beam

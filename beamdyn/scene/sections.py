@@ -47,18 +47,14 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
         return {(0, 0): first}
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
         return {(0, 0): first, (1, 1): second}
-    return _turn(first, second, beam.twist)
-
-
-def _turn(first: Profile, second: Profile, twist: Profile) -> Tensor:
-    """Turn the values in the axes of the sections by the twist; refuse by name one that is not resolved."""
+    # Turn the values in the axes of the sections by the twist; refuse by name one that is not resolved.
     excess = first + second.scaled(-1.0)  # of the series: its values may lose digits
     try:
-        along, oblique, across = combine(_turned_values, first, second, excess, twist)
+        along, oblique, across = combine(_turned_values, first, second, excess, beam.twist)
     except ValueError as error:
         remedy = "is it in degrees? give math.radians(...)"
         raise InvalidValue(
-            "twist", float(twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
+            "twist", float(beam.twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
         ) from None
     return {(0, 0): along, (0, 1): oblique, (1, 0): oblique, (1, 1): across}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,16 +12,20 @@ import numpy as np
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds, Words
+from beamdyn.modes.modal.discretization_choice import choose_model
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.left_out_of_resonances import left_out_of_resonances
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 KINDS = ("forced", "parametric")
+_STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
+_FURTHER_MODES = 2  # with which those that are sought may exchange their order
 
 
 @dataclass(frozen=True)
@@ -140,7 +144,15 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects left out would change in the speed of each crossing (k,)."""
-        return left_out_of_resonances(self.scene, self.crossings, self.frequency.shape[1])
+        if not self.crossings:
+            return nothing_known(self.scene)
+        speeds, modes = np.array([c.speed for c in self]), self.frequency.shape[1]
+        first = 2 * np.pi * np.array([c.frequency for c in self])
+        second = [c.line.multiple * c.speed - f for c, f in zip(self, first, strict=True)]
+        single = [c.second_mode is None for c in self]
+        pairs = np.stack([first, np.where(single, first, second)], axis=1)
+        model = choose_model(self.scene, "ritz", speeds, modes + _FURTHER_MODES, 1e-6)
+        return left_out_of_crossings(model, speeds, pairs, modes)
 
     @property
     def extent(self) -> str:
@@ -164,10 +176,46 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         from beamdyn.common.plots.campbell import Curves, plot_campbell
 
         lines = {line.name: line.multiple for line in self.lines}
-        marked = {
-            kind: [(c.speed, c.frequency) for c in self if c.kind == kind]
-            for kind in ("forced", "parametric")
-        }
+        marked = {kind: [(c.speed, c.frequency) for c in self if c.kind == kind] for kind in KINDS}
         names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))
         unit = self.display_units.speed_unit().name
         return plot_campbell([Curves(self.speeds, self.frequency, names)], lines, marked, ax, unit)
+
+
+def left_out_of_crossings(
+    model: Model, speeds: np.ndarray, frequencies: np.ndarray, modes: int
+) -> LeftOutEffects:
+    """Estimate what each effect changes in speeds of resonance (k,) [rad/s], to first order.
+
+    A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
+    slope of the frequency over speed.
+
+    Parameters
+    ----------
+    model : Model
+        The model with which they were found.
+    speeds : ndarray, shape (k,)
+        The speeds [rad/s].
+    frequencies : ndarray, shape (k, 2)
+        Angular frequencies of the two modes that resonate [rad/s]; of a single mode twice.
+    modes : int
+        Number of the modes that were sought.
+    """
+    at = np.concatenate([speeds, speeds * (1 + _STEP), speeds * (1 - _STEP)])
+    here, above, below = model.solver.solve(at, modes + _FURTHER_MODES).eigenvalue.reshape(3, len(speeds), -1)
+    effects = left_out_of_modes(model, speeds, here)
+    nearest = _nearest(here, frequencies)
+    size = np.take_along_axis(np.imag(here), nearest, axis=1)
+    rise, fall = (np.take_along_axis(np.imag(s), _nearest(s, size), axis=1) for s in (above, below))
+    detuning = size.sum(axis=1) - ((rise - fall) / (2 * _STEP)).sum(axis=1)
+
+    def of_speeds(change: np.ndarray) -> np.ndarray:
+        return (size * np.take_along_axis(change, nearest, axis=1)).sum(axis=1) / detuning
+
+    changes = {name: of_speeds(change) for name, change in effects.changes.items()}
+    return replace(effects, changes=changes, shape=speeds.shape)
+
+
+def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+    """Indices (k, 2) of the eigenvalues (k, m) nearest to angular frequencies (k, 2)."""
+    return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)

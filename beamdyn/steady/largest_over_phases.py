@@ -6,8 +6,6 @@ by Newton's method with all lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 _MAXIMA = 16  # largest local maxima of the samples over the phases, which are refined
@@ -36,18 +34,13 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     largest = np.zeros(len(amplitude))
     if not len(harmonics):
         return largest
-    for rows, degree in _split_by_degree(amplitude, harmonics):
-        largest[rows] = _find_largest(amplitude[rows], harmonics, degree)
-    return largest
-
-
-def _split_by_degree(amplitude: np.ndarray, harmonics: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield rows whose strong lines have the same highest |h|, (2,), by which they are sampled, and that."""
     strong = _find_strong(np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1), harmonics)
     degrees = np.stack([(strong * np.abs(h)).max(axis=1) for h in harmonics.T], axis=1)
-    for degree in np.unique(degrees, axis=0):
+    for degree in np.unique(degrees, axis=0):  # the highest |h| of strong lines, by which they are sampled
         rows = np.flatnonzero((degrees == degree).all(axis=1))
-        yield from ((part, degree) for part in _split(rows, int(np.prod(_grid(degree)))))
+        for part in np.array_split(rows, 1 + len(rows) * int(np.prod(_grid(degree))) // _MOST_SAMPLES):
+            largest[part] = _find_largest(amplitude[part], harmonics, degree)
+    return largest
 
 
 def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
@@ -59,11 +52,6 @@ def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
     return np.any([each > share * each.sum(axis=1, keepdims=True) for each in (size, others)], axis=0)
-
-
-def _split(rows: np.ndarray, samples: int) -> list[np.ndarray]:
-    """Split rows, of `samples` each, into parts that fit into memory."""
-    return np.array_split(rows, 1 + len(rows) * samples // _MOST_SAMPLES)
 
 
 def _grid(degree: np.ndarray) -> np.ndarray:
@@ -103,17 +91,15 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
 
 def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Find the largest local maxima of samples (S, N, N): rows (R,) of each, and its indices (R, 2)."""
-    highest = _largest_of_three(_largest_of_three(sampled, 1), 2)
+    highest = sampled
+    for axis in (1, 2):  # periodic
+        beside = np.roll(highest, 1, axis), np.roll(highest, -1, axis)
+        highest = np.maximum(np.maximum(highest, beside[0]), beside[1])
     flat = np.where(sampled >= highest, sampled, -1.0).reshape(len(sampled), -1)
     chosen = np.argpartition(-flat, min(_MAXIMA, flat.shape[1] - 1), axis=1)[:, :_MAXIMA]
     value = np.take_along_axis(flat, chosen, axis=1)
     owner, column = np.nonzero(value >= _LEAST_SAMPLE * value.max(axis=1, initial=0, keepdims=True))
     return owner, np.stack(np.unravel_index(chosen[owner, column], sampled.shape[1:]), axis=-1)
-
-
-def _largest_of_three(x: np.ndarray, axis: int) -> np.ndarray:
-    """The largest of each value and its two neighbours along a periodic axis."""
-    return np.maximum(np.maximum(x, np.roll(x, 1, axis)), np.roll(x, -1, axis))
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:

@@ -1,21 +1,27 @@
-"""Linear equations whose coefficients are periodic in two phases, as harmonics.
+"""Linear equations whose coefficients are periodic in two phases, as harmonics, and those of a scene.
 
     M q'' + C(theta, chi) q' + K(theta, chi) q = f(theta, chi),   theta' = nu_1,  chi' = nu_2
 
 The harmonic (j, k) is the part that varies as exp(i (j theta + k chi)).  The coefficients are trigonometric
-polynomials, so that an FFT of a few samples gives their harmonics exactly.
+polynomials, so that an FFT of a few samples gives their harmonics exactly.  At steady speed the phases are
+the angle theta of rotation and chi = kappa theta + const of the road, with `road_multiple` kappa.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
+
 Pair = tuple[int, int]  # a harmonic (j, k)
 
 _EPS = np.finfo(float).eps
+_STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
+_GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,35 @@ class PeriodicSystem:
         return set().union(*(list_harmonics(spectrum) for _, spectrum, _ in self.varying))
 
 
-def fourier_coefficients(samples: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class MeanModes:
+    """Modes of the mean equations without damping, of unit mass.
+
+    Parameters
+    ----------
+    squared : ndarray, shape (S, n)
+        Squared frequencies [rad2/s2].
+    shapes : ndarray, shape (S, n, n)
+        Modes, in columns.
+    """
+
+    squared: np.ndarray
+    shapes: np.ndarray
+
+    @classmethod
+    def of_system(cls, system: PeriodicSystem) -> MeanModes:
+        """Modes at S pairs of rates; raises a LinAlgError if the mass is singular."""
+        K, _, M = system.mean
+        inverse = np.linalg.inv(np.linalg.cholesky(M))
+        squared, vectors = np.linalg.eigh(inverse @ K @ np.swapaxes(inverse, 1, 2))
+        return cls(squared, np.swapaxes(inverse, 1, 2) @ vectors)
+
+    def transform(self, matrix: np.ndarray) -> np.ndarray:
+        """Matrices (S, n, n) in these modes, with the rates last: shape (n, n, S)."""
+        return np.ascontiguousarray(np.moveaxis(np.swapaxes(self.shapes, 1, 2) @ matrix @ self.shapes, 0, 2))
+
+
+def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
     """Harmonics of samples (S, N, N) on a uniform grid of the phases; rounding error is set to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
@@ -86,12 +120,6 @@ def fourier_coefficients(samples: np.ndarray) -> np.ndarray:
         return constant
     spectrum = np.fft.fft2(samples) / (samples.shape[-1] * samples.shape[-2])
     return np.where(np.abs(spectrum) > 64 * _EPS * np.abs(samples).max(initial=0.0), spectrum, 0)
-
-
-def is_resolved(spectrum: np.ndarray) -> bool:
-    """Whether a spectrum vanishes in the upper half of the harmonics that its grid resolves."""
-    high = np.abs(_indices(spectrum)) > spectrum.shape[-1] // 4
-    return not (spectrum[:, high].any() or spectrum[:, :, high].any())
 
 
 def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
@@ -142,3 +170,171 @@ def generate_harmonics(start: Iterable[Pair], coupling: set[Pair], interactions:
         levels.append(sorted(new))
         seen |= new
     return levels
+
+
+# The equations of a scene at steady speed -----------------------------------------------------------
+
+
+def periodic_system(
+    equations: Equations | Sequence[Equations], motion: Motion | None, speeds: np.ndarray
+) -> PeriodicSystem:
+    """Expand the equations of motion at steady speeds in harmonics of the two phases.
+
+    Parameters
+    ----------
+    equations : Equations, or sequence of them, length S
+        The equations of motion; or those at each speed, with the same terms, such as about equilibria.
+    motion : Motion or None
+        A motion with `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    PeriodicSystem
+
+    Raises
+    ------
+    ValueError
+        If the motion's steady state is not known, or is not smooth in the phases.
+    """
+    each = [equations] * len(speeds) if isinstance(equations, Equations) else equations
+    motion, first = check_steady_state(motion), each[0]
+    used = {part.quantity for part in (*first.terms, *first.loads)}
+    spectra = expand_quantities(first, used, motion, speeds)
+    mean = np.zeros((3, len(speeds), first.size, first.size))
+    varying = []
+    for order in range(3):
+        for quantity in first.matrices[order]:
+            matrices = _stack([e.matrices[order][quantity] for e in each])
+            periodic = spectra[quantity].copy()
+            mean[order] += np.real(periodic[:, :1, :1]) * matrices
+            periodic[:, 0, 0] = 0
+            if periodic.any():
+                varying.append((order, periodic, matrices))
+    vectors = {name: _stack([e.vectors[name] for e in each]) for name in first.vectors}
+    loads = tuple((spectra[quantity], vector) for quantity, vector in vectors.items())
+    rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
+    return PeriodicSystem(rates, mean, tuple(varying), loads)
+
+
+def _stack(arrays: list[np.ndarray]) -> np.ndarray:
+    """Stack the arrays of all speeds; a view if they are one and the same array."""
+    if all(array is arrays[0] for array in arrays):
+        return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
+    return np.array(arrays)
+
+
+def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
+    """Split the equations into parts that no term couples, such as two planes, each with its coordinates."""
+    places = [equations.places(names) for names in equations.connected]
+    return [(system.part(each), each) for each in places]
+
+
+def check_steady_state(motion: Motion | None) -> Motion:
+    """Return the motion, or rotation about a fixed centre for None.
+
+    Raises
+    ------
+    ValueError
+        If the steady state of the motion is not known.
+    """
+    motion = SteadyRotation(0.0) if motion is None else motion
+    missing = [n for n in _STEADY_STATE if not hasattr(motion, n)]
+    if missing:
+        raise ValueError(
+            f"motion: {type(motion).__name__} has no {', '.join(missing)}, so that its steady state is not "
+            "known; simulate it, or use RollingWheel or SteadyRotation"
+        )
+    return motion
+
+
+def expand_quantities(
+    equations: Equations, used: Iterable[str], motion: Motion, speeds: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Expand quantities of the root's motion at steady speeds in harmonics of the two phases.
+
+    Parameters
+    ----------
+    equations : Equations
+        The equations of motion, which know mount and gravity.
+    used : iterable of str
+        Names of the quantities: fields of `RootMotion`.
+    motion : Motion
+        A motion with `steady_acceleration`.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+
+    Returns
+    -------
+    dict of str to ndarray of complex, shape (S, N, N)
+        Spectra, as `PeriodicSystem` has them.
+
+    Raises
+    ------
+    ValueError
+        If the motion is not smooth in the phases.
+    """
+    for N in _GRIDS:
+        phase = 2 * np.pi * np.arange(N) / N
+        angle, road, omega = np.broadcast_arrays(phase[:, None], phase, speeds[:, None, None])
+        carrier = motion.steady_acceleration(omega, angle, road)
+        root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
+        spectra = {name: _fourier_coefficients(getattr(root, name)) for name in used}
+        high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4  # upper half of what the grid resolves
+        if not any(each[:, high].any() or each[:, :, high].any() for each in spectra.values()):
+            return spectra
+    raise ValueError(
+        f"motion: its steady acceleration has more than {_GRIDS[-1] // 4} harmonics; "
+        "smooth it, or simulate it"
+    )
+
+
+def name_line(motion: Motion, harmonic: Pair) -> Line:
+    """Line of a harmonic (j, k), with the motion's name for it or else one such as "2 road - rotation"."""
+    multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
+    for line in motion.lines:
+        if abs(line.multiple - multiple) <= 1e-12 * (1 + multiple):
+            return line
+    j, k = harmonic if harmonic[::-1] >= (0, 0) else (-harmonic[0], -harmonic[1])
+    parts = (
+        f"{abs(n) if abs(n) > 1 else ''} {name}".strip() for n, name in ((k, "road"), (j, "rotation")) if n
+    )
+    return Line((" - " if j * k < 0 else " + ").join(parts) or "static", multiple)
+
+
+def excitation_lines(
+    system: PeriodicSystem, motion: Motion | None, order: int
+) -> tuple[list[Line], list[Line]]:
+    """List the lines of the load and of the stiffness, up to an order.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+        The equations.
+    motion : Motion or None
+        The motion, which names the lines.
+    order : int
+        1: lines of the load and of the stiffness; n: also those of up to n - 1 interactions.
+
+    Returns
+    -------
+    forced, parametric : list of Line
+        Ascending in frequency.
+    """
+    motion = check_steady_state(motion)
+
+    def generate_lines(start: Iterable[Pair], interactions: int) -> list[Line]:
+        levels = generate_harmonics(start, system.coupling, interactions)
+        return distinct_lines(name_line(motion, h) for level in levels for h in level)
+
+    return generate_lines(system.load_harmonics, order - 1), generate_lines([(0, 0)], order)
+
+
+def distinct_lines(lines: Iterable[Line]) -> list[Line]:
+    """One line of each frequency, ascending, without the static one."""
+    distinct: dict[float, Line] = {}
+    for line in lines:
+        if line.multiple > 1e-12:
+            distinct.setdefault(round(line.multiple, 12), line)
+    return [distinct[multiple] for multiple in sorted(distinct)]

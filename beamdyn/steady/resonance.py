@@ -15,7 +15,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
-from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import Model, plane_share
@@ -26,7 +26,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
 from beamdyn.steady.crossings import KINDS, Crossing, Crossings
-from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
+from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 
 _HIGHEST_ORDER = 20  # highest order that may be asked for: it takes ten seconds
 _NODES = 400  # intervals of speed in which roots are bracketed
@@ -93,10 +93,21 @@ def resonance_speeds(
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes)
-    model = _choose_resolved(scene, discretization, np.array([0.0, top]), modes)
+    model = choose_model(scene, discretization, ends := np.array([0.0, top]), modes)
+    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
+    if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
+        model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
     _check_stiffness(scene, critical)
-    parts = _find_parts(model, min(top, critical), modes, order)
+    system = periodic_system(model.equations, scene.motion, np.array([min(top, critical)]))
+    parts = [
+        _Part(
+            loci, *(excitation_lines(system.part(loci.places), scene.motion, n) for n in (order, order + 1))
+        )
+        for loci in _split(model, min(top, critical), modes)
+    ]
+    numbers = np.argsort(np.concatenate([part.loci.numbers for part in parts]))
+    tracked = np.concatenate([part.loci.tracked for part in parts], axis=1)[:, numbers]
     sought = [(part.loci, each) for part in parts for each in part.resonances(order)]
     crossings = [c for loci, each in sought for c in loci.crossings(*each)]
     names = str(model.discretization), str(model.coarser.discretization)
@@ -105,37 +116,26 @@ def resonance_speeds(
         crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
         lines=tuple(forced),
         speeds=parts[0].loci.speeds,
-        frequency=_tracked(parts) / (2 * np.pi),
+        frequency=tracked / (2 * np.pi),
         order=order,
         unlisted=sum(part.count_further(order, kind) for part in parts for kind in KINDS),
         may_peak=sum(part.count_further(order, "forced") for part in parts),
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
-            *_warn_of_replacement(discretization, model),
-            *_warnings(scene, (forced, parametric), len(crossings), order, top, critical),
-            *_warn_of_bending(model, crossings),
+            *_warnings(model, discretization, (forced, parametric), crossings, order, top, critical),
         ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
     )
 
 
-def _choose_resolved(
-    scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
-) -> Model:
-    """Choose a model; of assumed modes where finite elements do not resolve springs at the root."""
-    model = choose_model(scene, discretization, speeds, modes)
-    if discretization != "fem" or not model.equations.shift:
-        return model
-    resolved = np.isfinite(solve_with_error(model, speeds, modes).error).all()
-    return model if resolved else choose_model(scene, "ritz", speeds, modes)
-
-
 def _check_stiffness(scene: Scene, critical: float) -> None:
     """Refuse a beam that the slightest rotation turns over about its root."""
     if critical > 0:
         return
-    name, spring = _softest_spring(scene)
+    in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
+    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
+    spring, _, name = min(zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False))  # the softest
     bound, remedy = (
         ("the discretization does not resolve so soft a spring", 'give a stiffer one, or "ritz"')
         if spring
@@ -145,15 +145,6 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
         )
     )
     raise InvalidValue(f"mount.{name}", spring, bound, remedy, "N m/rad")
-
-
-def _softest_spring(scene: Scene) -> tuple[str, float]:
-    """Name and stiffness of the softest spring; of two alike, of that in the plane of rotation."""
-    names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
-    in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
-    springs = zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False)
-    spring, _, name = min(springs)
-    return name, spring
 
 
 @dataclass(frozen=True)
@@ -183,22 +174,6 @@ class _Part:
         return sum(self.loci.count_crossings(*each[1:]) for each in further)
 
 
-def _find_parts(model: Model, top: float, modes: int, order: int) -> list[_Part]:
-    """Parts that no term couples, with their lines up to an order and up to the next."""
-    motion = model.scene.motion
-    system = periodic_system(model.equations, motion, np.array([top]))
-    return [
-        _Part(loci, *(excitation_lines(system.part(loci.places), motion, n) for n in (order, order + 1)))
-        for loci in _split(model, top, modes)
-    ]
-
-
-def _tracked(parts: list[_Part]) -> np.ndarray:
-    """Angular frequencies [rad/s] of all parts over speed, numbered at rest: shape (S, m)."""
-    numbers = np.concatenate([part.loci.numbers for part in parts])
-    return np.concatenate([part.loci.tracked for part in parts], axis=1)[:, np.argsort(numbers)]
-
-
 def _list_resonances(
     forced: list[Line], parametric: list[Line], modes: int, order: int
 ) -> list[tuple[str, Line, tuple[int, ...]]]:
@@ -208,21 +183,20 @@ def _list_resonances(
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]
 
 
-def _warn_of_replacement(discretization: DiscretizationChoice, model: Model) -> Iterator[Statement]:
-    """Say that other functions than finite elements were taken."""
-    if discretization == "fem" and model.discretization.order is None:
-        said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
-        yield Statement(said, kind=INPUT, quantity="discretization")
-
-
 def _warnings(
-    scene: Scene,
+    model: Model,
+    discretization: DiscretizationChoice,
     lines: tuple[list[Line], list[Line]],
-    found: int,
+    crossings: Sequence[Crossing],
     order: int,
     top: float,
     critical: float,
 ) -> Iterator[Statement]:
+    """Yield what limits the search, why it finds nothing, and whether rotation bends the beam too far."""
+    scene = model.scene
+    if discretization == "fem" and model.discretization.order is None:
+        said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
+        yield Statement(said, kind=INPUT, quantity="discretization")
     yield from warn_of_left_out(scene)
     if top >= critical:
         yield Statement("searched up to the critical speed, ", Speeds(critical), kind=GROWING)
@@ -232,17 +206,13 @@ def _warnings(
         remedy = "a RollingWheel with a road, or gravity, excites the beam"
         said = f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
         yield Statement(said, remedy, kind=EXCITATION, remedy=remedy)
-    elif not found:
+    elif not crossings:
         begin, end = f"no mode meets a line of order {order} up to ", f"; lines: {names}"
         yield Statement(begin, Speeds(min(top, critical)), end, kind=NO_ANSWER)
-
-
-def _warn_of_bending(model: Model, crossings: Sequence[Crossing]) -> Iterator[Statement]:
-    """Yield a warning if rotation bends a linear beam too far at a speed of resonance."""
-    if crossings and not model.scene.physics.large_deflection:
+    if crossings and not scene.physics.large_deflection:
         speeds = np.array(sorted(c.speed for c in crossings))
         deflection = np.linalg.norm(model.static_tips(speeds), axis=1)
-        yield from warn_of_static_deflection(deflection, model.scene.beam.length, speeds)
+        yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
 
 
 def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
@@ -332,10 +302,17 @@ class _Loci:
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
         """Crossing at a root `speed`; the detuning's slope turns errors of frequency into speed."""
-        omega, vectors = self.frequencies(np.array([speed]))[0], self._solve_vectors(speed)
-        node = int(np.searchsorted(self.speeds, speed)) - 1
-        numbered = sorted((self._number(node, index), index) for index in set(indices))
-        shares = [self._plane_share(vectors[:, [index]]) for _, index in numbered]
+        omega = self.frequencies(np.array([speed]))[0]
+        vectors = self.solver.solve(np.array([speed]), self.modes).vector[0]
+        embedded = np.zeros((self.model.solver.size, self.modes), dtype=vectors.dtype)
+        embedded[self.places] = vectors
+        order = self.order[int(np.searchsorted(self.speeds, speed)) - 1].tolist()
+        numbered = sorted((int(self.numbers[order.index(index)]), index) for index in set(indices))
+        shares = [
+            tuple(plane_share(self.model.equations, embedded[None, :, [index]])[0, 0].tolist())
+            for _, index in numbered
+        ]
+        second = numbered[1][0] if len(numbered) > 1 else None
         return Crossing(
             line=line,
             mode=numbered[0][0],
@@ -343,9 +320,9 @@ class _Loci:
             frequency=float(omega[indices[0]] / (2 * np.pi)),
             kind=kind,
             error=float(self._error(speed, omega[list(indices)]).sum() / abs(slope * speed)) + ROUNDING,
-            second_mode=numbered[1][0] if len(numbered) > 1 else None,
+            second_mode=second,
             plane_share=shares[0],
-            second_plane_share=shares[1] if len(numbered) > 1 else None,
+            second_plane_share=None if second is None else shares[1],
         )
 
     def _error(self, speed: float, omega: np.ndarray) -> np.ndarray:
@@ -357,19 +334,3 @@ class _Loci:
         solved = np.abs(solution.eigen.eigenvalue[0])
         same = np.abs(solved - omega[:, None]).argmin(axis=1)
         return np.abs(solved[same] - omega) + solution.error[0, same] * omega
-
-    def _number(self, node: int, index: int) -> int:
-        """Number of the mode that has an index at a node of speed."""
-        return int(self.numbers[np.flatnonzero(self.order[node] == index)[0]])
-
-    def _solve_vectors(self, speed: float) -> np.ndarray:
-        """Modes (n, m) at a speed, over the coordinates of the model."""
-        vectors = self.solver.solve(np.array([speed]), self.modes).vector[0]
-        embedded = np.zeros((self.model.solver.size, self.modes), dtype=vectors.dtype)
-        embedded[self.places] = vectors
-        return embedded
-
-    def _plane_share(self, vector: np.ndarray) -> tuple[float, float]:
-        """Share of the kinetic energy of a mode (n, 1) in the two directions."""
-        along, across = plane_share(self.model.equations, vector[None])[0, 0].tolist()
-        return along, across

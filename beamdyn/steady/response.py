@@ -22,10 +22,9 @@ from beamdyn.equations.directions import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -36,17 +35,18 @@ from beamdyn.scene.validity import (
     warn_of_left_out,
     warn_of_road,
 )
-from beamdyn.steady.excitation_phases import check_steady_state, name_line
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.tip_lines import (
-    across_bending,
+from beamdyn.steady.periodic_system import check_steady_state, name_line
+from beamdyn.steady.vibration import (
+    UNSTABLE,
+    WITHOUT_STABLE_MEAN,
     add_static,
-    along_bending,
+    choose_vibrating,
     combine_pairs,
     sizes_of,
     solve_parts,
+    vibration_of,
 )
-from beamdyn.steady.vibration import UNSTABLE, WITHOUT_STABLE_MEAN, choose_vibrating, vibration_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -329,6 +329,9 @@ class ResponseRequest(FieldsOnly):
         harmonic, vibrating = combine_pairs(c, used, motion)
         line, share = add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         vibrated = _largest(vibrating, harmonic, stable)
+        about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
+        method = f"{self.model.discretization}, {self.basis}{about}, {len(used)} harmonics"
+        estimated = "without the harmonics of the last interaction"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
@@ -341,20 +344,14 @@ class ResponseRequest(FieldsOnly):
             error=error * share,
             lines=tuple(name_line(motion, h) for h in map(tuple, harmonic.tolist())),
             line_frequency=np.abs(vibration.parts[0][0].rates @ harmonic.T) / (2 * np.pi),
-            line_amplitude=along_bending(line),
-            line_amplitude_across=across_bending(line),
+            line_amplitude=line[:, 0],
+            line_amplitude_across=line[:, 1:].sum(axis=1),
             harmonics=harmonic,
             warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
-            provenance=self._provenance(len(used), start),
+            provenance=Provenance(__version__, method, estimated, perf_counter() - start),
             vibration=vibrated,
             request=self,
         )
-
-    def _provenance(self, harmonics: int, start: float) -> Provenance:
-        about = " about the equilibrium at each speed" if self.scene.physics.large_deflection else ""
-        method = f"{self.model.discretization}, {self.basis}{about}, {harmonics} harmonics"
-        estimated = "without the harmonics of the last interaction"
-        return Provenance(__version__, method, estimated, perf_counter() - start)
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
         """Amplitudes of another scene with as many modes, or more if only one has large deflection."""
@@ -412,6 +409,7 @@ def _warnings(
     error: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[Statement]:
+    """Yield what limits the response, by speeds (S,)."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
@@ -427,25 +425,9 @@ def _warnings(
             f", so that it does not move: {remedy}",
         )
         yield Statement(*said, kind=EXCITATION, remedy=remedy)
-    yield from warn_of_vibration(vibration, scene, speeds)
-    motion = check_steady_state(scene.motion)
-    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
-    if (at := error > tolerance).any():
-        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
-        yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
-    if undecided.any():
-        where = list_speeds(speeds, undecided)
-        end = ": growth_rate is within growth_rate_error"
-        yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")
-
-
-def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -> Iterator[Statement]:
-    """Yield a warning if the tip vibrates too far [m] for equations linear about the equilibrium."""
     if not scene.physics.large_deflection:
         yield from warn_of_deflection(vibration, scene.beam.length, speeds)
-        return
-    large = vibration > LARGE_DEFLECTION * scene.beam.length
-    if large.any():
+    elif (large := vibration > LARGE_DEFLECTION * scene.beam.length).any():
         ratio = vibration[large].max() / scene.beam.length
         yield Statement(
             f"the tip vibrates by {ratio:.2g} of the length about the equilibrium at ",
@@ -456,3 +438,12 @@ def warn_of_vibration(vibration: np.ndarray, scene: Scene, speeds: np.ndarray) -
             value=ratio,
             limit=LARGE_DEFLECTION,
         )
+    motion = check_steady_state(scene.motion)
+    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
+    if (at := error > tolerance).any():
+        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
+        yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
+    if undecided.any():
+        where = list_speeds(speeds, undecided)
+        end = ": growth_rate is within growth_rate_error"
+        yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")

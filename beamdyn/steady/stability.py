@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 
 import numpy as np
 import scipy.sparse
@@ -28,8 +28,7 @@ from scipy.sparse.linalg import ArpackError, eigs
 
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.steady.harmonic_balance import convolution_matrix
-from beamdyn.steady.mean_modes import MeanModes
-from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
+from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, generate_harmonics
 
 _TONGUE_ORDER = 2  # largest number of interactions with the periodic coefficients by which two modes resonate
 _ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
@@ -80,7 +79,9 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     error[singular] = np.inf
     rows = np.flatnonzero(~singular)
     if len(rows):
-        V = _to_modes(sigma[rows], R[rows], [(f[rows], B[rows]) for f, B in periodic])
+        R, n = R[rows], system.size  # columns of equal action make |V| symmetric
+        R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
+        V = [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic]
         free = _FreeMotion(system.rates[rows], system.coupling, sigma[rows], V)
         shift, damped = np.zeros((len(rows), sigma.shape[1])), np.flatnonzero(rate[rows])
         shift[damped] = free[damped].second_order_shift()
@@ -145,15 +146,6 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
     return sigma, np.concatenate([A[:, :1, n, None] * shapes, sigma[:, None] * shapes], axis=1)
 
 
-def _to_modes(
-    sigma: np.ndarray, R: np.ndarray, periodic: list[tuple[np.ndarray, np.ndarray]]
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Transform B to modes, V = R^-1 B R; the columns of R have equal action, which makes |V| symmetric."""
-    n = R.shape[-1] // 2
-    R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma)))[:, None, :]
-    return [(spectrum, np.linalg.solve(R, B @ R)) for spectrum, B in periodic]
-
-
 # Which modes and harmonics resonate -----------------------------------------------------------------
 
 
@@ -199,7 +191,8 @@ class _FreeMotion:
         """Shift (S, m) of each eigenvalue by the periodic coefficients in second order, within its disc."""
         harmonics = sorted(self.coupling)
         h, coupling = np.array(harmonics), self._couple(harmonics)
-        product = np.abs(coupling[..., _opposite(h)] * np.swapaxes(coupling, 1, 2))
+        opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
+        product = np.abs(coupling[..., opposite] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
         product[:, own, own] = 0  # h and -h, of opposite gaps, cancel: a frequency that varies shifts no rate
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -234,9 +227,13 @@ class _FreeMotion:
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
+        reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]  # beginning with the fewest
+        pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
-            V, stationary = [(f[i : i + 1], v[i]) for f, v in self.V], self._find_stationary(self.rates[i])
-            found = []
+            V, found = [(f[i : i + 1], v[i]) for f, v in self.V], []
+            still = np.abs(pairs @ self.rates[i]) <= _STATIONARY * np.abs(self.rates[i]).max()
+            first = [(int(j), int(k)) for j, k in pairs[still][:1]]
+            stationary = first[0] if first else None
             for a in np.flatnonzero(overlap[i].any(axis=(1, 2))):
                 partners = {(0, 0)} | {harmonics[k] for k in np.flatnonzero(overlap[i, a].any(axis=0))}
                 found.append(
@@ -250,22 +247,6 @@ class _FreeMotion:
         opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
         rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
         return near & opposite[..., None] & rightmost[:, None, None, None]
-
-    @cached_property
-    def _reached(self) -> np.ndarray:
-        """Harmonics (H, 2) that a few interactions make of (0, 0), beginning with the fewest."""
-        levels = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)
-        return np.array([h for level in levels[1:] for h in level])
-
-    def _find_stationary(self, rates: np.ndarray) -> Pair | None:
-        """Find a harmonic h with Omega_h = 0, which commensurate rates have; None if there is none."""
-        found = self._reached[np.abs(self._reached @ rates) <= _STATIONARY * np.abs(rates).max()]
-        return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
-
-
-def _opposite(h: np.ndarray) -> np.ndarray:
-    """Index of -h for each of the harmonics h (H, 2)."""
-    return (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
 
 
 # Eigenvalues of the modes that resonate -------------------------------------------------------------

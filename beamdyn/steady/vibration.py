@@ -1,34 +1,41 @@
-"""Equations of vibration at steady speeds over the phases of the excitation, and its stability.
+"""Equations of vibration at steady speeds over the phases of the excitation, its lines, and its stability.
 
 A straight beam has the same equations at all speeds.  With large deflection, the beam vibrates about the
 equilibrium to which rotation bends it: its equations at each speed are linear about the equilibrium there, in
-the modes of small vibration about it.
+the modes of small vibration about it.  The lines of the tip's deflection have as many harmonics as each speed
+needs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.deflected import DeflectedSolver
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
-from beamdyn.modes.modal.eigen import Solver
-from beamdyn.modes.modal.equilibrium import NoEquilibrium
+from beamdyn.modes.modal.eigenproblem import Solver
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.excitation_phases import periodic_system, periodic_system_of_each, split_uncoupled
-from beamdyn.steady.periodic_system import PeriodicSystem
+from beamdyn.steady.harmonic_balance import solve_harmonic_balance
+from beamdyn.steady.periodic_system import (
+    Pair,
+    PeriodicSystem,
+    generate_harmonics,
+    periodic_system,
+    split_uncoupled,
+)
 from beamdyn.steady.stability import fastest_growth
 
 UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
 _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
+_MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
+_MOST_UNKNOWNS = 2**17  # that are solved for at once: they fit the processor's cache
+_ROUNDING = 1e-15  # relative error where no harmonic is neglected
 _NO_FREQUENCY = 1e-8  # frequency, over that of a clamped beam, that rounding makes of 0
 
 
@@ -86,18 +93,12 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     """
     if isinstance(model.solver, DeflectedSolver):
         return _about_equilibria(model, basis, motion, speeds)
-    return _of_straight_beam(model, basis, motion, speeds)
-
-
-# The straight beam --------------------------------------------------------------------------------
-
-
-def _of_straight_beam(
-    model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray
-) -> Vibration:
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
-    free = _turns_freely(model, speeds)
+    free = np.zeros(len(speeds), dtype=bool)
+    if shift := model.equations.shift:  # else the stiffness at rest is positive definite
+        lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
+        free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(
         parts=split_uncoupled(periodic_system(equations, motion, speeds), equations),
         tips=tips,
@@ -105,14 +106,6 @@ def _of_straight_beam(
         without_rate=free,
         lost={_TURNING: free, _PAST: np.asarray(np.abs(speeds) >= model.solver.critical_speed)},
     )
-
-
-def _turns_freely(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Whether nothing resists a rotation of the beam about its root, shape (S,)."""
-    if not model.equations.shift:  # the stiffness at rest is positive definite
-        return np.zeros(len(speeds), dtype=bool)
-    lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
-    return lowest < _NO_FREQUENCY * np.sqrt(model.equations.shift)
 
 
 # About equilibria ---------------------------------------------------------------------------------
@@ -125,40 +118,27 @@ def _about_equilibria(
 
     The directions of the tip are that of bending, and along the beam axis.
     """
-    q = find_equilibria(model, speeds)
+    q, elastica = find_equilibria(model, speeds), model.elastica
+    assert elastica is not None
     missing = np.asarray(np.isnan(q).any(axis=1))
-    each = [*_reduced_about(model, basis, np.where(missing[:, None], 0.0, q), speeds)]
-    equations = [reduced for reduced, _ in each]
-    system = periodic_system_of_each(equations, motion, speeds)
-    parts = split_uncoupled(system, equations[0])
-    assert model.elastica is not None
-    return Vibration(
-        parts=parts,
-        tips=np.array([tips for _, tips in each]),
-        static=model.elastica.tip(q)[:, ::-1] - [0.0, model.scene.beam.length],
-        without_rate=missing,
-        lost={_MISSING: missing, _UNSTABLE_MEAN: _are_unstable(parts, missing)},
-    )
-
-
-def _reduced_about(
-    model: Model, basis: ModalBasis, q: np.ndarray, speeds: np.ndarray
-) -> Iterator[tuple[Equations, np.ndarray]]:
-    """Yield the equations in the modes about each equilibrium, with the tip's motion (2, n) in these."""
-    assert model.elastica is not None
-    for speed, state in zip(np.abs(speeds).tolist(), map(model.elastica.at, q), strict=True):
-        equations = reduce_to_modes(state.linearized(), replace(basis, speeds=(speed,)))
-        along = state.elastica.points.tip(-state.sin * state.elastica.angles)
-        (shape,) = equations.shapes.values()
-        yield equations, np.array([equations.tip, along @ shape.matrix])
-
-
-def _are_unstable(parts: list[tuple[PeriodicSystem, np.ndarray]], missing: np.ndarray) -> np.ndarray:
-    """Whether each equilibrium (S,) is unstable, without the periodic coefficients; False where missing."""
-    rate = np.zeros(len(missing))
+    equations, tips = [], []
+    for speed, at in zip(np.abs(speeds).tolist(), np.where(missing[:, None], 0.0, q), strict=True):
+        state = elastica.at(at)
+        equations.append(reduce_to_modes(state.linearized(), replace(basis, speeds=(speed,))))
+        along = elastica.points.tip(-state.sin * elastica.angles)
+        (shape,) = equations[-1].shapes.values()
+        tips.append([equations[-1].tip, along @ shape.matrix])
+    parts = split_uncoupled(periodic_system(equations, motion, speeds), equations[0])
+    rate = np.zeros(len(missing))  # without the periodic coefficients
     if (known := ~missing).any():
         rate[known] = fastest_growth([replace(part[known], varying=()) for part, _ in parts])[0]
-    return np.asarray(rate > 0)
+    return Vibration(
+        parts=parts,
+        tips=np.array(tips),
+        static=elastica.tip(q)[:, ::-1] - [0.0, model.scene.beam.length],
+        without_rate=missing,
+        lost={_MISSING: missing, _UNSTABLE_MEAN: np.asarray(rate > 0)},
+    )
 
 
 def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
@@ -172,10 +152,7 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
     try:
         return solver.equilibria(speeds)
     except NoEquilibrium:
-        return _find_each(solver, speeds)
-
-
-def _find_each(solver: DeflectedSolver, speeds: np.ndarray) -> np.ndarray:
+        pass
     q, reached = np.full((len(speeds), solver.elastica.size), np.nan), False
     order = np.argsort(np.abs(speeds), kind="stable")
     for k in order if solver.branch == "straight" else order[::-1]:
@@ -201,3 +178,134 @@ def choose_vibrating(
     rough = at_rest.of(scene)
     found = speeds[np.isfinite(find_equilibria(rough, speeds)).all(axis=1)]
     return choose_model(scene, discretization, found, modes) if found.size else rough
+
+
+# Lines of the tip ----------------------------------------------------------------------------------
+
+
+def solve_parts(
+    parts: list[tuple[PeriodicSystem, np.ndarray]],
+    tips: np.ndarray,
+    interactions: int | None,
+    tolerance: float,
+) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+    """Solve parts of the equations that no term couples, and add up their tip deflections.
+
+    Parameters
+    ----------
+    parts : list of (PeriodicSystem, ndarray)
+        Equations at S speeds, each with its coordinates.
+    tips : ndarray, shape (S, d, n)
+        Tip deflection per coordinate in d directions.
+    interactions : int, optional
+        Number of interactions with the periodic coefficients; as many as the tolerance needs if not given.
+    tolerance : float
+        Truncation error of the harmonics aimed at, relative to the sum of all lines.
+
+    Returns
+    -------
+    harmonics : list of pair, length H
+    deflections : ndarray of complex, shape (S, d, H)
+    error : ndarray, shape (S,)
+        Estimated truncation error, relative to the sum of all lines.
+    """
+    solved = [_solve_harmonics(part, tips[..., places], interactions, tolerance) for part, places in parts]
+    index = {h: i for i, h in enumerate(dict.fromkeys(h for harmonics, *_ in solved for h in harmonics))}
+    c = np.zeros((*tips.shape[:2], len(index)), dtype=complex)
+    for harmonics, of_part, _ in solved:
+        c[..., [index[h] for h in harmonics]] += of_part
+    return list(index), c, np.max([error for *_, error in solved], axis=0)
+
+
+def _solve_harmonics(
+    system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
+) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed with the harmonics it needs."""
+    S, d = tips.shape[:2]
+    if not system.load_harmonics:
+        return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
+    most = _MOST_INTERACTIONS if interactions is None else interactions
+    levels = generate_harmonics(system.load_harmonics, system.coupling, most + 1)
+    complete, levels = len(levels) <= most + 1, levels[: most + 1]
+    harmonics, sizes = [h for level in levels for h in level], np.cumsum([0, *map(len, levels)])
+    c, error = np.zeros((S, d, sizes[-1]), dtype=complex), np.full(S, np.inf)
+    first, kept = min(3 if interactions is None else most + 1, len(levels)), slice(0)
+    for used in range(first - 1, len(levels) + 1):
+        kept, exact = slice(sizes[used]), complete and used == len(levels)
+        unconverged = np.flatnonzero(~(error <= tolerance))
+        count = 1 + len(unconverged) * system.size * sizes[used] // _MOST_UNKNOWNS
+        for part in np.array_split(unconverged, count):
+            if not len(part):
+                continue
+            finer = np.zeros((len(part), d, sizes[used]), dtype=complex)
+            if used:
+                q = solve_harmonic_balance(system[part], harmonics[kept])
+                finer = np.einsum("shn,sdn->sdh", q, tips[part])
+            if used >= first:  # the level before serves only to estimate the error
+                total = sizes_of(finer).sum(axis=1)
+                distance = sizes_of(finer - c[part, :, kept]).sum(axis=1) / np.where(total == 0, 1, total)
+                error[part] = _ROUNDING if exact else distance
+            c[part, :, kept] = finer
+        if (error <= tolerance).all():
+            break
+    return harmonics[kept], c[..., kept], error
+
+
+def sizes_of(c: np.ndarray) -> np.ndarray:
+    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi: the longer semi-axes of ellipses.
+
+    The vectors (S, d, H) have a component in the direction of bending, and perhaps one across.
+    """
+    along, across = c[:, 0], 1j * c[:, 1:].sum(axis=1)
+    return (np.abs(along + across) + np.abs(along - across)) / 2  # of circles in either sense
+
+
+def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Combine each pair h, -h into the line of positive frequency.
+
+    Parameters
+    ----------
+    c : ndarray of complex, shape (..., H)
+        Amplitudes of the harmonics.
+    harmonics : list of pair, length H
+        The harmonics; with each, its opposite.
+    motion : Motion
+        The motion, whose `road_multiple` orders them by frequency.
+
+    Returns
+    -------
+    harmonics : ndarray of int, shape (l, 2)
+    amplitudes : ndarray of complex, shape (..., l)
+    """
+    kappa = motion.road_multiple or 0.0
+    forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
+    harmonic = np.array([harmonics[i] for i in forward], dtype=int).reshape(-1, 2)
+    return harmonic, c[..., forward] * np.where(harmonic.any(axis=1), 2.0, 1.0)
+
+
+def add_static(
+    line: np.ndarray, harmonics: np.ndarray, static: np.ndarray, directions: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Add the deflection in equilibrium to the static line.
+
+    Parameters
+    ----------
+    line : ndarray of complex, shape (S, d, l)
+        Amplitudes of the lines.
+    harmonics : ndarray of int, shape (l, 2)
+        Harmonic of each line.
+    static : ndarray, shape (S, d)
+        Deflection in equilibrium [m].
+    directions : int
+        Number of directions to keep, those of the modelled planes.
+
+    Returns
+    -------
+    total : ndarray of complex, shape (S, directions, l)
+    share : ndarray, shape (S,)
+        Sum of the sizes of all lines before over that after, at most 1: what a relative error shrinks by.
+    """
+    total = line[:, :directions].copy()
+    total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]
+    before, after = (sizes_of(each).sum(axis=1) for each in (line, total))
+    return total, np.minimum(before / np.where(after == 0, 1.0, after), 1.0)

@@ -116,7 +116,9 @@ class Refinement:
             most = max(1, _ENTRIES // (_size(basis) ** 2 * speeds))
             for batch in np.split(pending, range(most, len(pending), most)):
                 for part, found in _solve_or_halve(solve, batch, basis):
-                    answers = answers or [_nothing(count, array) for array in found.arrays]
+                    answers = answers or [
+                        np.full((count, *a.shape[1:]), np.nan, dtype=a.dtype) for a in found.arrays
+                    ]
                     for kept, array in zip(answers, found.arrays, strict=True):
                         kept[part] = array
                     functions = max(functions, _size(basis))
@@ -137,10 +139,6 @@ def _solve_or_halve(
         if len(batch) > 1:
             for half in np.array_split(batch, 2):
                 yield from _solve_or_halve(solve, half, basis)
-
-
-def _nothing(count: int, like: np.ndarray) -> np.ndarray:
-    return np.full((count, *like.shape[1:]), np.nan, dtype=like.dtype)
 
 
 def _size(basis: Discretization) -> int:

@@ -19,7 +19,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
-from beamdyn.steady.excitation_phases import excitation_lines, periodic_system
+from beamdyn.steady.periodic_system import excitation_lines, periodic_system
 from beamdyn.studies.answers import REFUSED, DesignAnswers, caution_where
 from beamdyn.studies.batched import (
     BasisAnswers,

@@ -24,29 +24,29 @@ from beamdyn.common.results.statements import (
     joined,
     kind_of,
 )
-from beamdyn.modes.critical import CriticalPoint, critical_point
+from beamdyn.modes.critical import critical_point
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.crossings import Crossings, label_crossing
+from beamdyn.steady.crossings import label_crossing
 from beamdyn.steady.resonance import resonance_speeds
-from beamdyn.steady.response import SteadyResponse, steady_response
+from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.batched import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
 from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
 from beamdyn.transient.chunks import DONE
-from beamdyn.transient.sweep import Sweep, sweep
+from beamdyn.transient.sweep import sweep
 
-SINGLE_CALLS = "single calls"
 _FAILURES = (ValueError, ArithmeticError)
 
 
 class SpeedAnswer(NamedTuple):
     """Answer of one design at S speeds: values, errors and states (S, k), and its warnings.
 
-    `warned` says at which speeds these hold; at all if it is None.  `refusals` say why there is no answer.
+    `warned` says at which speeds these hold; at all if it is None.  `refusals` say why there is no answer,
+    `effects` what those left out would change in its numbers at the first speed.
     """
 
     value: np.ndarray
@@ -55,6 +55,7 @@ class SpeedAnswer(NamedTuple):
     warnings: tuple[str, ...]
     warned: np.ndarray | None = None
     refusals: tuple[str, ...] = ()
+    effects: Callable[[], LeftOutEffects | None] = lambda: None
 
     @property
     def is_warned(self) -> np.ndarray:
@@ -92,7 +93,7 @@ class SingleDesigns(FieldsOnly):
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
         limited = _caution("there are warnings", designs, warned, [answer.warnings for answer in found])
-        return DesignAnswers(value, error, status, (*[*without, *limited],), SINGLE_CALLS)
+        return DesignAnswers(value, error, status, (*without, *limited), "single calls")
 
 
 def _caution(
@@ -113,18 +114,15 @@ def _caution(
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
     """The answer of a design at its speeds; of all at once, or where these are refused of each."""
-    analysis = _ANALYSES[question.what]
     try:
-        asked = _Asked(question, with_numbers(question.scene, design), speeds)
-        return analysis.read(asked, analysis.solve(asked))
+        return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
         if len(speeds) == 1:
             shape = 1, question.numbers
             states = np.full(shape, REFUSED)
             nothing = np.full(shape, np.nan), np.full(shape, np.inf), states
             return SpeedAnswer(*nothing, warnings=(), refusals=(str(error),))
-    each = [_answer(question, design, speeds[[i]]) for i in range(len(speeds))]
-    return _together(each)
+    return _together([_answer(question, design, speeds[[i]]) for i in range(len(speeds))])
 
 
 def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
@@ -141,70 +139,28 @@ def _together(each: Sequence[SpeedAnswer]) -> SpeedAnswer:
 # Analyses -----------------------------------------------------------------------------------------
 
 
-class _Asked(NamedTuple):
-    """A question of one scene at speeds (S,) [rad/s]; a single one that is not used, where it has none."""
-
-    question: StudyQuestion
-    scene: Scene
-    speeds: np.ndarray
-
-
-def _own_effects(_: _Asked, found: Any) -> LeftOutEffects:
-    return found.left_out_effects
+def _answer_frequencies(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    how = question.modes, question.discretization, question.tolerance
+    found = [natural_modes(scene, speed, *how) for speed in speeds.tolist()]
+    each = [SpeedAnswer(m.frequency[None], m.error[None], m.status[None], m.warnings) for m in found]
+    return _together(each)._replace(effects=lambda: found[0].left_out_effects)
 
 
-@dataclass(frozen=True)
-class _SingleCall:
-    """How a kind of question is answered: by an analysis, from whose result answer and model error are read.
-
-    Parameters
-    ----------
-    solve : callable
-        Makes the result of what is asked.
-    read : callable
-        The answer that a result has, at each of the speeds.
-    effects : callable
-        What the effects left out would change in the numbers of an answer.
-    """
-
-    solve: Callable[[_Asked], Any]
-    read: Callable[[_Asked, Any], SpeedAnswer]
-    effects: Callable[[_Asked, Any], LeftOutEffects] = _own_effects
-
-
-def _solve_modes(asked: _Asked) -> list[Modes]:
-    how = asked.question.modes, asked.question.discretization, asked.question.tolerance
-    return [natural_modes(asked.scene, speed, *how) for speed in asked.speeds.tolist()]
-
-
-def _read_modes(_: _Asked, found: list[Modes]) -> SpeedAnswer:
-    return _together(
-        [SpeedAnswer(m.frequency[None], m.error[None], m.status[None], m.warnings) for m in found]
-    )
-
-
-def _solve_critical_point(asked: _Asked) -> CriticalPoint:
-    return critical_point(asked.scene, asked.question.discretization, asked.question.tolerance)
-
-
-def _read_critical_point(_: _Asked, found: CriticalPoint) -> SpeedAnswer:
+def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
+    found = critical_point(scene, question.discretization, question.tolerance)
     state = BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
     state = NOT_FOUND if np.isinf(found.error) else state
     answer = (np.array([[each]]) for each in (found.speed, found.error, state))
-    return SpeedAnswer(*answer, warnings=found.warnings)
+    return SpeedAnswer(*answer, found.warnings, effects=lambda: found.left_out_effects.at(np.newaxis))
 
 
-def _solve_crossings(asked: _Asked) -> Crossings:
-    question = asked.question
-    return resonance_speeds(asked.scene, question.speed, question.modes, 1, question.discretization)
-
-
-def _read_crossings(asked: _Asked, found: Crossings) -> SpeedAnswer:
+def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
     """The lowest crossing of each mode with each line."""
-    question, lowest = asked.question, dict[Any, Any]()
-    for crossing in found:  # they ascend in speed
-        lowest.setdefault(crossing_key(crossing), crossing)
-    there = {line_key(*each) for each in lines_of(asked.scene, question.speed)}
+    found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
+    keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
+    for key, crossing in zip(keys, found, strict=True):  # they ascend in speed
+        lowest.setdefault(key, crossing)
+    there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
     value, error = np.full(shape, np.nan), np.zeros(shape)
     status = np.full(shape, max(RESONATES, NO_RESONANCE, NO_LINE, key=len))
@@ -221,70 +177,62 @@ def _read_crossings(asked: _Asked, found: Crossings) -> SpeedAnswer:
         )
         for c in lowest.values()
     ]
-    return SpeedAnswer(value, error, status, (*found.warnings, *more))
+
+    def effects() -> LeftOutEffects:
+        """Those of the crossings of the answer; nan where there is none."""
+        places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
+        known = found.left_out_effects
+        changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}
+        return replace(known, changes=changes, shape=(len(places),))
+
+    return SpeedAnswer(value, error, status, (*found.warnings, *more), effects=effects)
 
 
-def _effects_of_crossings(asked: _Asked, found: Crossings) -> LeftOutEffects:
-    """Those of the lowest crossing of each mode with each line; nan where there is none."""
-    keys = [crossing_key(each) for each in found]
-    places = [keys.index(each.key) if each.key in keys else -1 for each in asked.question.resonances]
-    effects = found.left_out_effects
-    changes = {name: np.append(change, np.nan)[places] for name, change in effects.changes.items()}
-    return replace(effects, changes=changes, shape=(len(places),))
+def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    found = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
+    error = (found.error + found.mode_error) * found.bound  # both are relative to the bound
+    warned = found.is_warned if found.warnings else None
+    return _at_each(speeds, found, (found.amplitude, error, np.asarray(found.status)), warned)
 
 
-def _solve_response(asked: _Asked) -> SteadyResponse:
-    return steady_response(asked.scene, np.unique(asked.speeds), **_options_of_responses(asked))
+def _answer_peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    options = _options_of_responses(question)
+    found = sweep(scene, np.unique(speeds), question.window, **options)
+    error = found.time_error + found.mode_error * found.largest
+    failed = tuple(dict.fromkeys(status for status in found.status if status != DONE))
+    status = np.where(np.isin(found.status, failed), "failed", DONE)
+    warned = found.is_warned(options["tolerance"]) if found.warnings else None
+    return _at_each(speeds, found, (found.peaks, error, status), warned, failed)
 
 
-def _solve_sweep(asked: _Asked) -> Sweep:
-    return sweep(asked.scene, np.unique(asked.speeds), asked.question.window, **_options_of_responses(asked))
-
-
-def _options_of_responses(asked: _Asked) -> dict[str, Any]:
-    question = asked.question
+def _options_of_responses(question: StudyQuestion) -> dict[str, Any]:
     return {"tolerance": question.tolerance or OF_RESPONSES, "discretization": question.discretization}
 
 
-def _read_amplitudes(asked: _Asked, found: SteadyResponse) -> SpeedAnswer:
-    error = (found.error + found.mode_error) * found.bound  # both are relative to the bound
-    warned = found.is_warned if found.warnings else None
-    return _read_responses(asked, found, (found.amplitude, error, np.asarray(found.status)), warned)
-
-
-def _read_peaks(asked: _Asked, found: Sweep) -> SpeedAnswer:
-    error = found.time_error + found.mode_error * found.largest
-    failed = [status for status in found.status if status != DONE]
-    status = np.where(np.isin(found.status, failed), "failed", DONE)
-    warned = found.is_warned(asked.question.tolerance or OF_RESPONSES) if found.warnings else None
-    return _read_responses(asked, found, (found.peaks, error, status), warned, tuple(dict.fromkeys(failed)))
-
-
-def _read_responses(
-    asked: _Asked,
+def _at_each(
+    speeds: np.ndarray,
     found: Any,
     answer: tuple[np.ndarray, np.ndarray, np.ndarray],
     warned: np.ndarray | None,
     failed: tuple[str, ...] = (),
 ) -> SpeedAnswer:
     """Values, relative errors and states at each speed given, of those at all speeds, each once."""
-    order = np.unique(asked.speeds, return_inverse=True)[1]
+    order = np.unique(speeds, return_inverse=True)[1]
     value, error, status = answer
     with np.errstate(divide="ignore", invalid="ignore"):
         error = error / value
     columns = (each[order, None] for each in (value, np.where(np.isnan(error), np.inf, error), status))
     where = None if warned is None else warned[order]
-    return SpeedAnswer(*columns, warnings=(*found.warnings, *failed), warned=where)
+    warnings = (*found.warnings, *failed)
+    return SpeedAnswer(*columns, warnings, where, effects=lambda: found.left_out_effects)
 
 
-_ANALYSES: dict[str, _SingleCall] = {
-    "frequencies": _SingleCall(_solve_modes, _read_modes, lambda _, found: found[0].left_out_effects),
-    "critical_speed": _SingleCall(
-        _solve_critical_point, _read_critical_point, lambda _, found: found.left_out_effects.at(np.newaxis)
-    ),
-    "crossings": _SingleCall(_solve_crossings, _read_crossings, _effects_of_crossings),
-    "amplitude": _SingleCall(_solve_response, _read_amplitudes),
-    "peak": _SingleCall(_solve_sweep, _read_peaks),
+_ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] = {
+    "frequencies": _answer_frequencies,
+    "critical_speed": _answer_critical_speed,
+    "crossings": _answer_crossings,
+    "amplitude": _answer_amplitude,
+    "peak": _answer_peak,
 }
 
 
@@ -310,11 +258,10 @@ def left_out_of_design(
     LeftOutEffects or None
         Relative changes (m,) of its m numbers; None if it has no answer.
     """
-    asked = _Asked(question, scene, np.array([design.get(SPEED, question.speed)]))
-    analysis = _ANALYSES[question.what]
+    speeds = np.array([design.get(SPEED, question.speed)])
     try:
         with unannounced():  # the study has warned
-            return analysis.effects(asked, analysis.solve(asked))
+            return _ANALYSES[question.what](question, scene, speeds).effects()
     except _FAILURES:
         return None
 

@@ -196,7 +196,7 @@ class Study(StatesModelError):
 
         Crosses at the bottom stand where there is no number; inputs after the second have their first value.
         """
-        from beamdyn.common.plots.plots_over_inputs import plot_over_input
+        from beamdyn.common.plots.curves import plot_over_input
 
         first, rest = self.inputs[0], self._rest()
         title, words = f"at {', '.join(rest)}" if rest else "", f"{self._words()} [{self.unit}]"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -144,16 +144,24 @@ def study(
     check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
     if varied and speed is not None:
         raise InvalidValue("speed", speed, "the speed is varied, too", "leave one of the two out", "rad/s")
-    modes, tolerance = count("modes", MODES if modes is None else modes), _check_tolerance(tolerance)
-    _check_motion_matters(what, designs)
+    modes = count("modes", MODES if modes is None else modes)
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    # Numbers of the motion matter where the answer is that of one motion.
+    of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
+    if not KINDS[what].needs_motion and (name := next(of_motion, None)):
+        bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
+        raise InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
     question = StudyQuestion(
         scene, what, at, modes, discretization, tolerance, _check_window(WINDOW if window is None else window)
     )
     request = _Request(question, designs)
     request.check()
     if what == "crossings":
-        request = replace(request, question=replace(question, resonances=request.resonances()))
+        resonances = list_resonances(scene, request.others, at, modes)
+        request = replace(request, question=replace(question, resonances=resonances))
     found = request.solve(run)
+    left_out = warn_of_left_out(scene) if request.is_similar else ()
+    compared_with = "the coarser basis of each" if request.is_similar else "that of each call"
     several = bool(request.question.labels)
     shape = (*designs.shape, request.question.numbers) if several else designs.shape
     return Study(
@@ -165,8 +173,8 @@ def study(
         value=request.in_order(found.value).reshape(shape),
         error=request.in_order(found.error).reshape(shape),
         status=request.in_order(found.status).reshape(shape),
-        warnings=(*_warn(request, found), *run.warnings),
-        provenance=Provenance(__version__, found.method, request.compared_with, perf_counter() - start),
+        warnings=(*left_out, *found.warnings(), *run.warnings),
+        provenance=Provenance(__version__, found.method, compared_with, perf_counter() - start),
         scene=scene,
         question=request.question,
     )
@@ -180,18 +188,13 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
     if not isinstance(vary, Mapping) or not vary:
         remedy = 'give a dictionary, such as {"beam.thickness": [1e-4, 2e-4], "speed": [0.0, 50.0]}'
         raise InvalidValue("vary", vary, "it names no input", remedy)
-    return tuple(_check_input(check_path("vary", name), values) for name, values in vary.items())
-
-
-def _check_input(name: str, values: Any) -> VariedInput:
-    array = real_array(name, values)
-    if not array.size:
-        raise InvalidValue(name, values, "it is empty; give at least one value")
-    return VariedInput(name, unit_of(name) or "", array)
-
-
-def _check_tolerance(tolerance: float | None) -> float | None:
-    return None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    inputs = []
+    for name, values in vary.items():
+        array = real_array(check_path("vary", name), values)
+        if not array.size:
+            raise InvalidValue(name, values, "it is empty; give at least one value")
+        inputs.append(VariedInput(name, unit_of(name) or "", array))
+    return tuple(inputs)
 
 
 def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
@@ -219,14 +222,6 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
         bound = f"a {kind.word} is itself a speed that is sought, and belongs to no other"
         raise InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
     return at
-
-
-def _check_motion_matters(what: str, designs: Designs) -> None:
-    """Refuse numbers of the motion where the answer is not that of one motion."""
-    varied = (each.name for each in designs.inputs if is_of_motion(each.name))
-    if not KINDS[what].needs_motion and (name := next(varied, None)):
-        bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
-        raise InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
 
 
 def _check_window(window: tuple[float, float]) -> tuple[float, float]:
@@ -284,16 +279,12 @@ class SimilarTask:
 
     def answers(self) -> DesignAnswers:
         """The answers of the designs."""
-        question, designs, refinement = (
-            self.question,
-            self.designs,
-            self.question.refinement(self.designs.reference),
-        )
+        question, designs = self.question, self.designs
+        refinement = question.refinement(designs.reference)
         if question.what == "frequencies":
-            # Damping ratio of each design; None where none is damped.
-            own = np.full(self.designs.count, self.question.scene.damping_ratio)
-            ratio = self.columns.get("model.damping_ratio", own)
-            return frequencies_of(designs, refinement, self.speeds, (ratio if ratio.any() else None))
+            own = np.full(designs.count, question.scene.damping_ratio)
+            ratio = self.columns.get("model.damping_ratio", own)  # of each design
+            return frequencies_of(designs, refinement, self.speeds, ratio if ratio.any() else None)
         if question.what == "critical_speed":
             return critical_speeds_of(designs, refinement, self._single)
         return crossings_of(designs, refinement, question.scene, question.resonances, question.speed)
@@ -330,11 +321,6 @@ class _Request:
         """Number S of speeds of each design."""
         return 1 if self.together or self.own_speeds is None else len(self.own_speeds)
 
-    @property
-    def compared_with(self) -> str:
-        """By what the errors were estimated."""
-        return "the coarser basis of each" if self.is_similar else "that of each call"
-
     def check(self) -> None:
         """Refuse designs of which any is no scene, before anything is computed."""
         if self.own_speeds is not None:
@@ -348,15 +334,21 @@ class _Request:
             )
             raise InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
-    def resonances(self):
-        """The resonances that may occur; refused where nothing excites the beam."""
-        question = self.question
-        return list_resonances(question.scene, self.others, question.speed, question.modes)
-
     def solve(self, run: TaskRunner) -> AnswerArrays:
-        """The answers, of all designs in one basis where only numbers differ, else one by one."""
+        """The answers, of all designs in one basis where only numbers differ, else one by one.
+
+        The size of tasks follows from the request alone; of a response all speeds are solved at once.
+        """
         found = AnswerArrays((self.others.count, self.speeds, self.question.numbers))
-        tasks = self._similar_tasks() if self.is_similar else self._single_tasks()
+        size = _BATCHED if self.is_similar else _SINGLE
+        whole = not self.is_similar and self.question.kind.needs_motion
+        block = self.speeds if whole else min(self.speeds, size)
+        tasks = [
+            Task(partial(self._task, rows, at), (rows.stop - rows.start) * (at.stop - at.start), (rows, at))
+            for rows in self.others.chunks(max(1, size // block))
+            for first in range(0, self.speeds, block)
+            for at in [slice(first, min(first + block, self.speeds))]
+        ]
         run.run(_answer, tasks, found.put)
         if (refused := found.count(REFUSED)) and refused == found.value.size:
             raise NoModelAnswer(
@@ -364,36 +356,22 @@ class _Request:
             )
         return found
 
-    # Parts ------------------------------------------------------------------------------------------
-
-    def _parts(self, size: int, whole: bool) -> Iterator[tuple[slice, slice]]:
-        """Yield designs and speeds of each task, of a size that follows from the request alone."""
-        block = self.speeds if whole else min(self.speeds, size)
-        for rows in self.others.chunks(max(1, size // block)):
-            for first in range(0, self.speeds, block):
-                yield rows, slice(first, min(first + block, self.speeds))
-
-    def _task(self, make: Callable[..., object], rows: slice, at: slice) -> Task:
-        number = (rows.stop - rows.start) * (at.stop - at.start)
-        return Task(partial(make, rows, at), number, (rows, at))
+    def _task(self, rows: slice, at: slice) -> SimilarTask | SingleDesigns:
+        """Some designs, each with some of its speeds (R, S) [rad/s]."""
+        columns = self._columns(rows)
+        if self.together:
+            assert self.own_speeds is not None
+            speeds = self.own_speeds[rows, None]
+        else:
+            own = np.array([self.question.speed]) if self.own_speeds is None else self.own_speeds
+            speeds = np.tile(own[at], (rows.stop - rows.start, 1))
+        if not self.is_similar:
+            return SingleDesigns(self.question, columns, speeds)
+        designs = replace(self._similar(rows), nodes=self._nodes)
+        return SimilarTask(self.question, designs, columns, speeds)
 
     def _columns(self, rows: slice) -> dict[str, np.ndarray]:
         return self.others.columns(rows) if self.others.inputs else {}
-
-    def _speeds_of(self, rows: slice, at: slice) -> np.ndarray:
-        """Speeds of some designs (R, S) [rad/s]."""
-        if self.together:
-            assert self.own_speeds is not None
-            return self.own_speeds[rows, None]
-        own = np.array([self.question.speed]) if self.own_speeds is None else self.own_speeds
-        return np.tile(own[at], (rows.stop - rows.start, 1))
-
-    def _single_tasks(self) -> list[Task]:
-        whole = self.question.kind.needs_motion  # whose speeds are solved at once
-        return [self._task(self._single_task, *part) for part in self._parts(_SINGLE, whole)]
-
-    def _single_task(self, rows: slice, at: slice) -> SingleDesigns:
-        return SingleDesigns(self.question, self._columns(rows), self._speeds_of(rows, at))
 
     # All in one basis -------------------------------------------------------------------------------
 
@@ -401,16 +379,14 @@ class _Request:
     def is_similar(self) -> bool:
         """Whether designs differ in numbers only, so that one basis serves all."""
         question, names = self.question, {each.name for each in self.others.inputs}
-        scene = question.scene
-        ignored = {"model.damping_ratio"} if question.what in _BATCHED_KINDS else set[str]()
-        if question.what not in _BATCHED_KINDS or not differ_in_numbers_only(scene, names - ignored):
+        scene, is_batched = question.scene, question.what in _BATCHED_KINDS
+        if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
             return False  # each plane has lines of its own
-        parts = (self._similar(rows) for rows in self.others.chunks(_AT_ONCE))
         return (
             question.refinement(self._reference).can_be_batched
-            and all(p.can_be_solved for p in parts)
+            and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))
             and replace(self._similar(slice(0, 1)), nodes=self._nodes).has_few_nodes(self.designs.count)
         )
 
@@ -430,28 +406,14 @@ class _Request:
     def _similar(self, rows: slice) -> SimilarDesigns:
         return SimilarDesigns(self._reference, self._first, self._columns(rows))
 
-    def _similar_tasks(self) -> list[Task]:
-        return [self._task(self._similar_task, *part) for part in self._parts(_BATCHED, False)]
-
-    def _similar_task(self, rows: slice, at: slice) -> SimilarTask:
-        designs = replace(self._similar(rows), nodes=self._nodes)
-        return SimilarTask(self.question, designs, self._columns(rows), self._speeds_of(rows, at))
-
     # Results ----------------------------------------------------------------------------------------
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
         """Answers (N, S, k) in the order of the inputs."""
-        if self.together or self.own_speeds is None or self.designs.combine == "zip":
+        if self.own_speeds is None or self.designs.combine == "zip":
             return values
         place = [each.name for each in self.designs.inputs].index(SPEED)
         return np.moveaxis(values.reshape(*self.others.shape, *values.shape[1:]), -2, place)
 
 
 _BATCHED_KINDS = {"frequencies", "critical_speed", "crossings"}
-
-
-def _warn(request: _Request, found: AnswerArrays) -> Iterator[str]:
-    """Yield what holds of all designs, and of how many which else."""
-    if request.is_similar:
-        yield from warn_of_left_out(request.question.scene)
-    yield from found.warnings()

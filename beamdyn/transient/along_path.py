@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,8 +72,13 @@ class _Residual:
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
         """The residual of the motions of a system; None if the larger one does not contain it, or gyrates."""
-        X, (stiffness, damping, _) = _embed(system.equations, larger.equations), larger.equations.matrices
-        if X is None or not set(damping) <= {"unity"}:
+        few, many = (_shapes(each.equations) for each in (system, larger))
+        stiffness, damping, _ = larger.equations.matrices
+        if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
+            return None
+        X, *_ = np.linalg.lstsq(many, few, rcond=None)
+        missed = np.linalg.norm(many @ X - few, axis=0) > _CONTAINED * np.linalg.norm(few, axis=0)
+        if missed.any():
             return None
         n, matrices = larger.size, np.array([*stiffness.values()])
         C = damping.get("unity", np.zeros((n, n)))
@@ -81,17 +87,16 @@ class _Residual:
         factors = np.concatenate([loads, of_motion])
         return cls(larger, tuple(stiffness), matrices, C, factors - factors @ X @ X.T, X)
 
-    @property
-    def flat_stiffness(self) -> np.ndarray:
-        """The matrices of stiffness as rows: shape (k, n n)."""
-        return self.stiffness.reshape(len(self.stiffness), -1)
+    def mean_modes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Squared frequencies (n,) and modes (n, n) of the mean stiffness, for values (N, k) over time."""
+        flat = self.stiffness.reshape(len(self.stiffness), -1)
+        return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Residual at some times, (N, n), for coordinates and velocities (N, m) of the run."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
-        return (
-            np.concatenate([*loads, *(k[:, None] * q for k in self.values(root).T), v], axis=1) @ self.factors
-        )
+        parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
+        return np.concatenate(parts, axis=1) @ self.factors
 
     def load(self, root: RootMotion) -> np.ndarray:
         """Residual of the run at rest at some times: shape (N, n)."""
@@ -101,16 +106,6 @@ class _Residual:
     def values(self, root: RootMotion) -> np.ndarray:
         """Values of the quantities at some times: shape (N, k)."""
         return np.stack([getattr(root, name) for name in self.quantities], axis=1)
-
-
-def _embed(equations: Equations, larger: Equations) -> np.ndarray | None:
-    """Coordinates of the larger model by those of a smaller one, (n, m); None if it does not contain them."""
-    few, many = (_shapes(each) for each in (equations, larger))
-    if few.shape[0] != many.shape[0]:
-        return None
-    X, *_ = np.linalg.lstsq(many, few, rcond=None)
-    missed = np.linalg.norm(many @ X - few, axis=0) > _CONTAINED * np.linalg.norm(few, axis=0)
-    return None if missed.any() else X
 
 
 def _shapes(equations: Equations) -> np.ndarray:
@@ -144,8 +139,12 @@ def distance_along_path(
         settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
         in a record that is rough from sample to sample.
     """
-    residual = _Residual.of(system, larger)
-    if residual is None or _grows(path, system):
+    residual, start = _Residual.of(system, larger), max(system.motion.steady_start, path.start)
+    times, coordinates, _ = path.samples
+    size = magnitude(coordinates[times >= start], system.tips)
+    quarter = len(size) // 4
+    grows = quarter > 0 and size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max()
+    if residual is None or grows:  # at steady speed, by parametric or other resonance
         return None
     (q0, v0), (e, rate) = np.split(y0, 2), np.split(y0_of_larger, 2)
     e, rate = e - residual.embedding @ q0, rate - residual.embedding @ v0
@@ -155,7 +154,8 @@ def distance_along_path(
             ringing += _ringing_at_samples(residual, segment.steps)
         last = first + SAMPLES * len(segment.acceleration)
         t, q, v = (each[first : last + 1] for each in path.samples)
-        root = larger.root(np.clip(t, *_within(segment)))
+        inside = _INSIDE * (segment.end - segment.start)
+        root = larger.root(np.clip(t, segment.start + inside, segment.end - inside))
         R, values, jump = residual.at(root, q, v), residual.values(root), True
         for here in _stretches(segment, residual, larger.motion.steady_start):
             found = _follow(residual, t[here], R[here], values[here], e, rate)
@@ -168,12 +168,6 @@ def distance_along_path(
     return largest if ringing <= _MOST_RINGING * largest else None
 
 
-def _within(segment: Segment | RecordSegment) -> tuple[float, float]:
-    """First and last time [s] that belong to a segment alone."""
-    inside = _INSIDE * (segment.end - segment.start)
-    return segment.start + inside, segment.end - inside
-
-
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Amplitude of the tip [m] that changes of the load's slope at the samples excite, added as random.
 
@@ -182,24 +176,13 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)
-    stiffness = residual.values(root).mean(axis=0) @ residual.flat_stiffness
-    n = residual.larger.size
-    squares, modes = np.linalg.eigh(stiffness.reshape(n, n))
+    squares, modes = residual.mean_modes(residual.values(root))
     slope = np.diff(residual.load(root), axis=0) / np.diff(middle)[:, None]
     bends = np.linalg.norm(np.diff(slope, axis=0) @ modes, axis=0)
     w = np.sqrt(np.abs(squares))
     amplitude = bends / w**3 * np.maximum(1.0, w * steps.piece_width.max())
     fast = w * steps.h.max() / SAMPLES > _RESOLVED
     return _BY_CHANCE * float(size_per_coordinate(residual.larger.tips @ modes) @ (amplitude * fast))
-
-
-def _grows(path: Trajectory, system: ModalSystem) -> bool:
-    """Whether the motion grows at steady speed, by parametric or other resonance."""
-    start = max(system.motion.steady_start, path.start)
-    t, q, _ = path.samples
-    size = magnitude(q[t >= start], system.tips)
-    quarter = len(size) // 4
-    return quarter > 0 and bool(size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max())
 
 
 def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_start: float) -> Iterator[slice]:
@@ -212,18 +195,10 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
         yield slice(int(a), int(b) + 1)
 
 
-@dataclass(frozen=True)
-class _Followed:
-    """The difference in a stretch.
+class _Followed(NamedTuple):
+    """The difference in a stretch: of the tip at most, coordinates and rates (n,) at the end, and ringing.
 
-    Parameters
-    ----------
-    largest : float
-        Largest deflection of the tip [m].
-    e, rate : ndarray, shape (n,)
-        Coordinates and their rates at the end.
-    ringing : float
-        Amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
+    The ringing is the amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
     """
 
     largest: float
@@ -289,8 +264,7 @@ class _Oscillators:
     @classmethod
     def of(cls, residual: _Residual, t: np.ndarray, values: np.ndarray) -> _Oscillators | None:
         """The oscillators; None if one diverges or is heavily damped."""
-        n = residual.larger.size
-        squares, modes = np.linalg.eigh((values.mean(axis=0) @ residual.flat_stiffness).reshape(n, n))
+        squares, modes = residual.mean_modes(values)
         matrices = modes.T @ residual.stiffness @ modes
         diagonals = np.diagonal(matrices, axis1=1, axis2=2)
         stiff, decay = values @ diagonals, ((residual.damping @ modes) * modes).sum(axis=0) / 2
@@ -301,7 +275,7 @@ class _Oscillators:
         w = np.sqrt(w2[:, slow])
         phase = _cumulative(w, np.diff(t)[:, None])
         turn = np.exp(1j * phase - decay[slow] * (t - t[0])[:, None])
-        coupled = matrices - diagonals[:, None] * np.eye(n)
+        coupled = matrices - diagonals[:, None] * np.eye(len(modes))
         return cls(t, values, modes, coupled, stiff, decay, slow, np.sqrt(w), turn)
 
     def coupling(self, y: np.ndarray) -> np.ndarray:
@@ -316,16 +290,13 @@ class _Oscillators:
         y, slow = force / self.stiff, self.slow
         end = (y[-1] - y[-2]) / (self.t[-1] - self.t[-2])
         jump = np.abs(np.where(slow, 0.0, y0 - y[0]))
-        y[:, slow], end[slow] = self._oscillate(force[:, slow], y0[slow], v0[slow])
-        return y, end, jump
-
-    def _oscillate(self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Motion (N, j) of the slow modes under forces (N, j), and rates at the end (j,)."""
-        root, turn, decay = self.root, self.turn, self.decay[self.slow]
+        force, y0, v0 = force[:, slow], y0[slow], v0[slow]
+        root, turn, decay = self.root, self.turn, self.decay[slow]
         start = (v0 + decay * y0) / root[0] + 1j * root[0] * y0
         a = turn * (start + _cumulative(force / (root * turn), np.diff(self.t)[:, None]))
-        y = a.imag / root
-        return y, a[-1].real * root[-1] - decay * y[-1]
+        y[:, slow] = a.imag / root
+        end[slow] = a[-1].real * root[-1] - decay * y[-1, slow]
+        return y, end, jump
 
 
 def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:

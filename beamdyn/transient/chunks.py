@@ -19,9 +19,9 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate
-from beamdyn.transient.model_of_basis import choose_for_basis
+from beamdyn.transient.problem import choose_for_basis
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import Trajectory, largest_in_each, largest_on, magnitude
+from beamdyn.transient.trajectory import largest_in_each, largest_on, magnitude
 from beamdyn.transient.transient import TransientRequest
 
 DONE = "done"
@@ -46,22 +46,19 @@ class SweepRequest(FieldsOnly):
 
     def transient_request(self, speed: float) -> TransientRequest:
         """Request of the transient of the case with a final speed [rad/s]."""
-        scene, method, rest = replace(self.scene, motion=self.motion(speed)), "auto", "rest"
-        basis = self.basis_at(speed)
-        return TransientRequest(
-            scene, self.t_end, self.tolerance, method, self.discretization, rest, None, {}, basis
-        )
+        scene, basis = replace(self.scene, motion=self.motion(speed)), self.basis_at(speed)
+        how = "auto", self.discretization, "rest", None, {}
+        return TransientRequest(scene, self.t_end, self.tolerance, *how, basis)
 
     def basis_at(self, speed: float) -> ModalBasis:
         """Modal basis of one case, with as many modes as it needs, at its own slowest and fastest speed."""
-        basis = replace(self.basis, modes=self._modes_near(speed)) if self.modes_at else self.basis
+        basis = self.basis
+        if self.modes_at:
+            speeds, modes = zip(*self.modes_at, strict=True)
+            after = bisect_right(speeds, speed)
+            basis = replace(basis, modes=max(modes[max(after - 1, 0) : after + 1]))
         at_rest = basis.is_at_rest
         return basis if at_rest else replace(basis, speeds=find_speed_range(self.motion(speed), self.t_end))
-
-    def _modes_near(self, speed: float) -> int:
-        speeds, modes = zip(*self.modes_at, strict=True)
-        after = bisect_right(speeds, speed)
-        return max(modes[max(after - 1, 0) : after + 1])
 
     @property
     def directions(self) -> int:
@@ -76,7 +73,7 @@ class SweepRequest(FieldsOnly):
     @cached_property
     def model(self) -> Model:
         """The discretized scene, chosen for the modal basis and the tolerance."""
-        return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
+        return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
     @property
     def basis_name(self) -> str:
@@ -111,45 +108,32 @@ class CaseResult(NamedTuple):
 
 def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseResult]:
     """Solve the cases of one chunk, each with its own steps."""
-    solve = _solve_transient if request.scene.physics.large_deflection else _solve
     with one_blas_thread(), np.errstate(all="ignore"):
-        return [solve(request, speed) for speed in speeds]
+        return [_solve(request, speed) for speed in speeds]
 
 
 def _solve(request: SweepRequest, speed: float) -> CaseResult:
-    """Solve one case by its equations as `simulate` does; of its motion only peaks of the tip are kept."""
-    equations, motion = request.modal_equations(speed), request.motion(speed)
-    system = ModalSystem.from_rest(equations, motion, request.t_end)
+    """Solve one case as `simulate` does; of its motion only peaks of the tip are kept."""
+    reason = "not finite"
     try:
-        path, error, _ = integrate(system, np.zeros(2 * system.size), request.t_end, request.tolerance)
-    except (ArithmeticError, np.linalg.LinAlgError) as reason:
-        return _failed(request, reason_of(reason))
-    tip, outputs = path.projected(system.tips), np.eye(len(system.tips))
-    windows = [request.window, (tip.start, tip.end)]
-    peak, largest = largest_in_each(lambda q: magnitude(q, outputs), tip, windows)
-    if not np.isfinite(largest):
-        return _failed(request, "not finite")
-    each = [peak] if len(outputs) == 1 else [_peak_of(output, tip, request.window) for output in outputs]
-    return CaseResult(peak, max(peak, largest), error, DONE, tuple(each))
-
-
-def _peak_of(output: np.ndarray, path: Trajectory, window: tuple[float, float]) -> float:
-    """Largest magnitude in a window of one linear function of the coordinates, (n,) per unit of each."""
-    return largest_on(lambda q: magnitude(q, output[None]), path, *window)
-
-
-def _solve_transient(request: SweepRequest, speed: float) -> CaseResult:
-    """Solve one case of large deflection."""
-    try:
-        run = request.transient_request(speed).run()
-        peak = run.peak(*request.window)
-    except (ArithmeticError, np.linalg.LinAlgError) as error:
-        return _failed(request, reason_of(error))
-    if not np.isfinite(peak):
-        return _failed(request, "not finite")
-    by_direction = [run.peak(*request.window, i) for i in range(request.directions)]
-    return CaseResult(peak, run.largest, run.time_error, DONE, tuple(by_direction))
-
-
-def _failed(request: SweepRequest, reason: str) -> CaseResult:
-    return CaseResult(np.nan, np.nan, np.nan, f"failed: {reason}", (np.nan,) * request.directions)
+        if request.scene.physics.large_deflection:
+            found = request.transient_request(speed).solve()
+            largest, error = found.largest, found.error
+            peak = found.peak(*request.window)
+            each = [found.peak(*request.window, direction) for direction in range(request.directions)]
+        else:
+            equations, motion = request.modal_equations(speed), request.motion(speed)
+            system = ModalSystem.from_rest(equations, motion, request.t_end)
+            path, error, _ = integrate(system, np.zeros(2 * system.size), request.t_end, request.tolerance)
+            tip, outputs = path.projected(system.tips), np.eye(len(system.tips))
+            windows = [request.window, (tip.start, tip.end)]
+            peak, largest = largest_in_each(lambda q: magnitude(q, outputs), tip, windows)
+            largest, each = max(peak, largest), [peak]
+            if len(outputs) > 1:
+                alone = (tip.projected(output[None]) for output in outputs)
+                each = [largest_on(lambda q: np.abs(q[:, 0]), one, *request.window) for one in alone]
+    except (ArithmeticError, np.linalg.LinAlgError) as stopped:
+        peak, largest, error, each, reason = np.nan, np.nan, np.nan, [], reason_of(stopped)
+    if not np.isfinite([peak, largest]).all():
+        return CaseResult(np.nan, np.nan, np.nan, f"failed: {reason}", (np.nan,) * request.directions)
+    return CaseResult(peak, largest, error, DONE, tuple(each))

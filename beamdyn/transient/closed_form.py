@@ -9,11 +9,12 @@ is used.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.transient.gauss import Segment, interpolate, tableau
+from beamdyn.transient.gauss import interpolate, tableau
 from beamdyn.transient.time_error import (
     INTERPOLATION_POINTS,
     SegmentError,
@@ -87,32 +88,17 @@ class _Harmonics:
             found = _distinct(np.concatenate([found, np.add.outer(found, varying).ravel()]))
         return found
 
-    def coupling(self, sums: np.ndarray) -> _Coupling:
-        """The coupling of some sums of frequencies (k,) by the varying stiffness."""
+    def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """Forces (..., k, n) of the varying stiffness on a motion with factors q (..., k, n) at sums (k,)."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
-        source = _places(sums, sums - self.frequency[varying, None])
-        return _Coupling(source, self.stiffness[varying].swapaxes(1, 2))
+        source = _places(sums, sums - self.frequency[varying, None])  # which sum leads to each; k where none
+        factors = self.stiffness[varying].swapaxes(1, 2)
 
+        def force(q: np.ndarray) -> np.ndarray:
+            padded = np.concatenate([q, np.zeros_like(q[..., :1, :])], axis=-2)
+            return (padded[..., source, :] @ factors).sum(axis=-3)
 
-@dataclass(frozen=True)
-class _Coupling:
-    """Forces of the varying stiffness on a motion, between sums of frequencies.
-
-    Parameters
-    ----------
-    source : ndarray of int, shape (f, k)
-        Which of the k sums leads to each by the frequency of each factor; k where none does.
-    factors : ndarray, shape (f, n, n)
-        Factors of the varying stiffness, transposed.
-    """
-
-    source: np.ndarray
-    factors: np.ndarray
-
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """Forces (..., k, n) on a motion that has factors q (..., k, n)."""
-        padded = np.concatenate([q, np.zeros_like(q[..., :1, :])], axis=-2)
-        return (padded[..., self.source, :] @ self.factors).sum(axis=-3)
+        return force
 
 
 def _distinct(frequencies: np.ndarray) -> np.ndarray:
@@ -144,13 +130,6 @@ class _Exponentials:
     s: np.ndarray
     b: np.ndarray
 
-    def __add__(self, other: _Exponentials) -> _Exponentials:
-        return _Exponentials(np.concatenate([self.s, other.s]), np.concatenate([self.b, other.b]))
-
-    def some(self, which: np.ndarray) -> _Exponentials:
-        """Some of the terms."""
-        return _Exponentials(self.s[which], self.b[which])
-
     def at(self, tau: np.ndarray, derivatives: int = 0) -> np.ndarray:
         """Values at times tau (N,) [s] after t0, and those of derivatives: shape (derivatives + 1, N, n)."""
         powers = self.s ** np.arange(derivatives + 1)[:, None]
@@ -170,7 +149,7 @@ def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> 
     flexible = np.linalg.inv(_stiffness(1j * sums, C, K))
     coupling, c, before = harmonics.coupling(sums), np.zeros_like(load), np.inf
     for _ in range(_ITERATIONS):
-        new = (flexible @ (load - coupling.force(c))[:, :, None])[:, :, 0]
+        new = (flexible @ (load - coupling(c))[:, :, None])[:, :, 0]
         change, size = np.abs(new - c).max(), np.abs(new).max()
         c = new
         if change <= _CONVERGED * size or change >= before:
@@ -197,19 +176,26 @@ def _free(
     direction of the shape, in which the exponent changes instead.
     """
     n, sums = len(K), harmonics.sums(order)
-    unmodulated = _unmodulated(C, K)
-    if unmodulated is None or n * len(sums) > 4 * _MOST_HARMONICS:
+    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
+    upper = np.imag(values) > 0
+    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:  # one does not oscillate, or too many terms
         return None
-    exponent, shape = unmodulated
+    exponent, shape = values[upper], vectors[:n, upper].T
+    shape = shape / np.linalg.norm(shape, axis=1)[:, None]
     own = int(np.abs(sums).argmin())
-    inverse = np.linalg.inv(_stiffness_beside(exponent, 1j * sums, own, C, K))
-    bordered = np.linalg.inv(_bordered_stiffness(exponent, shape, C, K))
+    beside = _stiffness(exponent[:, None] + 1j * sums, C, K)
+    beside[:, own] = np.eye(n)
+    border = np.empty((n, n + 1, n + 1), complex)
+    border[:, :n, :n] = _stiffness(exponent, C, K)
+    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
+    border[:, n, :n], border[:, n, n] = shape.conj(), 0
+    inverse, bordered = np.linalg.inv(beside), np.linalg.inv(border)
     P = np.zeros((n, len(sums), n), complex)
     P[:, own] = shape
     coupling, before = harmonics.coupling(sums), np.inf
     for _ in range(_ITERATIONS):
         s = (exponent[:, None] + 1j * sums)[:, :, None]
-        residual = s**2 * P + s * (P @ C.T) + P @ K.T + coupling.force(P)
+        residual = s**2 * P + s * (P @ C.T) + P @ K.T + coupling(P)
         step = (inverse @ residual[..., None])[..., 0]
         at_own = (bordered[:, :, :n] @ residual[:, own, :, None])[..., 0]
         step[:, own] = at_own[:, :n]
@@ -219,51 +205,6 @@ def _free(
             break
         before = change
     return exponent[:, None] + 1j * sums, P
-
-
-def _unmodulated(C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Exponents (n,) and unit shapes (n, n) of free vibrations by C and K; None if one does not oscillate."""
-    n = len(K)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
-    upper = np.imag(values) > 0
-    if upper.sum() != n:
-        return None
-    shape = vectors[:n, upper].T
-    return values[upper], shape / np.linalg.norm(shape, axis=1)[:, None]
-
-
-def _bordered_stiffness(exponent: np.ndarray, shape: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Dynamic stiffness at n exponents, bordered by its change with the exponent, and by the shape."""
-    n = len(K)
-    border = np.empty((n, n + 1, n + 1), complex)
-    border[:, :n, :n] = _stiffness(exponent, C, K)
-    border[:, :n, n] = 2 * exponent[:, None] * shape + shape @ C.T
-    border[:, n, :n], border[:, n, n] = shape.conj(), 0
-    return border
-
-
-def _stiffness_beside(
-    exponent: np.ndarray, sums: np.ndarray, own: int, C: np.ndarray, K: np.ndarray
-) -> np.ndarray:
-    """Dynamic stiffness at exponents plus sums, (n, k, n, n), with the unit matrix where the sum is zero."""
-    found = _stiffness(exponent[:, None] + sums, C, K)
-    found[:, own] = np.eye(len(K))
-    return found
-
-
-def _starting_from(
-    forced: _Exponentials, exponents: np.ndarray, shapes: np.ndarray, q0: np.ndarray, v0: np.ndarray
-) -> _Exponentials:
-    """Add the free vibrations that lead from the forced motion to the state q0, v0 at t0."""
-    n, zero = len(q0), np.zeros(1)
-    start = np.concatenate([q0, v0]) - forced.at(zero, 1).ravel()
-    columns = np.concatenate([shapes.sum(axis=1), (exponents[:, :, None] * shapes).sum(axis=1)], axis=1).T
-    scale = np.abs(columns).max(axis=1)
-    columns = np.concatenate([np.real(columns), -np.imag(columns)], axis=1) / scale[:, None]
-    real = np.linalg.solve(columns, start / scale)
-    factor = real[:n] + 1j * real[n:]
-    free = _Exponentials(exponents.ravel(), (factor[:, None, None] * shapes).reshape(-1, n))
-    return forced + free
 
 
 def propagate_in_closed_form(
@@ -306,34 +247,32 @@ def propagate_in_closed_form(
             return None
         if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
             return None
-        missed, largest = _missed(system, C, K, motion, t0, t1)
-        if missed.sum() <= accuracy * largest:
-            return _sample(motion, t0, (t1 - t0) / steps, steps, stages, accuracy, missed)
+        tau = (t1 - t0) * (_GOLDEN * np.arange(1, _CHECKED + 1) % 1)
+        e, g = system.scalars(t0 + tau)
+        q, v, a = motion.at(tau, 2)
+        varying = (e[:, :, None] * (q @ system.G.swapaxes(1, 2)).swapaxes(0, 1)).sum(axis=1)
+        missed = a + v @ C.T + q @ K.T + varying - g @ system.P  # counts as if it were always in resonance
+        error = (t1 - t0) * np.abs(missed).mean(axis=0) / np.sqrt(np.abs(np.diag(K)))
+        if error.sum() <= accuracy * float(np.abs(q).max()):
+            return _sample(motion, t0, (t1 - t0) / steps, steps, stages, accuracy, error)
     return None
 
 
 def _solve(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int, q0: np.ndarray, v0: np.ndarray
 ) -> _Exponentials | None:
-    """Forced and free motion from the state q0, v0, up to an order of e; None if it is not found."""
+    """Forced motion, and the free vibrations that lead from it to the state q0, v0; None if not found."""
     forced, free = _forced(harmonics, C, K, order), _free(harmonics, C, K, order)
-    return None if forced is None or free is None else _starting_from(forced, *free, q0, v0)
-
-
-def _missed(
-    system: ModulatedSystem, C: np.ndarray, K: np.ndarray, motion: _Exponentials, t0: float, t1: float
-) -> tuple[np.ndarray, float]:
-    """Error of each coordinate (n,) by what the motion misses in the equations, and the largest coordinate.
-
-    What is missed counts as if it were in resonance all the time.
-    """
-    tau = (t1 - t0) * (_GOLDEN * np.arange(1, _CHECKED + 1) % 1)
-    e, g = system.scalars(t0 + tau)
-    q, v, a = motion.at(tau, 2)
-    varying = (e[:, :, None] * (q @ system.G.swapaxes(1, 2)).swapaxes(0, 1)).sum(axis=1)
-    missed = a + v @ C.T + q @ K.T + varying - g @ system.P
-    error = (t1 - t0) * np.abs(missed).mean(axis=0) / np.sqrt(np.abs(np.diag(K)))
-    return error, float(np.abs(q).max())
+    if forced is None or free is None:
+        return None
+    (exponents, shapes), n = free, len(q0)
+    start = np.concatenate([q0, v0]) - forced.at(np.zeros(1), 1).ravel()
+    columns = np.concatenate([shapes.sum(axis=1), (exponents[:, :, None] * shapes).sum(axis=1)], axis=1).T
+    scale = np.abs(columns).max(axis=1)
+    columns = np.concatenate([np.real(columns), -np.imag(columns)], axis=1) / scale[:, None]
+    real = np.linalg.solve(columns, start / scale)
+    factors = ((real[:n] + 1j * real[n:])[:, None, None] * shapes).reshape(-1, n)
+    return _Exponentials(np.concatenate([forced.s, exponents.ravel()]), np.concatenate([forced.b, factors]))
 
 
 def _sample(
@@ -347,21 +286,15 @@ def _sample(
     small[rank] = np.cumsum(size[rank]) <= _NEGLIGIBLE * accuracy * size.max(initial=0.0)
     fast = np.abs(motion.s) * h > _RESOLVED
     left_out = np.abs(motion.b[small | fast] * growth[small | fast, None]).sum(axis=0)
-    kept = motion.some(~(small | fast))
+    kept = _Exponentials(motion.s[~(small | fast)], motion.b[~(small | fast)])
     state, acceleration = _evaluate(kept, h, steps, stages)
-    segment = Segment(t0, h, state, acceleration)
+    chosen = choose_checked_steps(steps)
+    q = interpolate(h, state[chosen], acceleration[chosen], INTERPOLATION_POINTS)[0]
+    tau = h * (chosen[:, None] + INTERPOLATION_POINTS)
+    between = q.reshape(tau.size, -1) - kept.at(tau.ravel())[0]
     unresolved = np.abs(motion.b[fast]).sum(axis=0) > (missed + left_out) / 2
-    error = SegmentError(missed + left_out, _interpolation_error(kept, segment), unresolved)
+    error = SegmentError(missed + left_out, between, unresolved)
     return SegmentWithError(t0, h, state, acceleration, error)
-
-
-def _interpolation_error(motion: _Exponentials, segment: Segment) -> np.ndarray:
-    """Differences (k, n) of the interpolated coordinates from the motion, in some steps."""
-    chosen = choose_checked_steps(len(segment.acceleration))
-    state, acceleration = segment.state[chosen], segment.acceleration[chosen]
-    q = interpolate(segment.h, state, acceleration, INTERPOLATION_POINTS)[0]
-    tau = segment.h * (chosen[:, None] + INTERPOLATION_POINTS)
-    return q.reshape(tau.size, -1) - motion.at(tau.ravel())[0]
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:

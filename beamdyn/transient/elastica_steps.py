@@ -1,4 +1,9 @@
-"""Integration of large deflections to a tolerance: step size, and the error from a second run.
+"""Steps of bent beams, whose equations are nonlinear, by Gauss collocation, and the error from a second run.
+
+As in `beamdyn.transient.gauss`, the unknowns of a step are the accelerations a_i at its s nodes; rates and
+coordinates there are v + h sum A_ij a_j and q + c_i h v + h^2 sum A2_ij a_j.  Newton's method solves for them
+to rounding, with the derivatives of the equations at all nodes.  The method is symmetric in time and has no
+numerical damping, so that energy does not drift.
 
 A run with two more stages in the same steps, of an order higher by four, shows the error of the first, with
 all that the equations make of it.  The second is the result: its own error is far smaller.
@@ -6,25 +11,27 @@ all that the equations make of it.  The second is the result: its own error is f
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
 from itertools import pairwise
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg.lapack import dgetrf, dgetrs
 
-from beamdyn.transient.elastica_gauss import StepNotSolved, propagate_elastica
-from beamdyn.transient.elastica_system import ElasticaSystem
-from beamdyn.transient.gauss import Segment, interpolate, step_maps, tableau
+from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
+from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, interpolate, step_maps, tableau
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
     TOLERANCES,
     Attempt,
     StepSize,
+    chain_segments,
     check_number_of_steps,
-    shorten_steps,
     split_at_breakpoints,
 )
 from beamdyn.transient.time_error import (
+    INTERPOLATION_POINTS,
     STAGES,
     UNRESOLVED_PHASE,
     TimeError,
@@ -33,8 +40,14 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.trajectory import Trajectory
 
+_ITERATIONS = 30  # of Newton's method
+_CONVERGED = 1e-13  # error of the accelerations, over their size, with which the iteration ends
+_LEAST_REDUCTION = 1e-3  # least ratio of errors by an iteration that the last two changes may show
+_STALLED = 1e-9  # error of the accelerations over their size below which a stalled iteration has converged
+_BALANCED = 1e-12  # the same for the residual over the elastic force, where accelerations are small beside it
+_FAST = 0.1  # reduction by an iteration up to which the derivatives are kept
+_FEW = 4  # number of iterations up to which the next step begins with the same derivatives
 _FINER = STAGES + 2  # stages of the second run
-_INSIDE = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error of interpolation
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
 _TIMES_COMPARED = 257  # times at which the motion of the root is compared with that at the start
 _SHORTER = 0.5  # phase angle of the next step size, over that of a step that was not solved
@@ -43,161 +56,250 @@ _MANY = 64  # number of pieces of a motion, such as one given by samples, above 
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
-def integrate_elastica(
-    system: ElasticaSystem, y0: np.ndarray, t_end: float, tolerance: float
-) -> tuple[Trajectory, float, str]:
-    """Integrate large deflections: parameters and results as of `beamdyn.transient.step_size.integrate`.
+def rest_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
+    """The path of a beam that stays at rest, by a constant motion of the root and forces in equilibrium."""
+    q, v = y0[None, : system.size], y0[None, system.size :]
+    if system.motion.steady_start > 0 or v.any():
+        return None
+    root = system.root(np.linspace(0, t_end, _TIMES_COMPARED))
+    values = [getattr(root, name) for name in system.equations.vectors]
+    if not all((value == value[0]).all() for value in (*values, root.speed_squared, root.root_axial)):
+        return None
+    force = system.at(system.drive(system.root(np.zeros(1))), q, v, v).residual
+    elastic = np.abs(system.elastica.stiffness) @ np.abs(q[0])
+    if np.abs(force).max() > _BALANCE * elastic.max():
+        return None
+    state = np.tile(np.append(1.0, y0), (2, 1))
+    return Trajectory((Segment(0.0, t_end, state, np.zeros((1, _FINER, system.size))),))
 
-    Raises
-    ------
-    TooManySteps
-        If the steps of the run do not fit into memory.
-    ArithmeticError
-        If the steps cannot be solved at any size.
+
+def attempt_elastica(
+    system: ElasticaSystem,
+    y0: np.ndarray,
+    t_end: float,
+    step_size: StepSize,
+    before: Attempt | None = None,
+) -> Attempt:
+    """Integrate twice with equal steps in each segment, of 8 and of 10 stages; shorter ones if not solved.
+
+    Steps that were not solved are shortened, at last until they resolve the vibration of all coordinates.
     """
-    if _stays_in_equilibrium(system, y0, t_end):
-        return _rest(system, y0, t_end), 0.0, "no steps: the beam stays in equilibrium"
+    pieces = smooth_piece_ends(system.motion, t_end)
+    edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)
+    steps = [step_size.count_steps(system.straight, a, b) for a, b in pairwise(edges)]
+    check_number_of_steps(sum(steps), system.size, t_end)
 
-    def run(step_size: StepSize, before: Attempt | None) -> Attempt:
-        try:
-            runs = _TwoRuns.of(system, y0, t_end, step_size)
-        except StepNotSolved:
-            if step_size.is_finest:
-                raise
-            return run(_shorten(step_size, system.size), before)
-        method = f"Gauss collocation of order {2 * _FINER}, {runs.steps} steps"
-        return Attempt(step_size, runs.path, runs.error, runs.largest, method)
+    def run(stages: int, like: tuple[Segment, ...] = ()) -> tuple[Segment, ...]:
+        known = iter(like)
+        return chain_segments(
+            edges,
+            steps,
+            y0,
+            lambda a, b, count, q, v: propagate_elastica(
+                system, a, b, count, q, v, stages, next(known, None)
+            ),
+        )
 
-    return shorten_steps(run, tolerance)
+    try:
+        coarse = run(STAGES)
+        fine = run(_FINER, coarse)
+    except StepNotSolved:
+        if step_size.is_finest:
+            raise
+        shorter = StepSize(step_size.phase * _SHORTER, step_size.modes)
+        if step_size.phase < _SHORT and step_size.modes < system.size:
+            shorter = StepSize(StepSize.from_tolerance(TOLERANCES[1]).phase, step_size.modes + 1)
+        return attempt_elastica(system, y0, t_end, shorter, before)
+    method = f"Gauss collocation of order {2 * _FINER}, {sum(steps)} steps"
+    largest = max(float(np.abs(_tips(system, segment)).max()) for segment in fine)
+    return Attempt(step_size, Trajectory(fine), _error(system, coarse, fine), largest, method)
 
 
-def _shorten(step_size: StepSize, size: int) -> StepSize:
-    """Shorten steps that were not solved, at last until they resolve the vibration of all coordinates."""
-    if step_size.phase < _SHORT and step_size.modes < size:
-        return StepSize(StepSize.from_tolerance(TOLERANCES[1]).phase, step_size.modes + 1)
-    return StepSize(step_size.phase * _SHORTER, step_size.modes)
+def _tips(system: ElasticaSystem, segment: Segment) -> np.ndarray:
+    """Deflections of the tip at the ends of the steps [m]."""
+    return system.deflections(segment.state[:, 1 : system.size + 1])[:, 0]
 
 
-@dataclass(frozen=True)
-class _TwoRuns:
-    """Two runs in the same steps, with different numbers of stages.
+def _error(system: ElasticaSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
+    """Error of the tip deflection: distance of two runs, divided among the coordinates."""
+    tip, n, straight = 0.0, system.size, system.straight
+    change = np.zeros(n)
+    for first, second in zip(coarse, fine, strict=True):
+        difference = np.abs(first.state - second.state)[:, 1 : n + 1].max(axis=0)
+        change = np.maximum(change, difference * np.abs(system.equations.tip))
+        tip = max(tip, float(np.abs(_tips(system, first) - _tips(system, second)).max()))
+    modes = tip * change / max(change.sum(), 1e-300)
+    longest = max(fine, key=lambda segment: segment.h)  # whose phase errors are those of a straight beam
+    starts = np.array([(longest.start + longest.end - longest.h) / 2])
+    maps, finer = (step_maps(straight, starts, longest.h, tableau(s)).step for s in (STAGES, _FINER))
+    phases = phase_errors(finer - maps, vibration_frequencies(straight, longest.end))
+    some = fine[:: 1 + len(fine) // _MANY]
+    interpolation = max(_interpolation_error(system, segment) for segment in some)
+    return TimeError.of_coordinates(straight, modes, interpolation, phases > UNRESOLVED_PHASE)
+
+
+def _interpolation_error(system: ElasticaSystem, segment: Segment) -> float:
+    """Largest error of the tip's deflection between the ends of steps [m], by steps with more stages."""
+    error, h = 0.0, segment.h
+    for k in np.unique(np.linspace(0, len(segment.acceleration) - 1, _CHECKED).astype(int)):
+        state, acceleration = segment.state[k : k + 2], segment.acceleration[k : k + 1]
+        here = Segment(segment.start + k * h, h, state, acceleration)
+        q, v = np.split(state[0, 1:], 2)
+        finer = propagate_elastica(system, here.start, here.end, 1, q, v, _FINER + 2, here)
+        each = (
+            interpolate(s.h, s.state[:-1], s.acceleration, INTERPOLATION_POINTS)[0] for s in (here, finer)
+        )
+        coarse, fine = map(system.deflections, each)
+        error = max(error, float(np.abs(coarse - fine).max()))
+    return error
+
+
+# Steps --------------------------------------------------------------------------------------------
+
+
+class StepNotSolved(ArithmeticError):
+    """A step whose equations Newton's method does not solve."""
+
+
+def propagate_elastica(
+    system: ElasticaSystem,
+    t0: float,
+    t1: float,
+    steps: int,
+    q0: np.ndarray,
+    v0: np.ndarray,
+    stages: int,
+    like: Segment | None = None,
+) -> Segment:
+    """Integrate over equal steps: as `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
     system : ElasticaSystem
-        The equations.
-    coarse, fine : tuple of Segment
-        Segments of the runs, of 8 and 10 stages.
+        The equations; smooth between t0 and t1.
+    t0, t1 : float
+        Beginning and end [s].
+    steps : int
+        Number of steps.
+    q0, v0 : ndarray, shape (n,)
+        Coordinates and rates at t0.
+    stages : int
+        Stages s of each step; the order is 2 s.
+    like : Segment, optional
+        The same steps with another number of stages, from which the iteration starts.
+
+    Raises
+    ------
+    StepNotSolved
+        If a step is too long.
     """
+    h, n = (t1 - t0) / steps, system.size
+    step = _Step(system, h, tableau(stages))
+    state, acceleration = allocate_steps(steps, stages, q0, v0)
+    known = None if like is None else _at_nodes(like.acceleration.shape[1], stages)
+    q, v = q0, v0
+    drives = iter(())
+    with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused
+        for k in range(steps):
+            if k % BLOCK == 0:
+                some = np.arange(k, min(k + BLOCK, steps))
+                drives = zip(*system.drive(system.root(t0 + h * (some[:, None] + step.table.c))), strict=True)
+            guess = None if like is None or known is None else known @ like.acceleration[k]
+            q, v, a = step.advance(Drive(*next(drives)), q, v, guess)
+            acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
+    return Segment(t0, h, state, acceleration)
 
-    system: ElasticaSystem
-    coarse: tuple[Segment, ...]
-    fine: tuple[Segment, ...]
 
-    @classmethod
-    def of(cls, system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize) -> _TwoRuns:
-        """Integrate twice, with equal steps in each segment."""
-        pieces = smooth_piece_ends(system.motion, t_end)
-        edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)
-        steps = [step_size.count_steps(system.straight, a, b) for a, b in pairwise(edges)]
-        check_number_of_steps(sum(steps), system.size, t_end)
-        coarse = _propagate(system, edges, steps, y0, STAGES)
-        return cls(system, coarse, _propagate(system, edges, steps, y0, _FINER, coarse))
+def _at_nodes(given: int, wanted: int) -> np.ndarray:
+    """Matrix (wanted, given) from values at the nodes of one Gauss rule to those at the nodes of another."""
+    x, w = legendre.leggauss(given)
+    degrees = np.arange(given)
+    series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(x, given - 1).T * w
+    return legendre.legvander(2 * tableau(wanted).c - 1, given - 1) @ series
 
-    @property
-    def path(self) -> Trajectory:
-        """The trajectory of the run with more stages."""
-        return Trajectory(self.fine)
 
-    @property
-    def steps(self) -> int:
-        """Number of steps."""
-        return sum(len(segment.acceleration) for segment in self.fine)
+Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # of a matrix, and the pivots
 
-    @property
-    def largest(self) -> float:
-        """Largest deflection at the ends of the steps [m]."""
-        return max(float(np.abs(self._tips(segment.state)).max()) for segment in self.fine)
 
-    @property
-    def error(self) -> TimeError:
-        """Error of the tip deflection: distance of the runs, divided among the coordinates."""
-        tip, n = 0.0, self.system.size
-        change = np.zeros(n)
-        for coarse, fine in zip(self.coarse, self.fine, strict=True):
-            difference = np.abs(coarse.state - fine.state)[:, 1 : n + 1].max(axis=0)
-            change = np.maximum(change, difference * np.abs(self.system.equations.tip))
-            tip = max(tip, float(np.abs(self._tips(coarse.state) - self._tips(fine.state)).max()))
-        modes = tip * change / max(change.sum(), 1e-300)
-        longest = max(self.fine, key=lambda segment: segment.h)
-        unresolved = self._phase_errors(longest) > UNRESOLVED_PHASE
-        some = self.fine[:: 1 + len(self.fine) // _MANY]
-        interpolation = max(map(self._interpolation_error, some))
-        return TimeError.of_coordinates(self.system.straight, modes, interpolation, unresolved)
+class Tangent(NamedTuple):
+    """Derivatives of the equations by coordinates and rates (1, n, n), and the factors of a step's matrix."""
 
-    def _tips(self, state: np.ndarray) -> np.ndarray:
-        return self.system.deflections(state[:, 1 : self.system.size + 1])[:, 0]
+    stiffness: np.ndarray
+    damping: np.ndarray
+    factors: Factors
 
-    def _phase_errors(self, segment: Segment) -> np.ndarray:
-        """Phase error of each coordinate per step [rad], as if the beam were straight."""
-        straight, starts = self.system.straight, np.array([(segment.start + segment.end - segment.h) / 2])
-        maps, finer = (step_maps(straight, starts, segment.h, tableau(s)).step for s in (STAGES, _FINER))
-        return phase_errors(finer - maps, vibration_frequencies(straight, segment.end))
 
-    def _interpolation_error(self, segment: Segment) -> float:
-        """Largest error of the tip's deflection between the ends of steps [m], by steps with more stages."""
-        steps = len(segment.acceleration)
-        error = 0.0
-        for k in np.unique(np.linspace(0, steps - 1, _CHECKED).astype(int)):
-            here = Segment(
-                segment.start + k * segment.h,
-                segment.h,
-                segment.state[k : k + 2],
-                segment.acceleration[k : k + 1],
+class _Step:
+    """Solution of steps of one length h [s] and one number of stages."""
+
+    def __init__(self, system: ElasticaSystem, h: float, table: Tableau) -> None:
+        self.system, self.h, self.table = system, h, table
+        self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
+        self.to_motion = np.concatenate([self.to_q, self.to_v, np.eye(len(table.c))])
+        self.end_v, self.end_q = h * table.b, h**2 * table.b2
+        self.tangent: Tangent | None = None
+
+    def advance(
+        self, drive: Drive, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Coordinates and rates at the end of a step, and accelerations at its nodes."""
+        drift, middle = self.drift * v, len(self.table.c) // 2
+        if self.tangent is None:  # at rest in these coordinates, the same for all nodes
+            still = np.zeros((1, len(q)))
+            here = self.system.at(drive.node(middle), q[None], still, still)
+            self.tangent = Tangent(here.stiffness, here.damping, self._factorize(here))
+        if guess is None:  # as if the equations were linear about the beginning of the step
+            still = np.zeros((len(self.table.c), len(q)))
+            load = self.system.at(drive, still + q, still, still).residual
+            load += self.tangent.damping[0] @ v + drift @ self.tangent.stiffness[0].T
+            guess = -_divide(self.tangent.factors, load)
+        a = self._solve(drive, q + drift, v, guess)
+        return q + self.h * v + self.end_q @ a, v + self.end_v @ a, a
+
+    def _solve(self, drive: Drive, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Solve for the accelerations (s, n) by Newton's method; the tangent is kept while it serves."""
+        assert self.tangent is not None
+        factors: Factors | None = self.tangent.factors
+        start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
+        for iteration in range(_ITERATIONS):
+            now = Evaluation(self.system, drive, start + self.to_motion.dot(a).reshape(start.shape))
+            factors = factors or self._factorize(now)
+            residual = now.residual
+            change = _divide(factors, residual)
+            a = a - change
+            size, scale = _norm(change), _norm(a) + _norm(residual)
+            reduction = max(size / last, _LEAST_REDUCTION) if last else 1.0
+            is_stalled = last * _FAST < size and (
+                size <= _STALLED * scale or _norm(residual) <= _BALANCED * _norm(now.elastic)
             )
-            q, v = np.split(here.state[0, 1:], 2)
-            finer = propagate_elastica(self.system, here.start, here.end, 1, q, v, _FINER + 2, here)
-            tips = [
-                self.system.deflections(interpolate(s.h, s.state[:-1], s.acceleration, _INSIDE)[0])
-                for s in (here, finer)
-            ]
-            error = max(error, float(np.abs(tips[0] - tips[1]).max()))
-        return error
+            if is_stalled or size * min(1.0, reduction) <= _CONVERGED * scale:
+                if iteration > _FEW:
+                    self.tangent = None
+                return a
+            if not math.isfinite(size):
+                break
+            if size > _FAST * last:
+                factors = None
+            last = size
+        raise StepNotSolved("the equations of a step were not solved: take shorter steps")
+
+    def _factorize(self, now: Evaluation) -> Factors:
+        """LU factors of the derivative of all residuals of a step by all accelerations."""
+        s, n = len(self.table.c), self.system.size
+        matrix = self.to_q[:, None, :, None] * now.stiffness[:, :, None]
+        matrix += self.to_v[:, None, :, None] * now.damping[:, :, None]
+        index = np.arange(s)
+        matrix[index, :, index] += now.mass
+        lu, pivots, _ = dgetrf(matrix.reshape(s * n, s * n))
+        return lu, pivots
 
 
-def _propagate(
-    system: ElasticaSystem,
-    edges: np.ndarray,
-    steps: Sequence[int],
-    y0: np.ndarray,
-    stages: int,
-    like: Sequence[Segment] | None = None,
-) -> tuple[Segment, ...]:
-    """Integrate segment by segment, with the given numbers of steps."""
-    segments: list[Segment] = []
-    for k, (a, b) in enumerate(pairwise(edges)):
-        q, v = np.split(y0, 2)
-        known = None if like is None else like[k]
-        segments.append(propagate_elastica(system, a, b, steps[k], q, v, stages, known))
-        y0 = segments[-1].state[-1, 1:]
-    return tuple(segments)
+def _norm(values: np.ndarray) -> float:
+    """Root of the sum of squares."""
+    flat = values.ravel()
+    return math.sqrt(flat.dot(flat))
 
 
-def _stays_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) -> bool:
-    """Whether the beam stays at rest: a constant motion of the root, and forces in equilibrium."""
-    if system.motion.steady_start > 0 or np.split(y0, 2)[1].any():
-        return False
-    q, none = y0[None, : system.size], np.zeros((1, system.size))
-    root = system.root(np.linspace(0, t_end, _TIMES_COMPARED))
-    values = [getattr(root, name) for name in system.equations.vectors]
-    if not all((value == value[0]).all() for value in (*values, root.speed_squared, root.root_axial)):
-        return False
-    force = system.at(system.drive(system.root(np.zeros(1))), q, none, none).residual
-    elastic = np.abs(system.elastica.stiffness) @ np.abs(q[0])
-    return bool(np.abs(force).max() <= _BALANCE * elastic.max())
-
-
-def _rest(system: ElasticaSystem, y0: np.ndarray, t_end: float) -> Trajectory:
-    """The trajectory of a beam that does not move."""
-    state = np.tile(np.append(1.0, y0), (2, 1))
-    return Trajectory((Segment(0.0, t_end, state, np.zeros((1, _FINER, system.size))),))
+def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:
+    """Solve for accelerations by the factors of a matrix."""
+    return dgetrs(*factors, residual.ravel())[0].reshape(residual.shape)

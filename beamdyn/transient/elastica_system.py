@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class ElasticaSystem:
 
     @cached_property
     def straight(self) -> ModalSystem:
-        """The same system, linear about the straight beam."""
+        """Equations of motion of the same coordinates, linear about the straight beam."""
         return ModalSystem(self.equations, self.motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
@@ -116,13 +116,12 @@ class ElasticaSystem:
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """-H, as X and Y are summed with the other sign, and in a further row the moments: (N + 2, N + 1)."""
-        return np.vstack([-self.kernel, self.moments])
+        """-H, as X and Y are summed with the other sign, and in a further row the moments: (N + 2, N + 1).
 
-    @cached_property
-    def moments(self) -> np.ndarray:
-        """Moments g (N + 1,) at the slope angles under a unit acceleration [kg m]."""
-        return self.elastica.points.moments(self.elastica.points.mass)
+        The moments g [kg m] are those at the slope angles under a unit acceleration.
+        """
+        points = self.elastica.points
+        return np.vstack([-self.kernel, points.moments(points.mass)])
 
     @cached_property
     def out_of_plane(self) -> float:
@@ -163,6 +162,7 @@ class ElasticaSystem:
         return np.concatenate([v, self._acceleration(t, q, v)])
 
     def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Accelerations (n,) at a time [s]."""
         here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
         return np.linalg.solve(here.mass[0], -here.residual[0])
 
@@ -178,8 +178,11 @@ class ElasticaSystem:
         return J
 
 
+AnySystem: TypeAlias = ModalSystem | ElasticaSystem
+
+
 class Drive(NamedTuple):
-    """What the motion of the root does to the beam, at the nodes of a step.
+    """Motion of the root as it drives the beam, at the nodes of a step.
 
     Parameters
     ----------

@@ -20,7 +20,6 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import MOST
-from beamdyn.transient.limits import growth_without_bound
 
 BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache
 
@@ -147,18 +146,14 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
     -------
     StepMaps
     """
-    if len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f)):
-        return _maps_of_equal_steps(None if C is None else C[:1], K[:1], f[:1], h, table, len(f))
-    a = np.linalg.solve(left_side(C, K, h, table), right_side(C, K, f, h, table))
-    return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
-
-
-def _maps_of_equal_steps(
-    C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau, count: int
-) -> StepMaps:
-    """Solve equal steps as one, by iterative refinement, because errors of the map grow with its powers."""
+    equal = len(f) > 1 and all(x is None or (x == x[:1, :1]).all() for x in (C, K, f))
+    count, some = len(f), slice(1 if equal else None)
+    C, K, f = None if C is None else C[some], K[some], f[some]
     matrix, right = left_side(C, K, h, table), right_side(C, K, f, h, table)
-    a = np.linalg.solve(matrix, right).astype(np.longdouble)
+    a = np.linalg.solve(matrix, right)
+    if not equal:
+        return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
+    a = a.astype(np.longdouble)  # errors of the map grow with its powers: refined by iteration
     for _ in range(2):
         a += np.linalg.solve(matrix, (right - matrix.astype(np.longdouble) @ a).astype(float))
     step, acceleration = _maps_to_end(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
@@ -307,15 +302,12 @@ def interpolate(
     table = tableau(s)
     weights = legendre.legvander(2 * theta - 1, s) @ table.integrals
     q, v = state[:, None, 1 : n + 1], state[:, None, n + 1 :]
-    dq, dv = (_apply(each, acceleration) for each in (weights @ table.A, weights))
+    both = weights @ table.A, weights
+    if n > 1:
+        dq, dv = (each @ acceleration for each in both)
+    else:  # of one function: a single product
+        dq, dv = ((acceleration[:, :, 0] @ each.T)[:, :, None] for each in both)
     return q + h * theta[:, None] * v + h**2 * dq, v + h * dv
-
-
-def _apply(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Products of one matrix (k, s) and values (N, s, n); of one function, n = 1, as a single product."""
-    if values.shape[2] > 1:
-        return matrix @ values
-    return (values[:, :, 0] @ matrix.T)[:, :, None]
 
 
 def propagate(
@@ -347,22 +339,32 @@ def propagate(
         maps = step_maps(system, t0 + h * np.arange(block.start, block.stop), h, tableau(stages))
         with np.errstate(over="ignore", invalid="ignore"):
             powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
-        _check_bounded(t0 + h * block.stop, state[block.stop])
+        if not (np.abs(state[block.stop]) < MOST).all():
+            raise growth_without_bound(f"past {MOST:g} before t = {t0 + h * block.stop:.4g} s")
         acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
 
 
-def _check_bounded(t: float, state: np.ndarray) -> None:
-    """Refuse a motion that has grown beyond all bounds."""
-    if not (np.abs(state) < MOST).all():
-        raise growth_without_bound(f"past {MOST:g} before t = {t:.4g} s")
+def growth_without_bound(how_far: str) -> ArithmeticError:
+    """Say of a motion that it has no answer, as it grows so far."""
+    return ArithmeticError(
+        f"the motion grows without bound, {how_far}: the beam buckles under its weight, or it is "
+        "parametrically unstable, and linear theory does not hold; lower gravity or the speed, or end the "
+        "run earlier"
+    )
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
     """Fill state[1:] from state[0]; equal steps by powers of their map, returned for the next block."""
     if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
-            powers = _affine_powers(maps.step_extended, len(maps.step))
+            full = np.eye(state.shape[1], dtype=np.longdouble)  # one rounding error a block, not a step
+            full[1:] = maps.step_extended
+            power, rows = full, []
+            for _ in maps.step:
+                rows.append(power[1:])
+                power = full @ power
+            powers = np.array(rows, dtype=float)
         state[1:, 1:] = powers[: len(maps.step)] @ state[0]
         return powers
     advance(maps.step, state)
@@ -381,15 +383,3 @@ def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> t
     state = np.empty((steps + 1, 2 * n + 1))
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0
     return state, np.empty((steps, stages, n))
-
-
-def _affine_powers(step: np.ndarray, count: int) -> np.ndarray:
-    """Powers 1 to `count` of an affine map, in extended precision: one rounding error a block, not a step."""
-    n = len(step)
-    full = np.eye(n + 1, dtype=np.longdouble)
-    full[1:] = step
-    power, rows = full, []
-    for _ in range(count):
-        rows.append(power[1:])
-        power = full @ power
-    return np.array(rows, dtype=float)

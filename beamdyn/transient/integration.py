@@ -1,20 +1,209 @@
-"""Integration of a scene's equations to a tolerance, linear or of large deflection."""
+"""Integration of a scene's equations to a tolerance: choose the steps, integrate, estimate the error, refine.
+
+A straight beam has linear equations, solved by maps of many steps at once; those of a bent beam
+(`elastica_steps`) are solved step by step.  The step size and its control are the same.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import NamedTuple
+
 import numpy as np
 
-from beamdyn.transient import step_size
-from beamdyn.transient.elastica_steps import integrate_elastica
-from beamdyn.transient.elastica_system import ElasticaSystem
+from beamdyn.transient.closed_form import propagate_in_closed_form
+from beamdyn.transient.elastica_steps import attempt_elastica, rest_in_equilibrium
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
+from beamdyn.transient.gauss import Segment, propagate
+from beamdyn.transient.record_steps import (
+    RecordSteps,
+    is_record,
+    most_steps_in_piece,
+    propagate_record,
+    smooth_piece_ends,
+)
+from beamdyn.transient.step_size import (
+    Attempt,
+    StepSize,
+    chain_segments,
+    check_number_of_steps,
+    shorten_steps,
+    split_at_breakpoints,
+)
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.trajectory import Trajectory
+from beamdyn.transient.time_error import ERROR_ORDER, STAGES, SegmentWithError, estimate_time_error
+from beamdyn.transient.trajectory import Trajectory, magnitude
+from beamdyn.transient.weakly_modulated import propagate_modulated
+
+_WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
+_TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
+_BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
+_SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
+_ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
+_FEW_STEPS = 4  # samples in a step, from which on it is one over many
+_CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundreds
 
 
 def integrate(
-    system: ModalSystem | ElasticaSystem, y0: np.ndarray, t_end: float, tolerance: float
+    system: AnySystem, y0: np.ndarray, t_end: float, tolerance: float
 ) -> tuple[Trajectory, float, str]:
-    """Integrate by Gauss collocation: see `beamdyn.transient.step_size.integrate`."""
+    """Integrate with the step size of the tolerance, refined while the estimated error exceeds it.
+
+    Parameters
+    ----------
+    system : AnySystem
+        The equations.
+    y0 : ndarray, shape (2 n,)
+        Coordinates and velocities at time 0.
+    t_end : float
+        End [s].
+    tolerance : float
+        Time-integration error aimed at, relative to the largest deflection.
+
+    Returns
+    -------
+    path : Trajectory
+    error : float
+        Estimated time-integration error of the tip deflection [m].
+    method : str
+        Integrator and number of steps, for the provenance.
+
+    Raises
+    ------
+    TooManySteps
+        If the steps of the run do not fit into memory.
+    ArithmeticError
+        If the steps of a bent beam cannot be solved at any size.
+    """
     if isinstance(system, ElasticaSystem):
-        return integrate_elastica(system, y0, t_end, tolerance)
-    return step_size.integrate(system, y0, t_end, tolerance)
+        path = rest_in_equilibrium(system, y0, t_end)
+        attempt = partial(attempt_elastica, system, y0, t_end)
+    else:
+        start = _Start(system, y0, t_end, tolerance)
+        path = _rest_in_equilibrium(start)
+        by_samples = is_record(system, t_end, StepSize.from_tolerance(tolerance))
+        attempt = partial(_attempt_record if by_samples else _attempt, start)
+    if path is not None:
+        return path, 0.0, "no steps: the beam stays in equilibrium"
+    return shorten_steps(attempt, tolerance)
+
+
+class _Start(NamedTuple):
+    """A run of a straight beam: equations, coordinates and velocities at time 0, end [s] and tolerance."""
+
+    system: ModalSystem
+    y0: np.ndarray
+    t_end: float
+    tolerance: float
+
+
+def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
+    """The path of a beam that stays at rest, by constant equations and an initial state in equilibrium."""
+    system, y0, t_end, tolerance = start
+    if system.motion.steady_start > 0:
+        return None
+    _, K, f = system.coefficients(np.linspace(0, t_end, _TIMES_COMPARED))
+    q, v = np.split(y0, 2)
+    size = np.abs(K[0]) @ np.abs(q) + np.abs(f[0])
+    balanced = not v.any() and (np.abs(f[0] - K[0] @ q) <= _BALANCE * size.max()).all()
+    if not (balanced and (K[0] == K).all() and (f == f[0]).all()):
+        return None
+    edges = smooth_piece_ends(system.motion, t_end)
+    return Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
+
+
+def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
+    """Integrate with equal steps in each segment.
+
+    Neighbouring parts of one smooth piece are joined where steps of one size cost fewer steps more than
+    the preparation of another segment is worth.
+    """
+    system, y0, t_end, tolerance = start
+    breakpoints = set(smooth_piece_ends(system.motion, t_end))
+    edges, steps = [0.0], []
+    parts = split_at_breakpoints(system.motion, t_end)
+    counts = step_size.count_steps_of_each(system, parts)
+    for (a, b), count in zip(pairwise(parts.tolist()), counts, strict=True):
+        if steps and a not in breakpoints:
+            densest = max(steps[-1] / (a - edges[-2]), count / (b - a))
+            joined = int(np.ceil(densest * (b - edges[-2]) * (1 - 1e-12)))
+            if joined <= steps[-1] + count + _WORTH_A_SEGMENT:
+                edges[-1], steps[-1] = b, joined
+                continue
+        edges.append(b)
+        steps.append(count)
+    check_number_of_steps(sum(steps), system.size, t_end)
+    path = Trajectory(_propagate(system, np.array(edges), steps, y0, tolerance))
+    return _judged(system, step_size, path, ERROR_ORDER)
+
+
+def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) -> Attempt:
+    """Integrate a motion given by samples, after another attempt if there was one.
+
+    Loads without kinks are integrated so much better than those across samples that one step between two
+    samples comes after steps over many.  Later it is at least one more: so many steps have been tried.
+    """
+    system, y0, t_end, tolerance = start
+    if before is not None:
+        most, last = (most_steps_in_piece(system, t_end, size) for size in (step_size, before.step_size))
+        wanted = None
+        if before.order == ERROR_ORDER:
+            wanted = max(np.ceil(most), np.ceil(last) + 1)
+        elif most > 1 > _FEW_STEPS * last:
+            wanted = 1
+        if wanted is not None:
+            step_size = replace(step_size, phase=step_size.phase * _CEILED * most / wanted)
+    steps, n = RecordSteps.choose(system, t_end, step_size), system.size
+    check_number_of_steps(len(steps), n, t_end)
+    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
+    order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
+    return _judged(system, step_size, Trajectory((segment,)), order)
+
+
+def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: int) -> Attempt:
+    """A run with its error, its largest deflection at the ends of steps, and the name of its method."""
+    error = estimate_time_error(system, path.segments, system.tips)
+    largest = max(float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments)
+    steps = sum(len(s.acceleration) for s in path.segments)
+    method = f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
+    return Attempt(step_size, path, error, largest, method, order)
+
+
+def follow_steps(
+    path: Trajectory, system: ModalSystem, y0: np.ndarray, tolerance: float
+) -> tuple[Trajectory, float]:
+    """Integrate other equations in the equal steps of a path.
+
+    The other parameters and what is raised are those of `integrate`.
+
+    Returns
+    -------
+    path : Trajectory
+    error : float
+        Error of the tip deflection [m] in those segments that state one; that of the others is not estimated.
+    """
+    steps = [len(segment.acceleration) for segment in path.segments]
+    check_number_of_steps(sum(steps), system.size, path.end)
+    edges = np.array([path.start, *(segment.end for segment in path.segments)])
+    segments = _propagate(system, edges, steps, y0, tolerance)
+    stated = [s for s in segments if isinstance(s, SegmentWithError)]
+    return Trajectory(segments), estimate_time_error(system, stated, system.tips).total if stated else 0.0
+
+
+def _propagate(
+    system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
+) -> tuple[Segment, ...]:
+    """Integrate segment by segment: by series for weakly modulated stiffness where these converge."""
+    accuracy = _SERIES_SHARE * tolerance
+
+    def propagate_one(a: float, b: float, count: int, q: np.ndarray, v: np.ndarray) -> Segment:
+        if (modulated := system.modulated(a, b)) is not None:
+            for by_series in (propagate_in_closed_form, propagate_modulated):
+                if (segment := by_series(modulated, a, b, count, q, v, STAGES, accuracy)) is not None:
+                    return segment
+        return propagate(system, a, b, count, q, v, STAGES)
+
+    return chain_segments(edges, steps, y0, propagate_one)

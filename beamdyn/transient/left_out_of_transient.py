@@ -9,7 +9,6 @@ from the static deflection and the backbone.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Protocol
 
 import numpy as np
 
@@ -19,11 +18,15 @@ from beamdyn.modes.backbone import SMALL, FreeVibration
 from beamdyn.modes.modal.discretization_choice import ensure_size
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.by_solving import SolvedValues, left_out_by_solving
+from beamdyn.modes.model_error.left_out_changes import (
+    SolvedValues,
+    left_out_by_solving,
+    left_out_of_modes,
+    without_large_deflection,
+)
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.of_modes import left_out_of_modes, without_large_deflection
 from beamdyn.scene.scene import Scene
-from beamdyn.transient.trajectory import Path
+from beamdyn.transient.problem import Solution, TransientProblem
 
 _MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
 _SHIFT, _PHASE = 1e-4, 1e-2  # of a frequency, relative, and of its phase at the end [rad], that matter
@@ -35,53 +38,33 @@ _BY_BACKBONE = (
 )
 
 
-class Run(Protocol):
-    """A transient, with the request of which it is the answer."""
-
-    @property
-    def request(self) -> Any:
-        """The request."""
-        ...
-
-    @property
-    def largest(self) -> float:
-        """Largest deflection of the tip [m]."""
-        ...
-
-    @property
-    def path(self) -> Path:
-        """The motion of the coordinates."""
-        ...
-
-    def peak(self, start: float, end: float) -> float:
-        """Largest deflection of the tip within a window [m]."""
-        ...
-
-
-def left_out_of_transient(run: Run, window: tuple[float, float] | None = None) -> LeftOutEffects:
+def left_out_of_transient(
+    problem: TransientProblem, found: Solution, window: tuple[float, float] | None = None
+) -> LeftOutEffects:
     """Find what each effect changes in the largest deflection of a run, or in a window [s]: of shape ()."""
-    request, largest = run.request, _peak(run, window)
-    speed = find_speed_range(request.motion, request.t_end)[-1]
-    straight = without_large_deflection(request.model)
-    shifts = _shifts_of_frequencies(straight, speed, request.t_end)
-
-    def find_without() -> SolvedValues:
-        if straight is request.model:
-            return SolvedValues(np.array(largest))
-        return _run_again(request, straight.scene, window)
-
-    without = find_without()  # of the straight beam: effects are not compared with a bent one
+    largest, samples = _peak(found, window), len(found.path.samples[0])
+    speed = find_speed_range(problem.motion, problem.t_end)[-1]
+    straight = without_large_deflection(problem.model)
+    shifts = _shifts_of_frequencies(straight, speed, problem.t_end)
+    without = SolvedValues(np.array(largest))  # effects are compared with the straight beam
+    if straight is not problem.model:
+        without = _run_again(problem, straight.scene, window)
 
     def solve(scene: Scene, name: str) -> SolvedValues:
         if scene.physics == straight.scene.physics:
             return without
         if (shift := shifts.get(name)) is not None:
             return SolvedValues(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
-        if name == LARGE_DEFLECTION.name and len(run.path.samples[0]) > _SHORT_RUN:
-            return _estimate_bent(run, largest, scene, speed)
-        return _run_again(request, scene, window)
+        if name == LARGE_DEFLECTION.name and samples > _SHORT_RUN:
+            return _estimate_bent(problem, largest, scene, speed)
+        return _run_again(problem, scene, window)
 
-    return left_out_by_solving(request.scene, solve)
+    return left_out_by_solving(problem.scene, solve)
+
+
+def _peak(found: Solution, window: tuple[float, float] | None) -> float:
+    """Largest deflection of a run, or in a window of it [m]."""
+    return found.largest if window is None else found.peak(*window)
 
 
 def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
@@ -93,17 +76,13 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
     return {name: float(changes[name][0, 0]) for name in small}
 
 
-def _peak(run: Run, window: tuple[float, float] | None) -> float:
-    return run.largest if window is None else run.peak(*window)
-
-
-def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> SolvedValues:
+def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, speed: float) -> SolvedValues:
     """Largest deflection by what large deflection changes at rest in rotating axes, and over amplitude.
 
     The part that does not vary is that of the equilibrium at the largest speed; the rest changes as the
     compliance of the first mode does, which is -2 times its frequency.
     """
-    bent, straight = (Model(each, run.request.model.discretization) for each in (scene, run.request.scene))
+    bent, straight = (Model(each, problem.model.discretization) for each in (scene, problem.scene))
     try:
         k = FreeVibration.of(bent, speed, 1).coefficient(SMALL)
         static = float(np.abs(bent.static_tips(np.array([speed]))).max())
@@ -118,16 +97,16 @@ def _estimate_bent(run: Run, largest: float, scene: Scene, speed: float) -> Solv
     return SolvedValues(np.array(largest * ratio), "", _BY_BACKBONE)
 
 
-def _run_again(request: Any, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
+def _run_again(problem: TransientProblem, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
     """Largest deflection by a run of another scene with the same number of modes."""
-    if not isinstance(request.initial, str):
+    if not isinstance(problem.initial, str):
         return SolvedValues(np.array(np.nan), "the initial coordinates are those of this model")
-    modes = request.basis.modes
+    modes = problem.basis.modes
     discretization = (
-        request.discretization if modes is None else ensure_size(scene, request.discretization, modes)
+        problem.discretization if modes is None else ensure_size(scene, problem.discretization, modes)
     )
-    again = replace(request, scene=scene, discretization=discretization, method="auto", t_eval=None)
+    again = replace(problem, scene=scene, discretization=discretization, method="auto", t_eval=None)
     try:
-        return SolvedValues(np.array(_peak(again.run(), window)))
+        return SolvedValues(np.array(_peak(again.solve(), window)))
     except (ArithmeticError, InvalidValue, np.linalg.LinAlgError) as error:
         return SolvedValues(np.array(np.nan), reason_of(error))

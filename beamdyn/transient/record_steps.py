@@ -10,8 +10,9 @@ them it shows in the deflection, where the error estimate sees it (`time_error`)
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Protocol
 
@@ -90,11 +91,13 @@ class RecordSteps:
     @classmethod
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
         """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
-        wanted = _WantedSteps.of(system, t_end, step_size)
-        ends = smooth_piece_ends(system.motion, t_end)
-        pieces = _divide(ends, np.ceil(np.diff(wanted.before(ends)) - _SLACK))
-        few = wanted.counts[-1] * _MANY_PIECES > len(pieces) - 1 and _are_same(np.diff(pieces)).all()
-        first = [*range(len(pieces) - 1)] if few else _group(wanted.before(pieces).tolist())
+        wanted, ends = _wanted_steps(system, t_end, step_size), smooth_piece_ends(system.motion, t_end)
+        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))  # equal ones
+        index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        inside = np.repeat(ends[:-1], parts) + index * np.repeat(np.diff(ends) / parts, parts)
+        pieces = np.append(inside, ends[-1])
+        few = wanted(np.array(t_end)) * _MANY_PIECES > len(pieces) - 1 and _are_same(np.diff(pieces)).all()
+        first = [*range(len(pieces) - 1)] if few else _group(wanted(pieces).tolist())
         return cls(
             pieces[first], np.diff(pieces[[*first, -1]]), pieces[:-1], np.diff(pieces), np.array(first)
         )
@@ -143,57 +146,38 @@ class RecordSteps:
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
             return root  # without a sample inside, a polynomial through the nodes is the nearest
-        weights, values = self._projection(within, table), (getattr(root, f.name) for f in fields(RootMotion))
+        s, owner = len(table.c), np.repeat(np.arange(len(self)), self.counts)
+        share = self.piece_width / self.h[owner]
+        offset = (self.piece_start - self.start[owner]) / self.h[owner]
+        inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
+        at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
+        weights = share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)  # of a piece in its step
+        values = (getattr(root, f.name) for f in fields(RootMotion))
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))
 
     def nodes_in_piece(self, count: int) -> int:
         """Number of nodes or stages in each piece that are as exact as `count` of them in a step."""
         return min(count, _IN_EACH) if self.counts.min() >= _MANY_PIECES else count
 
-    def _projection(self, within: Tableau, table: Tableau) -> np.ndarray:
-        """Weights of the values at the r nodes of a piece in those of its step's polynomial: (P, r, s)."""
-        s, owner = len(table.c), np.repeat(np.arange(len(self)), self.counts)
-        share = self.piece_width / self.h[owner]
-        offset = (self.piece_start - self.start[owner]) / self.h[owner]
-        inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
-        at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
-        return share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
 
-
-@dataclass(frozen=True)
-class _WantedSteps:
-    """How many steps a step size wants up to each of some times [s], both shape (k,)."""
-
-    times: np.ndarray
-    counts: np.ndarray
-
-    @classmethod
-    def of(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> _WantedSteps:
-        times = np.linspace(0.0, t_end, _STRETCHES + 1)
-        counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
-        return cls(times, np.concatenate([[0], np.cumsum(counts)]))
-
-    def before(self, t: np.ndarray) -> np.ndarray:
-        """Steps before times t [s], of any shape."""
-        return np.interp(t, self.times, self.counts)
+def _wanted_steps(
+    system: ModalSystem, t_end: float, step_size: StepCounter
+) -> Callable[[np.ndarray], np.ndarray]:
+    """How many steps a step size wants before times [s], as a function."""
+    times = np.linspace(0.0, t_end, _STRETCHES + 1)
+    counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
+    return partial(np.interp, xp=times, fp=np.concatenate([[0], np.cumsum(counts)]))
 
 
 def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
     """Largest number of steps between two neighbouring samples, by a step size."""
-    ends = smooth_piece_ends(system.motion, t_end)
-    return float(np.diff(_WantedSteps.of(system, t_end, step_size).before(ends)).max())
+    wanted = _wanted_steps(system, t_end, step_size)
+    return float(np.diff(wanted(smooth_piece_ends(system.motion, t_end))).max())
 
 
 def _are_same(lengths: np.ndarray) -> np.ndarray:
     """Whether each length (N,) is that of the next: shape (N - 1,)."""
     return np.abs(np.diff(lengths)) <= _SAME_LENGTH * lengths[:-1]
-
-
-def _divide(ends: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Divide each piece into a number of equal parts, at least one: all ends."""
-    parts = np.maximum(1, parts.astype(int))
-    index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    return np.append(np.repeat(ends[:-1], parts) + index * np.repeat(np.diff(ends) / parts, parts), ends[-1])
 
 
 def _group(place: list[float]) -> list[int]:

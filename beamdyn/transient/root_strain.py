@@ -10,6 +10,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment
 from beamdyn.scene.scene import Scene
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
@@ -36,8 +37,12 @@ class RootStrain:
     per_moment: float
 
     @classmethod
-    def of_scene(cls, scene: Scene, discretization: Discretization, system: ModalSystem) -> RootStrain:
+    def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
         """Strain in the coordinates of the equations of a scene; a ValueError without an outer fibre."""
+        if isinstance(system, ElasticaSystem):
+            bound = "the root strain of a beam with large deflection is not computed"
+            remedy = "leave large_deflection out where the deflection is small"
+            raise InvalidValue("physics.large_deflection", True, bound, remedy)
         beam, root = scene.beam, np.zeros(1)
         if beam.outer_fibre is None:
             raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
@@ -60,13 +65,9 @@ class RootStrain:
         """
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
-        outputs = self._largest_per_coordinate(np.linspace(path.start, path.end, _TIMES_CHECKED))
-        return estimate_time_error(self.system, path.segments, outputs).total
-
-    def _largest_per_coordinate(self, t: np.ndarray) -> np.ndarray:
-        """Strain per unit of each coordinate (1, n), at that of the times t [s] at which it is largest."""
-        rows = np.zeros((len(t), self.system.size))
-        root = self.system.root(t)
+        root = self.system.root(np.linspace(path.start, path.end, _TIMES_CHECKED))
+        rows = np.zeros((_TIMES_CHECKED, self.system.size))  # per unit of each coordinate
         for quantity, row in self.moment.position.items():
             rows += np.outer(getattr(root, quantity), row)
-        return self.per_moment * rows[None, np.abs(rows).sum(axis=1).argmax()]
+        largest = self.per_moment * rows[None, np.abs(rows).sum(axis=1).argmax()]
+        return estimate_time_error(self.system, path.segments, largest).total

@@ -107,7 +107,10 @@ def simulate(
             f"simulate has no option {' or '.join(options)}; options such as max_step belong to a method of "
             'solve_ivp, such as method="RK45"'
         )
-    times = None if t_eval is None else _times(t_eval, t_end)
+    times = None if t_eval is None else ascending("t_eval", t_eval)
+    if times is not None and (times[0] < 0 or times[-1] > t_end):
+        within_run = f"times must lie in the run, 0 ... {t_end:g} s"
+        raise ValueError(f"t_eval = {times[0]:g} ... {times[-1]:g} s: {within_run}")
     basis = ModalBasis(None) if modes is None else given_basis(modes)
     if basis is None and not isinstance(initial, str):
         raise ValueError('initial is an array: give the number of its modes, not modes = "auto"')
@@ -122,10 +125,3 @@ def simulate(
         return run
     request = replace(request, scene=bent)
     return request.run() if basis else run_smallest_basis(request)
-
-
-def _times(t_eval: np.ndarray | Sequence[float], t_end: float) -> np.ndarray:
-    t = ascending("t_eval", t_eval)
-    if t[0] < 0 or t[-1] > t_end:
-        raise ValueError(f"t_eval = {t[0]:g} ... {t[-1]:g} s: times must lie in the run, 0 ... {t_end:g} s")
-    return t

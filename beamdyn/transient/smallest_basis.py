@@ -1,16 +1,21 @@
-"""The smallest modal basis with which a transient meets its tolerance."""
+"""The smallest modal basis with which a transient meets its tolerance, and those of a sweep.
+
+A sweep takes the modes that sampled speeds need to keep the tolerance.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from beamdyn.accuracy.refinement import refine
-from beamdyn.modes.modal.modal_basis import ModalBasis
-from beamdyn.transient.missed_tolerance import warn_of_missed_modes
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
+from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.trajectory import SAMPLES
-from beamdyn.transient.transient import Transient, TransientRequest
+from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes
 
 _MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
 _SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
@@ -29,16 +34,11 @@ def run_smallest_basis(request: TransientRequest) -> Transient:
     if run.mode_error > tolerance and tolerance < _TIGHT:
         # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
         coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
-        run = min(run, coarse, key=_whole_error)
+        run = min(run, coarse, key=lambda each: each.time_error + each.mode_error * each.largest)
     missed = tuple(warn_of_missed_modes(run.mode_error, tolerance, str(run.request.basis)))
     as_requested = request.method == "auto" and request.t_eval is None
     run = run if as_requested else replace(request, basis=run.request.basis).run()
     return run.with_warnings(missed) if missed else run
-
-
-def _whole_error(run: Transient) -> float:
-    """Errors of time integration and modal truncation together [m]."""
-    return run.time_error + run.mode_error * run.largest
 
 
 def _search(request: TransientRequest) -> Transient:
@@ -49,7 +49,18 @@ def _search(request: TransientRequest) -> Transient:
         at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
         if at_rest.distance_from_path(*finer) < run.distance_from_path(*finer):
             run = _refine_better(at_rest, run, tolerance)
-    return _add_modes(run, tolerance)
+
+    def larger(found: tuple[Transient, float]) -> tuple[Transient, float] | None:
+        run, before = found
+        few = (run.request.basis.modes or np.inf) <= _FEW_MODES  # of these, one more may suffice
+        nearly = few and run.mode_error <= _NEARLY * tolerance
+        more = run.request.run_with_one_more() if nearly else run.refined
+        most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
+        if more is None or len(more.path.samples[0]) / SAMPLES * more.system.size**2 > most:
+            return None
+        return None if more.with_more_modes is None else (more, run.mode_error)
+
+    return refine((run, np.inf), larger, lambda found: not found[0].mode_error > tolerance)[0]
 
 
 def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
@@ -63,28 +74,69 @@ def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -
     return min(refined, key=lambda run: run.mode_error, default=at_rest)
 
 
-def _add_modes(run: Transient, tolerance: float) -> Transient:
-    """Refine a run until its truncation error meets the tolerance, while that is known and takes seconds."""
-
-    def finer(found: tuple[Transient, float]) -> tuple[Transient, float] | None:
-        run, before = found
-        larger = _enlarge(run, tolerance)
-        most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
-        if larger is None or _work(larger) > most or larger.with_more_modes is None:
-            return None
-        return larger, run.mode_error
-
-    return refine((run, np.inf), finer, lambda found: not found[0].mode_error > tolerance)[0]
+# Sweeps --------------------------------------------------------------------------------------------
 
 
-def _enlarge(run: Transient, tolerance: float) -> Transient | None:
-    """The next larger run to try: by one of few modes where these nearly suffice, else as `refined`."""
-    few = (run.request.basis.modes or np.inf) <= _FEW_MODES
-    if few and run.mode_error <= _NEARLY * tolerance:
-        return run.request.run_with_one_more()
-    return run.refined
+def first_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
+    """Smallest modal basis that is tried: modes at the slowest and at the fastest speed of all cases."""
+    return ModalBasis(FEWEST_MODES, tuple(end_speeds(request, speeds).tolist()))
 
 
-def _work(run: Transient) -> float:
-    """Steps times squared number of coordinates, to which the time of a run is roughly proportional."""
-    return len(run.path.samples[0]) / SAMPLES * run.system.size**2
+def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
+    """The slowest and the fastest speed of all cases [rad/s], one where they are the same."""
+    ends = [
+        find_speed_range(motion, request.t_end) for motion in map(request.motion, (speeds[0], speeds[-1]))
+    ]
+    return np.unique([ends[0][0], ends[1][-1]])
+
+
+def list_samples(speeds: tuple[float, ...]) -> list[float]:
+    """Speeds [rad/s] at which `mode_error` is estimated: the slowest that moves, the fastest, and between."""
+    slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
+    return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
+
+
+@one_blas_thread()
+def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
+    """Run the samples in bases that suffice, each beginning with one mode fewer than the one before needed.
+
+    If some take modes at their speeds and others at rest, all run in one basis: at rest if that keeps the
+    tolerance, as this takes fewer coordinates; else at their speeds if that does, or else in the better.
+    """
+    samples, basis = [], request.basis
+    for speed in list_samples(speeds):
+        samples.append(run_smallest_basis(replace(request, basis=basis).transient_request(speed)))
+        needed = samples[-1].request.basis
+        if needed.is_at_rest == basis.is_at_rest:
+            basis = replace(basis, modes=max(FEWEST_MODES, (needed.modes or 0) - 1))
+    if len({run.request.basis.is_at_rest for run in samples}) == 1:
+        return samples
+    most, tried, found = _most_modes(samples), [], list_samples(speeds)
+    for each in (ModalBasis(most), replace(request.basis, modes=most)):
+        runs, trial = [], replace(request, basis=each)
+        for speed, run in zip(found, samples, strict=True):
+            asked = replace(run.request, basis=trial.basis_at(speed), tolerance=request.tolerance)
+            same = (run.request.basis, run.request.tolerance) == (asked.basis, asked.tolerance)
+            runs.append(run if same else asked.run())
+        tried.append(runs)
+        if largest_mode_error(runs) <= request.tolerance:
+            break
+    return min(tried, key=largest_mode_error)
+
+
+def with_basis_of(request: SweepRequest, speeds: tuple[float, ...], runs: list[Transient]) -> SweepRequest:
+    """The request with the modal bases of its samples."""
+    at_rest = runs[0].request.basis.is_at_rest
+    basis = ModalBasis(_most_modes(runs), (0.0,) if at_rest else request.basis.speeds)
+    modes = [run.request.basis.modes or 0 for run in runs]
+    return replace(request, basis=basis, modes_at=tuple(zip(list_samples(speeds), modes, strict=True)))
+
+
+def _most_modes(runs: Sequence[Transient]) -> int:
+    """Largest number of modes of some runs."""
+    return max(run.request.basis.modes or 0 for run in runs)
+
+
+def largest_mode_error(runs: Iterable[Transient]) -> float:
+    """Largest modal truncation error of the runs, relative to the largest deflection of each."""
+    return max((run.mode_error for run in runs), default=0.0)

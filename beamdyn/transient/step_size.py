@@ -1,9 +1,9 @@
-"""Integration to a tolerance: choose the step size, integrate, estimate the error, refine."""
+"""Step size of an integration, chosen by the tolerance, and the number of steps that fit into memory."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,40 +11,19 @@ import numpy as np
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.motion import Motion
-from beamdyn.transient.closed_form import propagate_in_closed_form
-from beamdyn.transient.gauss import Segment, propagate
-from beamdyn.transient.record_steps import (
-    RecordSteps,
-    is_record,
-    most_steps_in_piece,
-    propagate_record,
-    smooth_piece_ends,
-)
+from beamdyn.transient.gauss import Segment
+from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.time_error import (
-    ERROR_ORDER,
-    STAGES,
-    SegmentWithError,
-    TimeError,
-    estimate_time_error,
-)
-from beamdyn.transient.trajectory import Trajectory, magnitude
-from beamdyn.transient.weakly_modulated import propagate_modulated
+from beamdyn.transient.time_error import ERROR_ORDER, TimeError
+from beamdyn.transient.trajectory import Trajectory
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
 _LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
 _PARTS = 4  # of a segment in which the speed changes, each with its own step size
-_WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
 _MOST_STEPS = 3_000_000  # of a run
 _MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
-_TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
-_BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
-ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
-_SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
-_ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
-_FEW_STEPS = 4  # samples in a step, from which on it is one over many
-_CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundreds
+_ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
 
 
@@ -69,7 +48,7 @@ class StepSize:
         return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / ERROR_ORDER))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
-        """Number of equal steps from start to end [s]."""
+        """Count the equal steps from start to end [s]."""
         return self.count_steps_of_each(system, np.array([start, end]))[0]
 
     def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
@@ -128,21 +107,13 @@ class Attempt:
     method: str
     order: int = ERROR_ORDER
 
-    @property
-    def is_finest(self) -> bool:
-        """Whether shorter steps only add rounding errors."""
-        return self.step_size.is_finest and self.order == ERROR_ORDER
-
-    def stalls_after(self, before: Attempt | None) -> bool:
-        """Whether shorter steps have not halved an error that may be one of rounding."""
-        last = np.inf if before is None else before.error.total
-        return last / 2 < self.error.total < ROUNDING * self.largest
-
 
 def shorten_steps(
     run: Callable[[StepSize, Attempt | None], Attempt], tolerance: float
 ) -> tuple[Trajectory, float, str]:
     """Run with the step size of the tolerance, and with shorter ones while the error exceeds it.
+
+    It ends as well where shorter steps have not halved an error that may be one of rounding.
 
     Parameters
     ----------
@@ -159,7 +130,10 @@ def shorten_steps(
 
     def meets(found: tuple[Attempt, Attempt | None]) -> bool:
         last, before = found
-        return last.error.total <= tolerance * last.largest or last.stalls_after(before) or last.is_finest
+        error, largest = last.error.total, last.largest
+        before_that = np.inf if before is None else before.error.total
+        is_finest = last.step_size.is_finest and last.order == ERROR_ORDER
+        return error <= tolerance * largest or before_that / 2 < error < _ROUNDING * largest or is_finest
 
     def finer(found: tuple[Attempt, Attempt | None]) -> tuple[Attempt, Attempt | None]:
         last, _ = found
@@ -167,149 +141,6 @@ def shorten_steps(
 
     found, _ = refine((run(StepSize.from_tolerance(tolerance), None), None), finer, meets)
     return found.path, found.error.total, found.method
-
-
-def integrate(
-    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float
-) -> tuple[Trajectory, float, str]:
-    """Integrate with the step size of the tolerance, refined while the estimated error exceeds it.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        The equations.
-    y0 : ndarray, shape (2 n,)
-        Coordinates and velocities at time 0.
-    t_end : float
-        End [s].
-    tolerance : float
-        Time-integration error aimed at, relative to the largest deflection.
-
-    Returns
-    -------
-    path : Trajectory
-    error : float
-        Estimated time-integration error of the tip deflection [m].
-    method : str
-        Integrator and number of steps, for the provenance.
-
-    Raises
-    ------
-    TooManySteps
-        If the steps of the run do not fit into memory.
-    """
-    if stays_in_equilibrium(system, y0, t_end):
-        edges = smooth_piece_ends(system.motion, t_end)
-        path = Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
-        return path, 0.0, "no steps: the beam stays in equilibrium"
-    given_by_samples = is_record(system, t_end, StepSize.from_tolerance(tolerance))
-
-    def run(step_size: StepSize, before: Attempt | None) -> Attempt:
-        if given_by_samples and before is not None:
-            step_size = _between_samples(system, t_end, step_size, before.step_size, before.order)
-        solve = _run_record if given_by_samples else _run
-        path, error, order = solve(system, y0, t_end, tolerance, step_size)
-        tips = (magnitude(s.state[:, 1 : system.size + 1], system.tips).max() for s in path.segments)
-        steps = sum(len(s.acceleration) for s in path.segments)
-        method = f"Gauss collocation of order {ERROR_ORDER}, {steps} steps"
-        return Attempt(step_size, path, error, max(map(float, tips)), method, order)
-
-    return shorten_steps(run, tolerance)
-
-
-def _run(
-    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
-) -> tuple[Trajectory, TimeError, int]:
-    """Integrate with equal steps in each segment: path, error, and the order of the error."""
-    edges, steps = _choose_steps(system, t_end, step_size)
-    check_number_of_steps(sum(steps), system.size, t_end)
-    segments = _propagate(system, edges, steps, y0, tolerance)
-    error = estimate_time_error(system, segments, system.tips)
-    return Trajectory(segments), error, ERROR_ORDER
-
-
-def _choose_steps(system: ModalSystem, t_end: float, step_size: StepSize) -> tuple[np.ndarray, list[int]]:
-    """Segments of a run, by their ends [s], and their numbers of steps.
-
-    Neighbouring parts of one smooth piece are joined where steps of one size cost fewer steps more than
-    the preparation of another segment is worth.
-    """
-    breakpoints = set(smooth_piece_ends(system.motion, t_end))
-    edges, steps = [0.0], []
-    parts = split_at_breakpoints(system.motion, t_end)
-    for (a, b), count in zip(
-        pairwise(parts.tolist()), step_size.count_steps_of_each(system, parts), strict=True
-    ):
-        if steps and a not in breakpoints:
-            densest = max(steps[-1] / (a - edges[-2]), count / (b - a))
-            joined = int(np.ceil(densest * (b - edges[-2]) * (1 - 1e-12)))
-            if joined <= steps[-1] + count + _WORTH_A_SEGMENT:
-                edges[-1], steps[-1] = b, joined
-                continue
-        edges.append(b)
-        steps.append(count)
-    return np.array(edges), steps
-
-
-def _run_record(
-    system: ModalSystem, y0: np.ndarray, t_end: float, tolerance: float, step_size: StepSize
-) -> tuple[Trajectory, TimeError, int]:
-    """Integrate a motion given by samples: path, error, and the order of the error."""
-    steps, n = RecordSteps.choose(system, t_end, step_size), system.size
-    check_number_of_steps(len(steps), n, t_end)
-    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
-    order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
-    return Trajectory((segment,)), estimate_time_error(system, (segment,), system.tips), order
-
-
-def _between_samples(
-    system: ModalSystem, t_end: float, wanted: StepSize, before: StepSize, order: int
-) -> StepSize:
-    """Step size of a record after another one, `before`, whose error had an order.
-
-    Loads without kinks are integrated so much better than those across samples that one step between two
-    samples comes after steps over many.  Later it is at least one more: so many steps have been tried.
-    """
-    most, last = (most_steps_in_piece(system, t_end, size) for size in (wanted, before))
-    if order == ERROR_ORDER:
-        steps = max(np.ceil(most), np.ceil(last) + 1)
-    elif most > 1 > _FEW_STEPS * last:
-        steps = 1
-    else:
-        return wanted
-    return replace(wanted, phase=wanted.phase * _CEILED * most / steps)
-
-
-def follow_steps(
-    path: Trajectory, system: ModalSystem, y0: np.ndarray, tolerance: float
-) -> tuple[Trajectory, float]:
-    """Integrate other equations in the equal steps of a path.
-
-    The other parameters and what is raised are those of `integrate`.
-
-    Returns
-    -------
-    path : Trajectory
-    error : float
-        Error of the tip deflection [m] in those segments that state one; that of the others is not estimated.
-    """
-    steps = [len(segment.acceleration) for segment in path.segments]
-    check_number_of_steps(sum(steps), system.size, path.end)
-    edges = np.array([path.start, *(segment.end for segment in path.segments)])
-    segments = _propagate(system, edges, steps, y0, tolerance)
-    stated = [s for s in segments if isinstance(s, SegmentWithError)]
-    return Trajectory(segments), estimate_time_error(system, stated, system.tips).total if stated else 0.0
-
-
-def stays_in_equilibrium(system: ModalSystem, y0: np.ndarray, t_end: float) -> bool:
-    """Whether the beam stays at rest: constant equations and an initial state in equilibrium."""
-    if system.motion.steady_start > 0:
-        return False
-    _, K, f = system.coefficients(np.linspace(0, t_end, _TIMES_COMPARED))
-    q, v = np.split(y0, 2)
-    size = np.abs(K[0]) @ np.abs(q) + np.abs(f[0])
-    balanced = not v.any() and (np.abs(f[0] - K[0] @ q) <= _BALANCE * size.max()).all()
-    return balanced and bool((K[0] == K).all() and (f == f[0]).all())
 
 
 class TooManySteps(InvalidValue):
@@ -334,25 +165,15 @@ def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
     return np.concatenate([*parts, [t_end]])
 
 
-def _propagate(
-    system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
+def chain_segments(
+    edges: np.ndarray,
+    steps: Sequence[int],
+    y0: np.ndarray,
+    propagate: Callable[[float, float, int, np.ndarray, np.ndarray], Segment],
 ) -> tuple[Segment, ...]:
-    """Integrate segment by segment, with the given numbers of steps."""
-    segments, n, accuracy = [], system.size, _SERIES_SHARE * tolerance
+    """Integrate segment by segment, by their ends [s], with the given numbers of steps."""
+    segments: list[Segment] = []
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
-        segments.append(_propagate_segment(system, a, b, count, y0[:n], y0[n:], accuracy))
+        segments.append(propagate(a, b, count, *np.split(y0, 2)))
         y0 = segments[-1].state[-1, 1:]
     return tuple(segments)
-
-
-def _propagate_segment(
-    system: ModalSystem, a: float, b: float, steps: int, q: np.ndarray, v: np.ndarray, accuracy: float
-) -> Segment:
-    """Integrate a segment: by the series for weakly modulated stiffness if it converges, else directly."""
-    modulated = system.modulated(a, b)
-    if modulated is not None:
-        for propagate_all in (propagate_in_closed_form, propagate_modulated):
-            segment = propagate_all(modulated, a, b, steps, q, v, STAGES, accuracy)
-            if segment is not None:
-                return segment
-    return propagate(system, a, b, steps, q, v, STAGES)

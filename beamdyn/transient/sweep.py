@@ -37,22 +37,17 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
 from beamdyn.equations.directions import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.modal_basis import (
-    SPEED_SAMPLES,
-    given_basis,
-)
+from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
+from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import check_picklable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
-from beamdyn.transient.missed_tolerance import warn_of_missed_modes
 from beamdyn.transient.simulate import simulate
-from beamdyn.transient.step_size import TOLERANCES
-from beamdyn.transient.sweep_basis import (
+from beamdyn.transient.smallest_basis import (
     end_speeds,
     first_basis,
     largest_mode_error,
@@ -60,7 +55,8 @@ from beamdyn.transient.sweep_basis import (
     run_samples,
     with_basis_of,
 )
-from beamdyn.transient.transient import Transient
+from beamdyn.transient.step_size import TOLERANCES
+from beamdyn.transient.transient import Transient, warn_of_missed_modes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -170,7 +166,7 @@ class Sweep(StatesModelError):
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
         with unannounced():  # of a run that `warnings` speaks of
             run = simulate(replace(self.scene, motion=motion), self.t_end)
-        return left_out_of_transient(run, self.window).at(np.newaxis)
+        return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
         """Whether a warning holds at each speed, (S,), of a run with that tolerance."""
@@ -293,10 +289,23 @@ def sweep(
             mode_error = beside.result()
     method = f"Gauss collocation, {request.basis_name} of {request.model.discretization}"
     provenance = Provenance(__version__, method, "", perf_counter() - start)
-    request = replace(request, scene=scene)
-    result = _assemble_result(request, np.array(cases), found, mode_error, provenance)
-    missed = () if basis else warn_of_missed_modes(result.mode_error, request.tolerance, request.basis_name)
-    return replace(result, warnings=(*result.warnings, *missed, *runner.warnings))
+    peaks, largest, time_error, status, by_direction = zip(*found, strict=True)
+    result = Sweep(
+        speeds=np.array(cases),
+        peaks=np.array(peaks),
+        largest=np.array(largest),
+        time_error=np.array(time_error),
+        peaks_by_direction=np.array(by_direction),
+        mode_error=mode_error,
+        status=status,
+        window=request.window,
+        t_end=request.t_end,
+        warnings=(),
+        provenance=provenance,
+        scene=scene,
+    )
+    missed = () if basis else warn_of_missed_modes(mode_error, request.tolerance, request.basis_name)
+    return replace(result, warnings=(*_warnings(result, request.tolerance), *missed, *runner.warnings))
 
 
 @dataclass(frozen=True)
@@ -308,7 +317,7 @@ class _Chunk:
 
 
 def _solve(chunk: _Chunk) -> list[CaseResult]:
-    """What workers and executors run."""
+    """Solve a chunk: workers and executors run this function."""
     return solve_chunk(chunk.request, chunk.speeds)
 
 
@@ -335,9 +344,8 @@ def _check_request(
 ) -> SweepRequest:
     """Check the arguments that all cases share."""
     if scene.motion is None:
-        raise InvalidValue(
-            "scene.motion", None, "a sweep needs a motion", "such as SpinUp(50.0, duration=10.0)"
-        )
+        remedy = "such as SpinUp(50.0, duration=10.0)"
+        raise InvalidValue("scene.motion", None, "a sweep needs a motion", remedy)
     ends = as_floats(window)
     if ends is None or ends.shape != (2,):
         bound = "give its beginning and its end [s], two finite numbers such as (20.0, 30.0)"
@@ -349,9 +357,8 @@ def _check_request(
             f"window = {start:g} ... {end:g} s: it must begin before it ends, "
             f"and lie in the run, 0 ... {last:g} s"
         )
-    return SweepRequest(
-        scene, (start, end), last, within("tolerance", tolerance, *TOLERANCES), discretization
-    )
+    tolerance = within("tolerance", tolerance, *TOLERANCES)
+    return SweepRequest(scene, (start, end), last, tolerance, discretization)
 
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
@@ -359,8 +366,7 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
-    if (fastest >= critical).any():
-        past = fastest >= critical
+    if (past := fastest >= critical).any():
         where = list_speeds(np.array(speeds), past)
         raise NoModelAnswer(
             f"speeds: {past.sum()} of {len(speeds)} ({where}) pass the critical speed "
@@ -392,13 +398,9 @@ def _find_mode_error(
     unwanted: Event,
 ) -> float:
     """Modal truncation error of the samples, which are run unless they are given, as long as it is wanted."""
-
-    def is_wanted(_: object) -> bool:
-        return not unwanted.is_set()
-
-    wanted = takewhile(is_wanted, list_samples(speeds))
-    runs = samples or (request.transient_request(speed).run() for speed in wanted)
-    return largest_mode_error(takewhile(is_wanted, runs))
+    while_wanted = partial(takewhile, lambda _: not unwanted.is_set())
+    runs = samples or (request.transient_request(speed).run() for speed in while_wanted(list_samples(speeds)))
+    return largest_mode_error(while_wanted(runs))
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:
@@ -416,35 +418,8 @@ def _check_sendable(request: SweepRequest, importable: bool) -> None:
         )
 
 
-# Results ------------------------------------------------------------------------------------------
-
-
-def _assemble_result(
-    request: SweepRequest,
-    speeds: np.ndarray,
-    cases: Sequence[CaseResult],
-    mode_error: float,
-    provenance: Provenance,
-) -> Sweep:
-    peaks, largest, time_error, status, by_direction = zip(*cases, strict=True)
-    result = Sweep(
-        speeds=speeds,
-        peaks=np.array(peaks),
-        largest=np.array(largest),
-        time_error=np.array(time_error),
-        peaks_by_direction=np.array(by_direction),
-        mode_error=mode_error,
-        status=status,
-        window=request.window,
-        t_end=request.t_end,
-        warnings=(),
-        provenance=provenance,
-        scene=request.scene,
-    )
-    return replace(result, warnings=tuple(_warnings(result, request.tolerance)))
-
-
 def _warnings(sweep: Sweep, tolerance: float) -> Iterator[Statement]:
+    """Yield what limits the peaks, by cases and speeds."""
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -64,8 +64,22 @@ class ModalSystem:
 
     @classmethod
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
-        """Equations of a run from rest, without the coordinates that nothing excites."""
-        return cls(excited_equations(equations, [motion], t_end), motion)
+        """Equations of a run from rest, without the coordinates that nothing excites.
+
+        These are planes without loads and coupling, by times spread over the run and its smooth pieces.
+        """
+        spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
+        ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
+        if len(equations.connected) > 1:
+            t = np.concatenate([spread, (ends[1:] + ends[:-1]) / 2])
+            loaded = (equations.load(equations.root(motion.at(t))) != 0).any(axis=0)
+            parts = [names for names in equations.connected if not loaded[equations.places(names)].any()]
+            still = {name for names in parts for name in names}
+            if still and len(still) < len(equations.blocks):
+                sizes = {name: block.stop - block.start for name, block in equations.blocks.items()}
+                kept = {(n,): np.eye(size)[:, : 0 if n in still else size] for n, size in sizes.items()}
+                equations = equations.reduced(kept)
+        return cls(equations, motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
         """Motion of the root at times t [s]."""
@@ -77,10 +91,8 @@ class ModalSystem:
 
     def assemble(self, root: RootMotion) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
         """Assemble C (None if zero), K and f for a motion of the root."""
-        return self._damping(root), self.equations.matrix(0, root), self.equations.load(root)
-
-    def _damping(self, root: RootMotion) -> np.ndarray | None:
-        return self.equations.matrix(1, root) if self.equations.matrices[1] else None
+        C = self.equations.matrix(1, root) if self.equations.matrices[1] else None
+        return C, self.equations.matrix(0, root), self.equations.load(root)
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
         """Split the equations from start to end [s] into what follows the speed and a varying stiffness.
@@ -91,7 +103,9 @@ class ModalSystem:
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
         if not set(damping) <= set(CONSTANT_AT_STEADY_SPEED):
             return None
-        loads, mean = self.equations.vectors, self._mean_excess(start, end)
+        sampled = self.motion.at(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
+        both = self.equations.root(sampled), self._about_fixed_centre(sampled)
+        mean = {name: np.subtract(*(getattr(root, name) for root in both)).mean() for name in varying}
         speed = float(self.motion.at(np.array(start)).speed)
 
         def slow(t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
@@ -100,20 +114,12 @@ class ModalSystem:
             C, K, _ = self.assemble(replace(about_centre, **moved))
             return C, K
 
-        def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            sample = self.motion.at(t)
-            now, about_centre = self.equations.root(sample), self._about_fixed_centre(sample)
-            e = [getattr(now, name) - getattr(about_centre, name) - mean[name] for name in varying]
-            return _stack(e, t.shape), _stack([getattr(now, name) for name in loads], t.shape)
+        def excess(sample: MotionSample, now: RootMotion) -> list[np.ndarray]:
+            about_centre = self._about_fixed_centre(sample)
+            return [getattr(now, name) - getattr(about_centre, name) - mean[name] for name in varying]
 
-        return ModulatedSystem(
-            slow=slow,
-            steady=self.motion.steady_start <= start,
-            G=np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size),
-            P=np.array([*loads.values()]).reshape(-1, self.size),
-            scalars=scalars,
-            lines=abs(speed) * np.array([1.0, *(line.multiple for line in self.motion.lines)]),
-        )
+        lines = abs(speed) * np.array([1.0, *(line.multiple for line in self.motion.lines)])
+        return self._split(slow, self.motion.steady_start <= start, varying, excess, lines)
 
     def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
         """Split the equations from start to end [s] into those of the mean motion, and what varies about it.
@@ -127,40 +133,42 @@ class ModalSystem:
         mean = RootMotion(*(getattr(sampled, f.name).mean() for f in fields(RootMotion)))
         C, K, _ = self.assemble(mean)
         varying: list[Quantity] = [name for name in stiffness if np.ptp(getattr(sampled, name))]
-        loads = self.equations.vectors
 
         def slow(t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
-            each = (None if A is None else np.broadcast_to(A, (*t.shape, *A.shape)) for A in (C, K))
-            damped, stiff = each
-            assert stiff is not None
-            return damped, stiff
+            damped = None if C is None else np.broadcast_to(C, (*t.shape, *C.shape))
+            return damped, np.broadcast_to(K, (*t.shape, *K.shape))
+
+        def excess(_: MotionSample, now: RootMotion) -> list[np.ndarray]:
+            return [getattr(now, name) - getattr(mean, name) for name in varying]
+
+        return self._split(slow, True, varying, excess, np.empty(0))
+
+    def _split(
+        self,
+        slow: Callable[[np.ndarray], tuple[np.ndarray | None, np.ndarray]],
+        steady: bool,
+        varying: list[Quantity],
+        excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
+        lines: np.ndarray,
+    ) -> ModulatedSystem:
+        """The equations with a stiffness that quantities vary by their excess over the slow one."""
+        stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            now = self.root(t)
-            e = [getattr(now, name) - getattr(mean, name) for name in varying]
-            return _stack(e, t.shape), _stack([getattr(now, name) for name in loads], t.shape)
+            sample = self.motion.at(t)
+            now = self.equations.root(sample)
+            values = excess(sample, now), [getattr(now, name) for name in loads]
+            e, g = (np.stack(each, axis=-1) if each else np.empty((*t.shape, 0)) for each in values)
+            return e, g
 
-        return ModulatedSystem(
-            slow=slow,
-            steady=True,
-            G=np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size),
-            P=np.array([*loads.values()]).reshape(-1, self.size),
-            scalars=scalars,
-            lines=np.empty(0),
-        )
+        G = np.array([stiffness[name] for name in varying]).reshape(-1, self.size, self.size)
+        P = np.array([*loads.values()]).reshape(-1, self.size)
+        return ModulatedSystem(slow=slow, steady=steady, G=G, P=P, scalars=scalars, lines=lines)
 
     def _about_fixed_centre(self, sample: MotionSample) -> RootMotion:
         """Motion of the root about a fixed centre without gravity, which follows the speed."""
         still = MotionSample(np.zeros(()), sample.speed, sample.acceleration, np.zeros(3))
         return root_motion(self.equations.mount, still)
-
-    def _mean_excess(self, start: float, end: float) -> dict[str, np.ndarray]:
-        """Means from start to end [s] of what the motion of the root has beyond that about a fixed centre."""
-        sample = self.motion.at(np.linspace(start, end, _MEAN_SAMPLES)[1:-1])
-        now, about_centre = self.equations.root(sample), self._about_fixed_centre(sample)
-        return {
-            f.name: (getattr(now, f.name) - getattr(about_centre, f.name)).mean() for f in fields(RootMotion)
-        }
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
@@ -177,44 +185,3 @@ class ModalSystem:
         if C is not None:
             J[n:, n:] = -C
         return J
-
-
-def excited_equations(equations: Equations, motions: Sequence[Motion], t_end: float) -> Equations:
-    """Leave out the coordinates that no motion excites from rest: a plane without loads and coupling.
-
-    Parameters
-    ----------
-    equations : Equations
-        Equations of motion.
-    motions : sequence of Motion
-        Motions of the root.
-    t_end : float
-        End of the runs [s].
-
-    Returns
-    -------
-    Equations
-        The same if all coordinates are excited, or none.
-    """
-    if len(equations.connected) == 1:
-        return equations
-    loaded = np.any([_are_loaded(equations, motion, t_end) for motion in motions], axis=0)
-    still = {n for names in equations.connected if not loaded[equations.places(names)].any() for n in names}
-    if not still or len(still) == len(equations.blocks):
-        return equations
-    sizes = {name: block.stop - block.start for name, block in equations.blocks.items()}
-    kept = {(name,): np.eye(size)[:, : 0 if name in still else size] for name, size in sizes.items()}
-    return equations.reduced(kept)
-
-
-def _are_loaded(equations: Equations, motion: Motion, t_end: float) -> np.ndarray:
-    """Whether each coordinate (n,) is ever loaded, by times spread over the run and its smooth pieces."""
-    spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
-    ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
-    t = np.concatenate([spread, (ends[1:] + ends[:-1]) / 2])
-    return (equations.load(equations.root(motion.at(t))) != 0).any(axis=0)
-
-
-def _stack(values: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
-    """Stack values of one shape along a new last axis, which may be empty."""
-    return np.stack(values, axis=-1) if values else np.empty((*shape, 0))

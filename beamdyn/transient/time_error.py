@@ -247,26 +247,18 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     spread = choose_checked_steps(count, most)
     for chosen, represented in ((spread, count), (worst, len(worst))):
-        local, delta, between = _check(system, segment, chosen, outputs)
+        batches = np.array_split(chosen, -(-int(steps.counts[chosen].sum()) // _BATCH))
+        found = [_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)]
+        local = np.concatenate([each[0] for each in found])
+        delta = np.max([each[1] for each in found], axis=0)
         added = _total_of_local_errors(local, delta, represented)
         if across:  # what samples inside a step change in its load adds up by chance
             added = np.maximum(added, np.sqrt(represented) * local.mean(axis=0))
         total += added
         unresolved |= delta > UNRESOLVED_PHASE
-        interpolation = max(interpolation, between)
+        interpolation = max(interpolation, *(each[2] for each in found))
     modes = total * size_per_coordinate(outputs)
     return TimeError.of_coordinates(system, modes, interpolation, unresolved)
-
-
-def _check(
-    system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Local errors and largest phase error of each coordinate, and largest error of the quantity."""
-    batches = np.array_split(chosen, -(-int(segment.steps.counts[chosen].sum()) // _BATCH))
-    local, delta, between = zip(
-        *(_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)), strict=True
-    )
-    return np.concatenate(local), np.max(delta, axis=0), max(between)
 
 
 def _check_batch(

@@ -9,8 +9,10 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
+from beamdyn.transient.elastica_system import AnySystem
 from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import RecordSegment
+from beamdyn.transient.system import ModalSystem
 
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
@@ -147,7 +149,9 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
     size = size_of(q)
     t = np.array([_candidates(times, size, *window) for window in windows])
     start, end = np.array(windows).T[:, :, None]
-    half_width, found = _spacing_beside(times, t), np.empty(0)
+    spacing, found = np.diff(times), np.empty((0, 0, 0))
+    beside = np.clip(np.searchsorted(times, t) + np.array([-2, -1, 0])[:, None, None], 0, len(spacing) - 1)
+    half_width = spacing[beside].max(axis=0)
     for _ in range(_REFINEMENTS):
         near = np.linspace(np.maximum(t - half_width, start), np.minimum(t + half_width, end), 35, axis=-1)
         found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
@@ -156,21 +160,9 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
         near = np.take_along_axis(near, highest[:, :, None], axis=1)
         t = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0]
         half_width = np.take_along_axis(half_width, highest, axis=1) / 17
-    return _top_between(found).max(axis=1).tolist()
-
-
-def _spacing_beside(times: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """The larger of the distances from the samples beside times t to their neighbours, in the shape of t."""
-    at = np.searchsorted(times, t)
-    spacing = np.diff(times)
-    return np.max([spacing[np.clip(at + k, 0, len(spacing) - 1)] for k in (-2, -1, 0)], axis=0)
-
-
-def _top_between(size: np.ndarray) -> np.ndarray:
-    """Largest values (w, c) on grids, (w, c, k), by a parabola through each and its neighbours."""
-    at = np.clip(size.argmax(axis=2), 1, size.shape[2] - 2)[:, :, None]
-    left, middle, right = (np.take_along_axis(size, at + k, axis=2)[:, :, 0] for k in (-1, 0, 1))
-    return np.maximum(_top_of_parabola(left, middle, right), size.max(axis=2))
+    at = np.clip(found.argmax(axis=2), 1, found.shape[2] - 2)[:, :, None]
+    beside = (np.take_along_axis(found, at + k, axis=2)[:, :, 0] for k in (-1, 0, 1))
+    return np.maximum(_top_of_parabola(*beside), found.max(axis=2)).max(axis=1).tolist()
 
 
 def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -182,17 +174,39 @@ def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) ->
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Times of the highest samples in a window and its ends, some perhaps twice: shape (_CANDIDATES + 2,)."""
+    """Times of the highest samples in a window and its ends, some perhaps twice: shape (_CANDIDATES + 2,).
+
+    They are ranked by parabolas through three samples.
+    """
     first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
-    highest = times[first + _find_highest_maxima(size[first:last])]
-    return np.concatenate([highest, np.full(_CANDIDATES - len(highest), start), [start, end]])
+    size = size[first:last]
+    chosen = np.arange(len(size))
+    if len(size) >= 3:
+        size = size / max(size.max(), 1e-300)  # so that squares cannot overflow
+        height = _top_of_parabola(size[:-2], size[1:-1], size[2:])
+        chosen = 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
+    return np.concatenate([times[first + chosen], np.full(_CANDIDATES - len(chosen), start), [start, end]])
 
 
-def _find_highest_maxima(size: np.ndarray) -> np.ndarray:
-    """Indices of the samples at the highest maxima, ranked by parabolas through three samples."""
-    if len(size) < 3:
-        return np.arange(len(size))
-    size = size / max(size.max(), 1e-300)  # so that squares cannot overflow
-    left, middle, right = size[:-2], size[1:-1], size[2:]
-    height = _top_of_parabola(left, middle, right)
-    return 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
+# The tip ------------------------------------------------------------------------------------------
+
+
+def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Samples of the tip's deflection: times (k,) [s] and deflections (k, 1 or 2) [m]."""
+    if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
+        t, deflections, _ = path.projected(system.tips).samples  # far fewer numbers than all coordinates
+        return t, deflections
+    t, q, _ = path.samples
+    return t, system.deflections(q)
+
+
+def magnitude_of(deflections: np.ndarray) -> np.ndarray:
+    """Magnitude (...) of deflections in each direction (..., 1 or 2)."""
+    return np.hypot.reduce(np.abs(np.moveaxis(deflections, -1, 0)))
+
+
+def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
+    """Deflection (...) in a direction, from those in each (..., 1 or 2); 0 where that is not modelled."""
+    if direction >= deflections.shape[-1]:
+        return np.zeros(deflections.shape[:-1])
+    return deflections[..., direction]

@@ -1,4 +1,4 @@
-"""A transient, motion of a beam in time: its request and its result."""
+"""A transient, motion of a beam in time, as the result of `simulate`."""
 
 from __future__ import annotations
 
@@ -14,37 +14,25 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.accuracy.margins import MODES_OF_MOMENTS
-from beamdyn.common.inputs.checks import InvalidValue, real, real_array
+from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.results.one_line import error_at_most, number, warned
-from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import Statement
-from beamdyn.equations.directions import check_direction, modelled_directions
-from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
-from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
-from beamdyn.modes.modal.model import Model
+from beamdyn.common.results.statements import TOLERANCE, Statement
+from beamdyn.equations.directions import modelled_directions
+from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
-from beamdyn.transient.along_path import distance_along_path
-from beamdyn.transient.elastica_system import ElasticaSystem
-from beamdyn.transient.initial_state import initial_state, padded
-from beamdyn.transient.integration import integrate
+from beamdyn.transient.elastica_system import AnySystem
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
-from beamdyn.transient.limits import check_growth, check_motion
-from beamdyn.transient.missed_tolerance import warn_of_missed_steps
-from beamdyn.transient.model_of_basis import choose_for_basis
+from beamdyn.transient.problem import Solution, TransientProblem, unless_unbounded
 from beamdyn.transient.root_strain import RootStrain
-from beamdyn.transient.step_size import TooManySteps, follow_steps
 from beamdyn.transient.system import ModalSystem
-from beamdyn.transient.tip_deflection import in_direction, magnitude_of, sample_tip
-from beamdyn.transient.trajectory import Path, Size, Trajectory, largest_on
+from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitude_of, sample_tip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from scipy.integrate import OdeSolver
 
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
@@ -101,7 +89,7 @@ class Transient(StatesModelError):
     largest: float
     warnings: tuple[str, ...]
     provenance: Provenance
-    system: ModalSystem | ElasticaSystem = field(repr=False)
+    system: AnySystem = field(repr=False)
     path: Path = field(repr=False)
     request: TransientRequest = field(repr=False)
 
@@ -118,6 +106,11 @@ class Transient(StatesModelError):
         """Scene."""
         return self.request.scene
 
+    @property
+    def solution(self) -> Solution:
+        """Equations, path, errors and largest deflection."""
+        return Solution(self.system, self.path, self.time_error, self.largest)
+
     def without_waiting(self) -> Transient:
         """A copy to be shown at once, without model and modal truncation errors that are not computed yet."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
@@ -129,7 +122,7 @@ class Transient(StatesModelError):
         return self.request.run_refined()
 
     @cached_property
-    def with_more_modes(self) -> tuple[ModalSystem | ElasticaSystem, Path] | None:
+    def with_more_modes(self) -> tuple[AnySystem, Path] | None:
         """Equations and motion with the modes of `refined`, where possible in the steps of this run.
 
         None if there is no larger model.
@@ -150,34 +143,28 @@ class Transient(StatesModelError):
         distance (benchmark of the coverage of transients).  Infinite if there is no larger model that fits
         into memory, or if the distance is so large that the error of `refined` is unknown.
         """
-        difference = self._distance_along_path()
+        system, path, difference = self.system, self.path, None
+        known = self.time_error == 0 or not _MOTIONS_WITH_MORE_MODES.isdisjoint(self.__dict__)
+        if isinstance(system, ModalSystem) and isinstance(path, Trajectory) and not known:
+            difference = self.request.distance_with_more_modes(path, system)
         if difference is not None:
             difference += _OF_TIME_ERROR * self.time_error
+        elif self.with_more_modes is None:
+            return np.inf
         else:
-            if self.with_more_modes is None:
-                return np.inf
             difference = self.distance_from_path(*self.with_more_modes)
         if difference > _LIMIT_DIFFERENCE * self.largest:
             return np.inf
         return 2 * difference / self.largest if self.largest else 0.0
 
-    def _distance_along_path(self) -> float | None:
-        """Distance from `refined` [m], found along the path; None where that takes a motion of its own."""
-        system, path = self.system, self.path
-        if not (isinstance(system, ModalSystem) and isinstance(path, Trajectory)) or self.time_error == 0:
-            return None
-        if not _MOTIONS_WITH_MORE_MODES.isdisjoint(self.__dict__):
-            return None
-        return self.request.distance_with_more_modes(path, system)
-
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """What the effects left out would change in the largest deflection: changes of shape ()."""
-        return left_out_of_transient(self)
+        return left_out_of_transient(self.request, self.solution)
 
     @property
     def relative_mode_error(self) -> float:
-        """The same as `mode_error`."""
+        """The modal truncation error over the largest deflection, which is `mode_error`."""
         return self.mode_error
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
@@ -191,7 +178,7 @@ class Transient(StatesModelError):
         """Largest difference of the tip deflection from that of another run of the same scene [m]."""
         return self.distance_from_path(other.system, other.path)
 
-    def distance_from_path(self, system: ModalSystem | ElasticaSystem, path: Path) -> float:
+    def distance_from_path(self, system: AnySystem, path: Path) -> float:
         """Largest difference of the tip deflection from that of another motion of the same scene [m]."""
         t, q, _ = self.path.samples
         own = self.system.deflections(q)
@@ -267,10 +254,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def _root_strain(self) -> RootStrain:
-        if isinstance(self.system, ElasticaSystem):
-            bound = "the root strain of a beam with large deflection is not computed"
-            remedy = "leave large_deflection out where the deflection is small"
-            raise InvalidValue("physics.large_deflection", True, bound, remedy)
+        """The root strain by the state."""
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
     def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -293,15 +277,15 @@ class Transient(StatesModelError):
         Where two planes are modelled, it is the magnitude of a vector, or of its component in a direction:
         0 is that of bending at the root, 1 that across.
         """
-        _check_window(start, end, self.path)
-        return largest_on(self._size(direction), self.path, start, end)
+        self._check_window(start, end)
+        return self.solution.peak(start, end, direction)
 
-    def _size(self, direction: int | None) -> Size:
-        """Magnitude of the tip's deflection by the coordinates, or of its component in a direction."""
-        if direction is None:
-            return lambda q: magnitude_of(self.system.deflections(q))
-        chosen = check_direction(direction)
-        return lambda q: np.abs(in_direction(self.system.deflections(q), chosen))
+    def _check_window(self, start: float, end: float) -> None:
+        """Refuse a window [s] that does not lie in the run."""
+        (start, end), path = (real("start", start, "s"), real("end", end, "s")), self.path
+        if not path.start <= start < end <= path.end * (1 + 1e-12):
+            within = f"it must lie in the run, {path.start:g} ... {path.end:g} s"
+            raise ValueError(f"window = {start:g} ... {end:g} s: {within}")
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
@@ -317,188 +301,89 @@ class Transient(StatesModelError):
         """Write the deflected beam from start to end [s] as a time series for ParaView."""
         from beamdyn.common.plots.export import write_series
 
-        _check_window(start, end, self.path)
+        self._check_window(start, end)
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)
         write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
 
 
-def _check_window(start: float, end: float, path: Path) -> None:
-    start, end = real("start", start, "s"), real("end", end, "s")
-    if not path.start <= start < end <= path.end * (1 + 1e-12):
-        raise ValueError(
-            f"window = {start:g} ... {end:g} s: it must lie in the run, {path.start:g} ... {path.end:g} s"
-        )
-
-
-# Requests ------------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
-class TransientRequest(FieldsOnly):
-    """Checked arguments of `simulate`, with the modal basis in place of the number of modes."""
-
-    scene: Scene
-    t_end: float
-    tolerance: float
-    method: str | type[OdeSolver]
-    discretization: DiscretizationChoice
-    initial: str | np.ndarray
-    t_eval: np.ndarray | None
-    options: dict[str, Any]
-    basis: ModalBasis
+class TransientRequest(TransientProblem):
+    """Checked arguments of `simulate`, which make its result."""
 
     def run(self) -> Transient:
         """Integrate with the modal basis of the request."""
         start = perf_counter()
-        motion, t_end = self.motion, self.t_end
-        model = self.model
-        check_motion(motion, t_end, model)
-        system = self._system(model)
-        path, error, name = self._integrate(system, initial_state(self.initial, system))
-        t, q, v = path.samples
-        largest = largest_on(lambda q: magnitude_of(system.deflections(q)), path, path.start, path.end)
-        check_growth(self.scene, largest)
+        solution = self.solve()
+        t, q, v = solution.path.samples
         if self.t_eval is not None:
             t = self.t_eval
-            q, v = path.at(t)
-        tips = system.deflections(q)
+            q, v = solution.path.at(t)
+        tips = solution.system.deflections(q)
+        method = f"{solution.method}, {self.basis} of {self.model.discretization}"
         return Transient(
             t=t,
             tip=in_direction(tips, 0),
             tip_across=in_direction(tips, 1),
             coordinates=q,
             velocities=v,
-            time_error=error,
-            largest=largest,
-            warnings=(
-                *_warnings(self.scene, t_end, largest),
-                *warn_of_missed_steps(error / largest if largest else 0.0, self.tolerance),
-            ),
-            provenance=Provenance(
-                __version__, f"{name}, {self.basis} of {model.discretization}", "", perf_counter() - start
-            ),
-            system=system,
-            path=path,
+            time_error=solution.error,
+            largest=solution.largest,
+            warnings=tuple(self._warnings(solution)),
+            provenance=Provenance(__version__, method, "", perf_counter() - start),
+            system=solution.system,
+            path=solution.path,
             request=self,
         )
 
-    def _system(self, model: Model) -> ModalSystem | ElasticaSystem:
-        """Equations of the run, without the coordinates that stay at rest."""
-        if self.scene.physics.large_deflection:
-            return ElasticaSystem.of_model(model, self.basis, self.motion)
-        return self._modal_system(model)
-
-    def _modal_system(self, model: Model) -> ModalSystem:
-        """Equations of a run of a straight beam, without the coordinates that stay at rest."""
-        equations = model.modal_equations(self.basis)
-        if isinstance(self.initial, str):
-            return ModalSystem.from_rest(equations, self.motion, self.t_end)
-        return ModalSystem(equations, self.motion)
+    def _warnings(self, solution: Solution) -> Iterator[Statement]:
+        """Yield what limits a solution, also that it misses the tolerance."""
+        scene, largest = self.scene, solution.largest
+        yield from warn_of_left_out(scene)
+        yield from warn_of_peak(scene, largest)
+        if not scene.physics.large_deflection:
+            yield from warn_of_deflection(np.array([largest]), scene.beam.length)
+        road = self.motion.at(np.linspace(0, self.t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
+        yield from warn_of_road(np.array([np.abs(road).max()]))
+        error = solution.error / largest if largest else 0.0
+        said = f"{error:.2g} of the largest deflection, and smaller steps would only add rounding errors; "
+        yield from _warn_of_missed(
+            "time-integration error", error, self.tolerance, said, "give a larger tolerance"
+        )
 
     def run_refined(self) -> Transient | None:
         """Integrate by Gauss collocation with more modes; None if there is no larger model or no solution."""
-        return self._run_or_none(self._refined())
+        finer = self.refined()
+        return finer and unless_unbounded(finer.run)
 
     def run_with_one_more(self) -> Transient | None:
         """Integrate with one more mode; None if there is no larger model or no solution."""
-        basis = None if self.basis.modes is None else self.basis.with_one_more()
-        return self._run_or_none(basis and self._with_basis(basis))
-
-    @staticmethod
-    def _run_or_none(request: TransientRequest | None) -> Transient | None:
-        try:
-            return request and request.run()
-        except (ArithmeticError, TooManySteps):  # it grows without bound, or is too long, with more modes
-            return None
-
-    def follow_with_more_modes(self, path: Trajectory) -> tuple[ModalSystem | ElasticaSystem, Path] | None:
-        """Integrate with the modes of `run_refined` in the steps of a path: equations and motion; or None.
-
-        Two runs in the same steps differ by the modes of one of them; neither needs an error of its own.
-        Where the steps are too long for what the further modes do, those of `run_refined` are taken.
-        """
-        request = self._refined_of_same_functions()
-        if request is None:
-            return None
-        system = request._modal_system(request.model)
-        try:
-            finer, error = follow_steps(path, system, initial_state(request.initial, system), self.tolerance)
-        except (ArithmeticError, TooManySteps):
-            return None
-        largest = float(magnitude_of(sample_tip(system, finer)[1]).max())
-        if not error <= self.tolerance * largest < np.inf:
-            run = self.run_refined()
-            return run and (run.system, run.path)
-        return system, finer
-
-    def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Distance of the tip from that with the modes of `run_refined` [m], found along a path; or None."""
-        request = self._refined_of_same_functions()
-        if request is None:
-            return None
-        system = request._modal_system(request.model)
-        states = (initial_state(each.initial, s) for each, s in ((self, own), (request, system)))
-        return distance_along_path(path, own, system, *states)
-
-    def _refined_of_same_functions(self) -> TransientRequest | None:
-        """As `_refined`, of the functions of this request if these suffice: no choice takes time."""
-        request = self._refined()
-        if request is None or request.basis.modes is None:
-            return request
-        own = self.model.discretization
-        same = ensure_size(self.scene, own, request.basis.modes) is own
-        return replace(request, discretization=own) if same else request
-
-    def _refined(self) -> TransientRequest | None:
-        """Request with more modes, or a finer discretization where the basis has all modes; None if none."""
-        base = replace(self, method="auto", t_eval=None)
-        return base._with_finer_discretization() if self.basis.modes is None else base._with_more_modes()
-
-    def _with_more_modes(self) -> TransientRequest | None:
-        """Request with more modes, by "ritz" if the discretization has too few functions; or None."""
-        basis = self.basis.refined()
-        return basis and self._with_basis(basis)
-
-    def _with_basis(self, basis: ModalBasis) -> TransientRequest:
-        """Request with a larger basis, by "ritz" if the discretization has too few functions."""
-        assert basis.modes is not None and self.basis.modes is not None
-        initial = padded(self.initial, self.basis.modes, basis.modes)
-        discretization = ensure_size(self.scene, self.discretization, basis.modes)
-        return replace(self, basis=basis, discretization=discretization, initial=initial)
-
-    def _with_finer_discretization(self) -> TransientRequest | None:
-        """Request with all functions of the next finer discretization; None if there is none."""
-        finer = self.model.discretization.finer()
-        return None if finer is None else replace(self, discretization=finer)
-
-    @property
-    def motion(self) -> Motion:
-        """Motion of the scene."""
-        assert self.scene.motion is not None
-        return self.scene.motion
-
-    @cached_property
-    def model(self) -> Model:
-        """The discretized scene, chosen for the modal basis and the tolerance."""
-        return choose_for_basis(self.scene, self.discretization, self.basis, 1e-3 * self.tolerance)
-
-    def _integrate(self, system: ModalSystem | ElasticaSystem, y0: np.ndarray) -> tuple[Path, float, str]:
-        """Integrate: the path, its time-integration error [m], and the integrator's name."""
-        if self.method == "auto":
-            return integrate(system, y0, self.t_end, self.tolerance)
-        from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
-
-        name = self.method if isinstance(self.method, str) else self.method.__name__
-        path = integrate_by_solve_ivp(system, y0, self.t_end, self.method, self.tolerance, self.options)
-        return path, np.nan, name
+        larger = self.with_one_more()
+        return larger and unless_unbounded(larger.run)
 
 
-def _warnings(scene: Scene, t_end: float, largest: float) -> Iterator[Statement]:
-    yield from warn_of_left_out(scene)
-    yield from warn_of_peak(scene, largest)
-    if not scene.physics.large_deflection:
-        yield from warn_of_deflection(np.array([largest]), scene.beam.length)
-    if scene.motion is not None:
-        road = scene.motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
-        yield from warn_of_road(np.array([np.abs(road).max()]))
+def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:
+    """Warn of a modal truncation error, over the largest deflection (inf if not known), past the tolerance.
+
+    The basis is given in words.
+    """
+    size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
+    more = "and more would take too long or too much memory; a sudden motion excites very many: "
+    remedy = "give a larger tolerance, a smoother motion, or the number of modes yourself"
+    yield from _warn_of_missed(
+        "modal truncation error", error, tolerance, f"{size} with {basis}, {more}", remedy
+    )
+
+
+def _warn_of_missed(what: str, error: float, tolerance: float, said: str, remedy: str) -> Iterator[Statement]:
+    """Warn of an error over the largest deflection that exceeds the tolerance, with its size in words."""
+    if error > tolerance:
+        yield Statement(
+            f"tolerance = {tolerance:g} is not reached: the estimated {what} is {said}",
+            remedy,
+            kind=TOLERANCE,
+            quantity=f"{what} over the largest deflection",
+            value=error,
+            limit=tolerance,
+            remedy=remedy,
+        )

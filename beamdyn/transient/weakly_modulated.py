@@ -11,10 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, reduce
+from functools import cache, reduce
+from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.transient.chebyshev import (
+    NEGLIGIBLE,
+    Polynomials,
+    chebyshev_coefficients,
+    extrema,
+    polynomials,
+    to_part,
+)
 from beamdyn.transient.gauss import (
     Segment,
     Tableau,
@@ -33,7 +42,6 @@ _MOST_VALUES = 4_000_000  # of the expanded maps of changing speed, some 30 MB
 _LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
 _SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
 _SAMPLES = 257  # of e, for its largest value
-_NEGLIGIBLE = 1e-3  # share of an accuracy
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
@@ -66,6 +74,17 @@ class ModulatedSystem:
     P: np.ndarray
     scalars: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     lines: np.ndarray
+
+
+class _Steps(NamedTuple):
+    """Equal steps of length h from `first` on [s], with their collocation and the accuracy of all."""
+
+    system: ModulatedSystem
+    first: float
+    h: float
+    count: int
+    table: Tableau
+    accuracy: float
 
 
 @dataclass(frozen=True)
@@ -155,55 +174,14 @@ class _StepMapSeries:
 
 
 @dataclass(frozen=True)
-class _Polynomials:
-    """A sum of Chebyshev polynomials over [-1, 1] whose terms may be left out while they are small.
-
-    Parameters
-    ----------
-    values : ndarray, shape (p, ...)
-        Coefficients.
-    size : ndarray, shape (p,)
-        Their sizes.
-    allowed : float
-        Size of all that may be left out.
-    """
-
-    values: np.ndarray
-    size: np.ndarray
-    allowed: float
-
-    @property
-    def ends_early(self) -> bool:
-        """Whether the number of points suffices, so that the last term may be left out."""
-        return len(self.size) == 1 or bool(self.size[-1] <= self.allowed)
-
-    def shortened(self, rough: bool) -> _Polynomials:
-        """The sum without last terms far below what is allowed; in single precision if `rough`."""
-        left_out = np.cumsum(self.size[::-1])[::-1]
-        count = max(1, int((left_out > _NEGLIGIBLE * self.allowed).sum()))
-        values = self.values[:count]
-        return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
-
-    def over(self, local: np.ndarray) -> np.ndarray:
-        """Coefficients over a part of [-1, 1], (q, ...) with q <= p, by the matrix of `_to_part`."""
-        p = len(self.values)
-        if p == 1:
-            return self.values
-        left_out = np.cumsum((np.abs(local[:p, :p]) @ self.size)[::-1])[::-1]
-        count = int((left_out > self.allowed).sum())
-        found = local[:count, :p].astype(self.values.dtype) @ self.values.reshape(p, -1)
-        return found.reshape(count, *self.values.shape[1:])
-
-
-@dataclass(frozen=True)
 class _Expansion:
     """Maps of all steps: sums of Chebyshev polynomials of the step's beginning, times monomials in e.
 
     Parameters
     ----------
-    maps : list of _Polynomials, of shapes (p_o, k_o, 2 n, 2 n + s l)
+    maps : list of Polynomials, of shapes (p_o, k_o, 2 n, 2 n + s l)
         The maps to the end of a step, for the k_o monomials of orders 0, 1 and 2.
-    X0, Y : _Polynomials, of shape (p, s n, :)
+    X0, Y : Polynomials, of shape (p, s n, :)
         X0 and Y of `_StepMapSeries`.
     ratio : ndarray, shape (m,)
         Ratio of successive terms of the series for e_m = 1.
@@ -211,77 +189,50 @@ class _Expansion:
         The series at the Chebyshev points.
     """
 
-    maps: list[_Polynomials]
-    X0: _Polynomials
-    Y: _Polynomials
+    maps: list[Polynomials]
+    X0: Polynomials
+    Y: Polynomials
     ratio: np.ndarray
     point: _StepMapSeries
 
     @classmethod
-    def of(
-        cls,
-        system: ModulatedSystem,
-        points: int,
-        first: float,
-        h: float,
-        steps: int,
-        table: Tableau,
-        accuracy: float,
-    ) -> _Expansion | None:
-        """Expand the maps of steps of length h from `first` on [s], with a number of Chebyshev points.
+    def of(cls, steps: _Steps, points: int) -> _Expansion | None:
+        """Expand the maps of some steps, with a number of Chebyshev points.
 
         None if the polynomials through these points are not within the accuracy after all steps.
         """
-        begin = first + (steps - 1) * h * (1 + _extrema(points)) / 2
+        system, first, h, count, table, accuracy = steps
+        begin = first + (count - 1) * h * (1 + extrema(points)) / 2
         point = _StepMapSeries.at(system, begin, h, table)
-        e, _ = system.scalars(np.linspace(first, first + steps * h, _SAMPLES)[1:-1])
+        e, _ = system.scalars(np.linspace(first, first + count * h, _SAMPLES)[1:-1])
         largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
-        scales = _scales(system, point.constant(), first, table)
-        maps = _expand_maps(point, scales, largest, accuracy / steps)
-        if maps is None:
-            return None
+        rows, columns = _scales(system, point.constant(), first, table)
+        maps, allowed = [], accuracy / count
+        orders = point.constant(), point.first(), point.every(2).second()
+        monomials = _monomials_by_order(np.repeat(largest, len(table.c))[None])
+        for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
+            values = chebyshev_coefficients(order)
+            size = (np.abs(values * (rows[:, None] * columns)).max(axis=(2, 3)) * factor).sum(axis=1)
+            if len(size) > 1 and size[-1] > allowed:  # the number of points does not suffice
+                return None
+            rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
+            maps.append(Polynomials(values, size, allowed).shortened(rough))
         change = float(ratio @ largest)  # by the first order, over the order before it
-        X0, Y = _expand_accelerations(point, scales, change, accuracy)
-        return cls(maps, X0, Y, ratio, point)
+        X0, Y = chebyshev_coefficients(point.X0), chebyshev_coefficients(point.Y)
+        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # of accelerations, to displacements
+        size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
+        terms = Polynomials(X0, size, min(NEGLIGIBLE * accuracy, 1.0) * size.max())
+        size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
+        varied = Polynomials(Y, size, min(NEGLIGIBLE * share, 1.0) * size.max())
+        rough = change * _SINGLE_ROUNDING <= accuracy
+        return cls(maps, terms.shortened(rough=False), varied.shortened(rough), ratio, point)
 
     def over(self, start: float, end: float) -> _Block:
         """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
         parts = *self.maps, self.X0, self.Y
-        local = _to_part(max(len(part.values) for part in parts), start, end)
+        local = to_part(max(len(part.values) for part in parts), start, end)
         *maps, X0, Y = (part.over(local) for part in parts)
         return _Block(tuple(maps), X0, Y, self.point)
-
-
-def _expand_maps(
-    point: _StepMapSeries, scales: tuple[np.ndarray, np.ndarray], largest: np.ndarray, allowed: float
-) -> list[_Polynomials] | None:
-    """Expand the maps to the end of a step; None if that takes more points."""
-    rows, columns = scales
-    found, scale = [], rows[:, None] * columns
-    orders = point.constant(), point.first(), point.every(2).second()
-    monomials = _monomials_by_order(np.repeat(largest, len(point.table.c))[None])
-    for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
-        values = _chebyshev_coefficients(order)
-        size = (np.abs(values * scale).max(axis=(2, 3)) * factor).sum(axis=1)
-        terms = _Polynomials(values, size, allowed)
-        if not terms.ends_early:
-            return None
-        found.append(terms.shortened(rough=k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed))
-    return found
-
-
-def _expand_accelerations(
-    point: _StepMapSeries, scales: tuple[np.ndarray, np.ndarray], change: float, accuracy: float
-) -> tuple[_Polynomials, _Polynomials]:
-    """Expand X0, and Y, which counts by the relative change that e makes."""
-    rows, columns = scales
-    X0, Y = _chebyshev_coefficients(point.X0), _chebyshev_coefficients(point.Y)
-    forces = np.tile(rows[point.size :] ** 2, len(point.table.c))  # of accelerations, to displacements
-    size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
-    terms = _Polynomials(X0, size, min(_NEGLIGIBLE * accuracy, 1.0) * size.max())
-    size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
-    varied = _Polynomials(Y, size, min(_NEGLIGIBLE * share, 1.0) * size.max())
-    return terms.shortened(rough=False), varied.shortened(rough=change * _SINGLE_ROUNDING <= accuracy)
 
 
 @dataclass(frozen=True)
@@ -295,7 +246,7 @@ class _Block:
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """The p Chebyshev polynomials that the block needs, at x (N,) in [-1, 1]: shape (N, p)."""
-        return _polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
+        return polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
@@ -323,13 +274,6 @@ class _Block:
         return total + _evaluate(self.Y, T, more)
 
 
-@lru_cache(maxsize=64)
-def _to_part(count: int, start: float, end: float) -> np.ndarray:
-    """Matrix from `count` Chebyshev coefficients over [-1, 1] to those over a part of it."""
-    T = _polynomials(start + (end - start) * (1 + _extrema(count)) / 2, count)
-    return _to_coefficients(count) @ T
-
-
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Products of polynomials T (N, :) and monomials (N, k) by which values (p, k, ...) count: (N, p k)."""
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
@@ -339,28 +283,6 @@ def _evaluate(coefficients: np.ndarray, T: np.ndarray, z: np.ndarray) -> np.ndar
     """Multiply the vectors z (N, c) by matrices given by Chebyshev coefficients (p, r, c): shape (N, r)."""
     p, rows, columns = coefficients.shape
     return _products(T, z, coefficients) @ coefficients.swapaxes(1, 2).reshape(p * columns, rows)
-
-
-def _chebyshev_coefficients(values: np.ndarray) -> np.ndarray:
-    """Chebyshev coefficients of functions given at the P extrema of a polynomial, along the first axis."""
-    P = len(values)
-    return values if P == 1 else (_to_coefficients(P) @ values.reshape(P, -1)).reshape(values.shape)
-
-
-@cache
-def _to_coefficients(points: int) -> np.ndarray:
-    """Matrix from values at the extrema of a Chebyshev polynomial to coefficients, shape (P, P)."""
-    return np.linalg.inv(_polynomials(_extrema(points), points))
-
-
-def _extrema(points: int) -> np.ndarray:
-    """Extrema of a Chebyshev polynomial, P of them, from 1 to -1; of one point, 0."""
-    return np.cos(np.pi * np.arange(points) / (points - 1)) if points > 1 else np.zeros(1)
-
-
-def _polynomials(x: np.ndarray, count: int) -> np.ndarray:
-    """The first `count` Chebyshev polynomials at x (N,) in [-1, 1]: shape (N, count)."""
-    return np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(count))
 
 
 @cache
@@ -413,7 +335,7 @@ def propagate_modulated(
         None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
     h, table = (t1 - t0) / steps, tableau(stages)
-    expansion = _expand(system, t0, h, steps, table, accuracy)
+    expansion = _expand(_Steps(system, t0, h, steps, table, accuracy))
     if expansion is None:
         return None
     state, acceleration = allocate_steps(steps, stages, q0, v0)
@@ -454,19 +376,18 @@ def _advance_block(
     acceleration[:] = local.accelerations(T, e, z).reshape(acceleration.shape)
 
 
-def _expand(
-    system: ModulatedSystem, first: float, h: float, steps: int, table: Tableau, accuracy: float
-) -> _Expansion | None:
+def _expand(steps: _Steps) -> _Expansion | None:
     """Expand the maps of some steps by as few points as suffice, if any do."""
+    system, s = steps.system, len(steps.table.c)
     if system.steady:
-        return _Expansion.of(system, 1, first, h, steps, table, accuracy)
-    n, d = system.G.shape[1], len(system.G) * len(table.c)
-    width = 2 * n * (2 * n + len(table.c) * len(system.P))
+        return _Expansion.of(steps, 1)
+    n, d = system.G.shape[1], len(system.G) * s
+    width = 2 * n * (2 * n + s * len(system.P))
     for points in _POINTS:
         terms = points + points * d + points * d * d // 4
-        if steps < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
+        if steps.count < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
             return None
-        if (found := _Expansion.of(system, points, first, h, steps, table, accuracy)) is not None:
+        if (found := _Expansion.of(steps, points)) is not None:
             return found
     return None
 

@@ -7,10 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
-from matplotlib.figure import Figure
 from pydantic import BaseModel
 from rich.console import RenderableType
 
@@ -18,9 +17,18 @@ from beamdyn._version import __version__
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
-from beamdyn.common.edge.input_sweep import InputSweep, Output, chosen, swept
+from beamdyn.common.edge.input_sweep import (
+    MOST_ONE_BY_ONE,
+    CaseTask,
+    InputSweep,
+    Output,
+    SolvedCases,
+    chosen,
+    one_by_one,
+    solve_cases,
+    swept,
+)
 from beamdyn.common.edge.inputs import Input, describe
-from beamdyn.common.edge.one_by_one import MOST_ONE_BY_ONE, CaseTask, SolvedCases, one_by_one, solve_cases
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
@@ -29,9 +37,11 @@ from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.screens.folded_parts import FoldedPart
-from beamdyn.common.screens.screens import Handle, KeyResult, Slider
+from beamdyn.common.screens.screens import FoldedPart, Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
@@ -65,7 +75,7 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What to look at although there is an answer: one sentence each."""
+        """Doubts although there is an answer: one sentence each."""
         return ()
 
     @property
@@ -358,14 +368,10 @@ class BrakeType(ABC, Generic[FileModel]):
         check_designs(designs_of(axes, combine), self.most_cases, options[0])
         asked = SweepRequest(design, tables, axes, combine, run)
         made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
-        return self._without_error(made, plain(design.model_dump()), start), warnings
-
-    def _without_error(self, made: InputSweep, design: dict[str, Any], start: float) -> BrakeSweep:
-        """The sweep, whose last result is the error, with its provenance."""
         given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
-        shown = {key: given[key][:-1] for key in ("results", "result_units", "found")}
-        more = {"design": design, "error": made.found[-1], "provenance": self._provenance(start)}
-        return BrakeSweep(**given | shown | more)
+        given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}  # without the error
+        more = {"design": plain(design.model_dump()), "provenance": self._provenance(start)}
+        return BrakeSweep(**given, **more, error=made.found[-1]), warnings
 
 
 ERROR = Output("error", "relative error", lambda answer: answer.error)
@@ -400,42 +406,30 @@ class ArrayBrakeType(BrakeType[FileModel]):
         """Results from one answer whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
-        answer, rows, refused = self._solve_accepted(asked.design, in_si)
-        values = np.full((len(outputs), designs.count), np.nan)
-        if answer is not None:
-            values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
-        more = () if answer is None else answer.refusals
-        made = _with_reasons(swept(designs, outputs, [*values], more, refused), answer, rows)
-        return made, (*(() if answer is None else answer.warnings), *made.warnings)
-
-    def _solve_accepted(
-        self, design: FileModel, designs: Designs
-    ) -> tuple[Answer | None, np.ndarray, dict[int, str]]:
-        """Answer to the accepted designs, their rows (M,), and why the others are refused, by row."""
-        columns, rows, refused = designs.columns(), np.arange(designs.count), dict[int, str]()
-        while rows.size:
+        columns, rows, refused = in_si.columns(), np.arange(designs.count), dict[int, str]()
+        values, answer = np.full((len(outputs), designs.count), np.nan), None
+        while rows.size and answer is None:
             try:
                 given = {name: values[rows] for name, values in columns.items()}
-                return self.solve(with_parts(design, given)), rows, refused
+                answer = self.solve(with_parts(asked.design, given))
             except InvalidValue as error:
                 bad = error.by_case()
                 if error.cases is None or error.cases.bad.shape != rows.shape:
                     raise  # it is not about some of the designs
-                key = path_of(error, [entry.path for entry in describe(type(design))]) or error.field
+                paths = [entry.path for entry in describe(type(asked.design))]
+                key = path_of(error, paths) or error.field
                 refused.update((int(rows[i]), said_of(each, key, None)) for i, each in bad.items())
                 rows = rows[~error.cases.bad]
-        return None, rows, refused
-
-
-def _with_reasons(made: InputSweep, answer: Answer | None, rows: np.ndarray) -> InputSweep:
-    """The sweep with the reasons why designs have no answer, such as that the brake locks.
-
-    Reasons are given only for designs that lack one of the wanted results.
-    """
-    lacking = np.any([np.isnan(values).ravel() for values in made.found[:-1]], axis=0)
-    why = {} if answer is None else answer.refusals_of_cases(len(rows))
-    unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
-    return replace(made, unanswered=tuple(sorted(unanswered.items())))
+        if answer is None:
+            made = swept(designs, outputs, [*values], (), refused)
+            return made, made.warnings
+        values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
+        made = swept(designs, outputs, [*values], answer.refusals, refused)
+        # Reasons are given only for designs that lack one of the wanted results.
+        lacking, why = np.any(np.isnan(values[:-1]), axis=0).tolist(), answer.refusals_of_cases(len(rows))
+        unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
+        made = replace(made, unanswered=tuple(sorted(unanswered.items())))
+        return made, (*answer.warnings, *made.warnings)
 
 
 class TableBrakeType(BrakeType[FileModel]):
@@ -448,11 +442,12 @@ class TableBrakeType(BrakeType[FileModel]):
 
     def solve_task(self, task: CaseTask) -> SolvedCases:
         """Solve the designs of a task, here or in a worker."""
-        outputs = self.outputs(self.read(task.tables, self.name))
-        return solve_cases(task, [*outputs, ERROR], self._solve_determined)
 
-    def _solve_determined(self, tables: Mapping[str, Any]) -> Answer:
-        answer = self.solve(self.read(tables, self.name))
-        if answer.refusals:
-            raise NoAnswer("; ".join(answer.refusals))
-        return answer
+        def solve_determined(tables: Mapping[str, Any]) -> Answer:
+            answer = self.solve(self.read(tables, self.name))
+            if answer.refusals:
+                raise NoAnswer("; ".join(answer.refusals))
+            return answer
+
+        outputs = self.outputs(self.read(task.tables, self.name))
+        return solve_cases(task, [*outputs, ERROR], solve_determined)

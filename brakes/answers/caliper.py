@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -24,8 +23,7 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.screens.folded_parts import FoldedDrawings
-from beamdyn.common.screens.screens import Slider
+from beamdyn.common.screens.screens import FoldedPart, Slider
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -61,6 +59,9 @@ from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
 _AT_STOPS = 11  # positions of a stroke at which the slider stops
 _STROKE_HEADS = (
@@ -78,27 +79,14 @@ _OUTPUTS = (
     Output("left_advantage", "left pad over finger", lambda a: a.run.advantage[-1, 1]),
     Output("total_advantage", "both pads over finger", lambda a: a.run.total_advantage[-1]),
     Output("travel_symmetry", "velocity of the left pad over the right", lambda a: a.run.travel_symmetry[-1]),
-    Output(
-        "squeeze",
-        "share of the pad force that friction leaves, squeezing",
-        lambda a: a.friction.squeeze if a.friction else np.nan,
-    ),
-    Output(
-        "release",
-        "share of the cable tension that friction holds, releasing",
-        lambda a: a.friction.release if a.friction else np.nan,
-    ),
-    Output(
-        "squeezing_tension",
-        "tension of the cable for the same forces of the pads, squeezing",
-        lambda a: a.friction.squeezing_tension if a.friction else np.nan,
-        "N",
-    ),
-    Output(
-        "releasing_tension",
-        "tension of the cable for the same forces of the pads, releasing",
-        lambda a: a.friction.releasing_tension if a.friction else np.nan,
-        "N",
+    *(
+        Output(key, words, lambda a, key=key: getattr(a.friction, key) if a.friction else np.nan, unit)
+        for key, words, unit in (
+            ("squeeze", "share of the pad force that friction leaves, squeezing", ""),
+            ("release", "share of the cable tension that friction holds, releasing", ""),
+            ("squeezing_tension", "tension of the cable for the same forces of the pads, squeezing", "N"),
+            ("releasing_tension", "tension of the cable for the same forces of the pads, releasing", "N"),
+        )
     ),
     Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
 )
@@ -191,49 +179,43 @@ class CaliperAnswer(PlanarAnswer):
 
     def tables(self) -> list[RenderableType]:
         """The lever, the stroke, the forces at its end, friction, wear and stop, and the diagnosis."""
-        run = self.run
-        return [
+        run, pads = self.run, self.run.pad_travel[-1].sum()
+        rows = [
+            [
+                f"{round(float(1e3 * v), 4) + 0.0:.4f}"
+                for v in (run.cable[k], run.finger[k], *run.pad_travel[k])
+            ]
+            + [f"{v:.4f}" for v in (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])]
+            for k in select_rows(len(run.cable))
+        ]
+        shown: list[RenderableType] = [
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
             f"{run.tension:g} N in the cable",
-            table(_STROKE, _STROKE_HEADS, [self._stroke_row(k) for k in select_rows(len(run.cable))]),
+            table(_STROKE, _STROKE_HEADS, rows),
             reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
-            *self._sentences(),
-            describe_statics(self.equilibrium, run.message, run.virtual_work.max(), self.error),
+            f"Over the whole stroke the finger travels {run.finger[-1] / pads if pads > 0 else np.nan:.4f} "
+            "times as far as both pads together.",
         ]
-
-    def _stroke_row(self, k: int) -> list[str]:
-        run = self.run
-        lengths = (run.cable[k], run.finger[k], *run.pad_travel[k])
-        ratios = (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])
-        return [f"{round(float(1e3 * v), 4) + 0.0:.4f}" for v in lengths] + [f"{v:.4f}" for v in ratios]
-
-    def _sentences(self) -> Iterator[str]:
-        run = self.run
-        mean = run.finger[-1] / run.pad_travel[-1].sum() if run.pad_travel[-1].sum() > 0 else np.nan
-        yield f"Over the whole stroke the finger travels {mean:.4f} times as far as both pads together."
         if (f := self.friction) is not None:
-            yield (
-                f"{self._rubbing(f)}: {100 * f.squeeze:.2f} % of the force arrives when squeezed; when let "
-                f"go the cable still has {100 * f.release:.2f} % of its tension."
+            own = self.caliper.free.friction
+            named = f", {join_names(own)} with their own" if own else ""
+            shown.append(
+                f"Pivots with friction {f.coefficient:g}{named}: {100 * f.squeeze:.2f} % of the force "
+                "arrives when squeezed; when let go the cable still has "
+                f"{100 * f.release:.2f} % of its tension."
             )
-            yield f"For the same forces of the pads: {self._tensions(f)}."
+            shown.append(f"For the same forces of the pads: {self._tensions(f)}.")
         if (w := self.wear) is not None:
-            for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True):
-                yield (
-                    f"Pads worn by {1e3 * lost:g} mm touch at {1e3 * finger:.3f} mm of finger travel; "
-                    f"pad/finger there {right:.4f} right, {left:.4f} left."
-                )
+            shown += [
+                f"Pads worn by {1e3 * lost:g} mm touch at {1e3 * finger:.3f} mm of finger travel; "
+                f"pad/finger there {right:.4f} right, {left:.4f} left."
+                for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True)
+            ]
         if self.stop is not None:
-            yield f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
-
-    def _rubbing(self, friction: PivotFriction) -> str:
-        """Names of the pivots with friction, as the start of a sentence."""
-        own = (
-            ""
-            if not self.caliper.free.friction
-            else f", {join_names(self.caliper.free.friction)} with their own"
-        )
-        return f"Pivots with friction {friction.coefficient:g}{own}"
+            shown.append(
+                f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
+            )
+        return [*shown, describe_statics(self.equilibrium, run.message, run.virtual_work.max(), self.error)]
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
@@ -313,7 +295,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     example_sweep = "points.C.x=17:20:13 mm"
     sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
-    more = (FoldedDrawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
+    more = (FoldedPart.of_drawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file, or of the caliper of a name."""
@@ -329,9 +311,17 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
         """Caliper or mechanism that tables describe."""
-        texts = [part for part in PARTS if isinstance(tables.get(part), str)]
-        if texts:
-            raise ConfigError(source, [f"{part}: {_explain_list(tables[part])}" for part in texts], texts)
+        mistakes = {}
+        for part in PARTS:
+            if isinstance(text := tables.get(part), str):  # which is no list of tables
+                form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
+                try:
+                    tomllib.loads(f"parts = {text}")
+                except (ValueError, RecursionError) as error:
+                    form = f"not valid TOML: {str(error).rpartition(' (at line')[0] or error}; {form}"
+                mistakes[part] = f"{part}: {form}"
+        if mistakes:
+            raise ConfigError(source, [*mistakes.values()], [*mistakes])
         return mechanism_from_dict(tables, source)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -353,7 +343,26 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
             If the numbers are out of range.
         """
         with in_range(design):
-            return _answer_to(design)
+            core = design.core
+            try:
+                if isinstance(core, Caliper):
+                    return CaliperAnswer.of(core, design)
+                return MechanismAnswer.of(core, design)
+            except OutOfReachError as error:
+                what = "clearance" if design.run.travel is None else "travel"
+                words = f"{in_small_units(error.reason)}; give a smaller {what}, or move points"
+                raise NoAnswer(words) from None
+            except OppositeTravelError:
+                if isinstance(design, MechanismInput):
+                    raise
+                remedy = "move pads, pivots or the ends of the cable"
+                raise ValueError(f"the cable opens the pads: {remedy}") from None
+            except AssemblyError as error:
+                raise NoAnswer(in_small_units(str(error))) from None
+            except ValueError as error:
+                if solve(core.free if isinstance(core, Caliper) else core).mobility == 1:
+                    raise
+                raise NoAnswer(in_small_units(str(error))) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
         """The loads that equilibrium gives, then the others."""
@@ -435,52 +444,11 @@ CALIPER, MECHANISM = CaliperType(), MechanismType()
 
 def names_table(name: str) -> RenderableType:
     """Table of the dimensions of a named caliper with their usual values."""
-    design = NAMED[name]()
-    rows = [
-        (key, _show_dimension(getattr(design, key), entry.unit), entry.meaning)
-        for key, entry in descriptions(NAMED[name]).items()
-    ]
+    design, rows = NAMED[name](), []
+    for key, entry in descriptions(NAMED[name]).items():
+        value = getattr(design, key)
+        if entry.unit == "m":
+            lengths = [f"{1e3 * part:.5g}" for part in np.ravel(value)]
+            value = f"({', '.join(lengths)}) mm" if isinstance(value, tuple) else f"{lengths[0]} mm"
+        rows.append((key, str(value), entry.meaning))
     return table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
-
-
-def _show_dimension(value: Any, unit: str) -> str:
-    if unit != "m":
-        return str(value)
-    if isinstance(value, tuple):
-        return f"({value[0] * 1e3:.5g}, {value[1] * 1e3:.5g}) mm"
-    return f"{value * 1e3:.5g} mm"
-
-
-def _answer_to(design: CaliperInput | MechanismInput) -> PlanarAnswer:
-    core = design.core
-    try:
-        if isinstance(core, Caliper):
-            return CaliperAnswer.of(core, design)
-        return MechanismAnswer.of(core, design)
-    except OutOfReachError as error:
-        what = "clearance" if design.run.travel is None else "travel"
-        raise NoAnswer(f"{in_small_units(error.reason)}; give a smaller {what}, or move points") from None
-    except OppositeTravelError:
-        if isinstance(design, MechanismInput):
-            raise
-        raise ValueError("the cable opens the pads: move pads, pivots or the ends of the cable") from None
-    except AssemblyError as error:
-        raise NoAnswer(in_small_units(str(error))) from None
-    except ValueError as error:
-        if _mobility(core) != 1:
-            raise NoAnswer(in_small_units(str(error))) from None
-        raise
-
-
-def _mobility(core: Caliper | Mechanism) -> int:
-    return int(solve(core.free if isinstance(core, Caliper) else core).mobility)
-
-
-def _explain_list(text: str) -> str:
-    """Why a text is not a list of parts, and how to give one."""
-    form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
-    try:
-        tomllib.loads(f"parts = {text}")
-    except (ValueError, RecursionError) as error:
-        return f"not valid TOML: {str(error).rpartition(' (at line')[0] or error}; {form}"
-    return form

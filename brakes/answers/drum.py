@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -21,6 +20,9 @@ from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MM, _MPA = 1e-3, 1e6
 
@@ -92,15 +94,11 @@ class DrumAnswer(Answer):
         """The brake as a whole, and shoe by shoe."""
         brake, shoes = self.result, self.result.shoes
         direction = "reverse" if brake.reverse else "forward"
+        title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
         return [
             outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
-            table(
-                "Shoes (components: x to the shoe's side, y upward)",
-                ("", *names, "unit"),
-                list_outputs(_SHOE, shoes),
-                (0, len(names) + 1),
-            ),
+            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes), (0, len(names) + 1)),
         ]
 
     def rows(self) -> Iterable[Sequence[object]]:
@@ -124,12 +122,12 @@ class DrumAnswer(Answer):
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
-        start, end = (_on_rim(r, float(angle)) for angle in shoe.lining)
+        start, end = ((float(r * np.sin(angle)), float(-r * np.cos(angle))) for angle in shoe.lining)
         return (
             Handle("drum radius", (0.0, r), lambda x, y: {"shoe.drum_radius": y}),
             Handle("start of the lining", start, lambda x, y: {"shoe.lining_start": _from_bottom(x, y)}),
             Handle("end of the lining", end, lambda x, y: {"shoe.lining_end": _from_bottom(x, y)}),
-            Handle("pin of the shoe", pivot, _pivot_at),
+            Handle("pin of the shoe", pivot, lambda x, y: {"shoe.pivot_offset": x, "shoe.pivot_depth": -y}),
             Handle("height of the force", (0.55 * r, force), lambda x, y: {"shoe.force_arm": y}),
         )
 
@@ -142,17 +140,9 @@ class DrumAnswer(Answer):
         return self.result.to_dict()
 
 
-def _on_rim(r: float, angle: float) -> tuple[float, float]:
-    return float(r * np.sin(angle)), float(-r * np.cos(angle))
-
-
 def _from_bottom(x: float, y: float) -> float:
     """Angle of a point from straight down [rad]."""
     return float(np.arctan2(x, -y))
-
-
-def _pivot_at(x: float, y: float) -> dict[str, float]:
-    return {"shoe.pivot_offset": x, "shoe.pivot_depth": -y}
 
 
 class DrumType(ArrayBrakeType[DrumInput]):
@@ -174,7 +164,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
         return DrumAnswer(design, design.solve())
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
+        """Explain the symbols of the form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

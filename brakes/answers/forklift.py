@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
-from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screens import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
@@ -29,6 +26,9 @@ from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _MM, _KN, _DEG = 1e-3, 1e3, pi / 180
 
@@ -164,12 +164,28 @@ class ForkliftAnswer(Answer):
 
     def tables(self) -> list[RenderableType]:
         """Tables of vehicle, kinematics and forces, as far as these stages are shown."""
-        tables = [] if self.stop is None else [_stop_table(self.stop)]
-        if "kinematics" in self.stages and self.motion is not None and self.kinematics is not None:
+        tables, heads = [], ("", "value", "unit")
+        if self.stop is not None:
+            rows = [["", str(self.stop.status), ""], *list_outputs(_VEHICLE, [self.stop])]
+            tables.append(table("Vehicle", heads, rows, (0, 2)))
+        if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
+            rows = [
+                [
+                    str(event.stage),
+                    event.message,
+                    f"{stage.rank.min()} of {stage.constraints}",
+                    f"{stage.least_singular_value.min():.2g}",
+                ]
+                for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
+            ]
+            least = "rank and smallest singular value: of the mechanism's constraints, least on the way"
+            heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
-            tables.append(_events_table(self.kinematics))
-        if self.forces is not None:
-            tables.append(_forces_table(self.forces, self.torque_from))
+            tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
+        if (f := self.forces) is not None:
+            rows = [*list_outputs(_FORCES, [f]), [], *list_outputs(_ARMS, [f.levers])]
+            title = f"Forces in one brake; the torque is from {self.torque_from}"
+            tables.append(table(title, heads, rows, (0, 2)))
         return tables
 
     def rows(self) -> Iterable[Sequence[object]]:
@@ -189,8 +205,14 @@ class ForkliftAnswer(Answer):
 
     def _drawn(self, place: float | None) -> Rows:
         """All drawings; for the kinematics alone, the brake at a point of its two stages, from 0 to 2."""
-        if place is not None and self.stages == ("kinematics",) and self.motion is not None:
-            return ((_motion_drawing(self.motion, place),),)
+        if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
+            turns = (
+                min(place, 1.0) * float(motion.seating_turn),
+                max(place - 1.0, 0.0) * float(motion.drum_turn),
+            )
+            shoes, drum = np.degrees(turns)
+            title = f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg"
+            return ((duo_servo(motion.geometry, motion, place, title),),)
         shown = None if self.stages == ("forces",) else self.kinematics
         return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
@@ -206,47 +228,6 @@ class ForkliftAnswer(Answer):
         if self.stages == ("kinematics",) and self.motion is not None:
             return duo_servo_handles(self.motion, place)
         return ()
-
-
-def _stop_table(stop: Stop) -> RenderableType:
-    rows = [["", str(stop.status), ""], *list_outputs(_VEHICLE, [stop])]
-    return table("Vehicle", ("", "value", "unit"), rows, (0, 2))
-
-
-def _events_table(followed: Kinematics) -> RenderableType:
-    stages = followed.right, followed.left, followed.drum
-    return table(
-        "Events (rank and smallest singular value: of the mechanism's constraints, least on the way)",
-        ("stage", "event", "rank", "smallest singular value"),
-        [
-            [
-                str(event.stage),
-                event.message,
-                f"{stage.rank.min()} of {stage.constraints}",
-                f"{stage.least_singular_value.min():.2g}",
-            ]
-            for event, stage in zip(followed.events, stages, strict=True)
-        ],
-        (0, 1),
-    )
-
-
-def _forces_table(forces: InternalForces, torque_from: str) -> RenderableType:
-    rows = [*list_outputs(_FORCES, [forces]), [], *list_outputs(_ARMS, [forces.levers])]
-    return table(
-        f"Forces in one brake; the torque is from {torque_from}", ("", "value", "unit"), rows, (0, 2)
-    )
-
-
-# Drawings of one stage ----------------------------------------------------------------------------------
-
-
-def _motion_drawing(motion: ShoeMotion, progress: float) -> Drawing:
-    """The brake at a point of its two stages, from 0 to 2."""
-    seated, turned = min(progress, 1.0), max(progress - 1.0, 0.0)
-    shoes, drum = np.degrees((seated * float(motion.seating_turn), turned * float(motion.drum_turn)))
-    title = f"shoes turned {shoes:.3g} deg, drum turned {drum:.3g} deg"
-    return duo_servo(motion.geometry, motion, progress, title)
 
 
 # From file to answer ------------------------------------------------------------------------------------
@@ -280,33 +261,26 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
             raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
     given = design.forces and design.forces.torque
     from_stop = "forces" in shown and given is None and "vehicle" in design.stages
+    stopped = forces = None
     with in_range(design):
-        stop = _stop(design) if from_stop or "vehicle" in shown else None
+        if (from_stop or "vehicle" in shown) and design.truck and design.stop:
+            with of_file({}):
+                stopped = stop(design.truck.core, design.stop.core)
         motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
-        torque = stop.torque_per_brake if from_stop and stop is not None else given
-        forces = _forces(design, motion, torque) if "forces" in shown else None
+        torque = stopped.torque_per_brake if from_stop and stopped is not None else given
+        geometry = motion or (design.levers and design.levers.core)
+        if "forces" in shown and design.forces and geometry is not None:
+            with of_file({"friction": "lining_friction"}):
+                forces = internal_forces(
+                    geometry,
+                    piston_force=design.forces.piston_force,
+                    torque=torque,
+                    friction=design.forces.lining_friction,
+                )
     source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
     return ForkliftAnswer(
-        design, shown, stop if "vehicle" in shown else None, motion, forces, source if forces else ""
+        design, shown, stopped if "vehicle" in shown else None, motion, forces, source if forces else ""
     )
-
-
-def _stop(design: ForkliftInput) -> Stop:
-    assert design.truck is not None and design.stop is not None
-    with of_file({}):
-        return stop(design.truck.core, design.stop.core)
-
-
-def _forces(design: ForkliftInput, motion: ShoeMotion | None, torque: Numbers | None) -> InternalForces:
-    geometry = motion if motion is not None else design.levers and design.levers.core
-    assert design.forces is not None and geometry is not None
-    with of_file({"friction": "lining_friction"}):
-        return internal_forces(
-            geometry,
-            piston_force=design.forces.piston_force,
-            torque=torque,
-            friction=design.forces.lining_friction,
-        )
 
 
 class ForkliftType(ArrayBrakeType[ForkliftInput]):
@@ -330,6 +304,11 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sections = needs = ("truck", "stop", "brake", "levers", "forces")
     example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()
+    sketches: Callable[[], Rows] = staticmethod(tuple)
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Explain the symbols of the form."""
+        return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
         """Results of the stages; see `solve_stages`."""
@@ -358,10 +337,7 @@ class VehicleType(ForkliftType):
         ("torque of each brake", "torque_per_brake"),
     )
     stages = ("vehicle",)
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
-        return truck_sketch()
+    sketches = staticmethod(truck_sketch)
 
 
 class KinematicsType(ForkliftType):
@@ -381,10 +357,7 @@ class KinematicsType(ForkliftType):
     )
     slider = Slider("stage", ("at rest", "linings on the drum", "piston at its bottom"))
     stages = ("kinematics",)
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
-        return duo_servo_sketch()
+    sketches = staticmethod(duo_servo_sketch)
 
 
 class ForcesType(ForkliftType):
@@ -404,10 +377,7 @@ class ForcesType(ForkliftType):
         ("margin to self-locking", "margin"),
     )
     stages = ("forces",)
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """What the symbols of the form mean."""
-        return levers_sketch()
+    sketches = staticmethod(levers_sketch)
 
 
 FORKLIFT = ForkliftType()

@@ -34,6 +34,12 @@ def truck_handles(stop: Stop) -> list[Handle]:
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
+    def find_empty_cg(x: float, y: float) -> dict[str, float]:
+        """Centre of gravity of the empty truck that puts the one of truck and load at (x, y)."""
+        m, ml = float(t.empty_mass), float(t.load_mass)
+        cg = ((m + ml) * np.array([x, y - r]) - ml * np.array(t.load_cg, dtype=float)) / m
+        return {"truck.empty_cg_x": float(cg[0]), "truck.empty_cg_y": float(cg[1])}
+
     end = _pair(np.array([_GROUND * L, 0.0]) @ turn)
     handles = [
         Handle(
@@ -41,25 +47,18 @@ def truck_handles(stop: Stop) -> list[Handle]:
         ),
         on_slope("rear axle", (L, _REAR_AXLE * r), lambda x, y: {"truck.wheelbase": x}),
         on_slope("top of the front wheel", (0, 2 * r), lambda x, y: {"truck.front_wheel_radius": y / 2}),
-        on_slope("centre of gravity with the load", (t.cg[0], t.cg[1] + r), partial(_find_empty_cg, stop)),
+        on_slope("centre of gravity with the load", (t.cg[0], t.cg[1] + r), find_empty_cg),
     ]
     if float(t.load_mass):
         at = t.load_cg[0], t.load_cg[1] + r
-        handles.append(on_slope("centre of gravity of the load", at, partial(_find_load_cg, r)))
+        handles.append(
+            on_slope(
+                "centre of gravity of the load",
+                at,
+                lambda x, y: {"truck.load_cg_x": x, "truck.load_cg_y": y - r},
+            )
+        )
     return handles
-
-
-def _find_load_cg(r: float, x: float, y: float) -> dict[str, float]:
-    return {"truck.load_cg_x": x, "truck.load_cg_y": y - r}
-
-
-def _find_empty_cg(stop: Stop, x: float, y: float) -> dict[str, float]:
-    """Centre of gravity of the empty truck that puts the one of truck and load at (x, y)."""
-    t = stop.truck
-    m, ml = float(t.empty_mass), float(t.load_mass)
-    whole = np.array([x, y - float(t.front_wheel_radius)])
-    cg = ((m + ml) * whole - ml * np.array(t.load_cg, dtype=float)) / m
-    return {"truck.empty_cg_x": float(cg[0]), "truck.empty_cg_y": float(cg[1])}
 
 
 # A duo-servo brake --------------------------------------------------------------------------------------
@@ -77,7 +76,11 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
         Handle("tip of the shoe", _pair(tip), partial(_find_pin, motion, progress, "tip")),
         Handle("adjuster's pin", _pair(adjuster), partial(_find_pin, motion, progress, "adjuster")),
         Handle("contact of the lining", _pair(contact), partial(_find_contact, motion, progress)),
-        Handle("tilt of the piston's face", _pair(face), partial(_find_tilt, tip)),
+        Handle(
+            "tilt of the piston's face",
+            _pair(face),
+            lambda x, y: {"brake.face_tilt": float(np.arctan2(x - tip[0], y - tip[1]))},
+        ),
     ]
 
 
@@ -90,10 +93,6 @@ def _contact_at_rest(motion: ShoeMotion) -> np.ndarray:
     g = motion.geometry
     radius, angle = float(g.drum_radius) - float(motion.clearance), float(g.contact_angle)
     return radius * np.array([np.cos(angle), np.sin(angle)])
-
-
-def _find_tilt(tip: np.ndarray, x: float, y: float) -> dict[str, float]:
-    return {"brake.face_tilt": float(np.arctan2(x - tip[0], y - tip[1]))}
 
 
 def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -20,8 +19,6 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results.result import plain
 from brakes.answers.planar import (
-    BRANCHES,
-    WITHOUT,
     MechanismFriction,
     PlanarAnswer,
     describe_statics,
@@ -37,16 +34,21 @@ from brakes.answers.planar import (
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import (
-    LoadsOverStroke,
+    loads_over_stroke,
     mechanism_figure,
     open_and_closed,
+    travel_axis,
     with_lock,
     with_points,
 )
-from brakes.planar import Equilibrium, Load, Mechanism, Stroke, assemble, solve, stroke
+from brakes.planar import Equilibrium, Mechanism, assemble, solve, solve_with_friction, stroke
 from brakes.planar.system import join_names
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 _SCALES = {"mm": 1e-3, "deg": pi / 180}
+WITHOUT = "without friction"
 
 
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
@@ -54,48 +56,33 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
 
     With friction also the unknown load, squeezing and releasing.
     """
-    loads = (output for load in mechanism.loads for output in _load_outputs(load))
-    rubbing = (output for load in unknown_loads(mechanism) for output in _friction_outputs(load))
-    joints = joint_outputs(mechanism, lambda answer: answer.last.magnitudes)
-    return (*loads, *joints, *rubbing)
-
-
-def _load_outputs(load: Load) -> tuple[Output, Output]:
-    name, key = load.name, name_output(load.name)
-    _, travel, size = units_of(load)
-    return (
-        Output(
-            key,
-            f"{name} at the end of the stroke",
-            lambda answer: np.ravel(answer.last.amplitudes[name])[-1],
-            size,
-        ),
-        Output(
-            f"{key}_travel",
-            f"travel of {name}",
-            lambda answer: answer.motion.travel[name][-1] if answer.motion else np.nan,
-            travel,
-            _SCALES[travel],
-        ),
-    )
-
-
-def _friction_outputs(load: Load) -> tuple[Output, Output]:
-    key = name_output(load.name)
-    squeezing, releasing = (
-        Output(
-            f"{key}_{name}",
-            f"{load.name} at the end of the stroke, {name}",
-            lambda answer, way=way: (
-                np.ravel(getattr(answer.friction.last, way).amplitudes[load.name])[-1]
-                if answer.friction
-                else np.nan
+    loads, rubbing = [], []
+    for load in mechanism.loads:
+        key, (_, travel, size) = name_output(load.name), units_of(load)
+        end, moved = f"{load.name} at the end of the stroke", f"travel of {load.name}"
+        loads += [
+            Output(key, end, lambda a, n=load.name: np.ravel(a.last.amplitudes[n])[-1], size),
+            Output(
+                f"{key}_travel",
+                moved,
+                lambda a, n=load.name: a.motion.travel[n][-1] if a.motion else np.nan,
+                travel,
+                _SCALES[travel],
             ),
-            load.unit,
-        )
-        for name, way in (("squeezing", "squeeze"), ("releasing", "release"))
-    )
-    return squeezing, releasing
+        ]
+        rubbing += [
+            Output(
+                f"{key}_{way}",
+                f"{end}, {way}",
+                lambda a, n=load.name, way=way: (
+                    np.ravel(a.friction.last.ways[way].amplitudes[n])[-1] if a.friction else np.nan
+                ),
+                load.unit,
+            )
+            for way in ("squeezing", "releasing")
+            if load in unknown_loads(mechanism)
+        ]
+    return (*loads, *joint_outputs(mechanism, lambda answer: answer.last.magnitudes), *rubbing)
 
 
 @dataclass(frozen=True)
@@ -119,7 +106,9 @@ class MechanismAnswer(PlanarAnswer):
 
     def branches(self) -> Mapping[str, MechanismAnswer]:
         """The answer with the forces of each branch drawn: without friction, squeezing, releasing."""
-        return {name: replace(self, branch=name) for name in BRANCHES} if self.friction else {}
+        return (
+            {name: replace(self, branch=name) for name in self.friction.drawn.ways} if self.friction else {}
+        )
 
     @classmethod
     def of(cls, mechanism: Mechanism, design: CaliperInput | MechanismInput) -> MechanismAnswer:
@@ -137,7 +126,13 @@ class MechanismAnswer(PlanarAnswer):
             over = solve(mechanism, motion.position)
         last = drawn if over is None else over
         if mechanism.friction and last.is_determined and drawn.mobility == 1:
-            friction = MechanismFriction.of(drawn, _driver(design, mechanism), motion)
+            if run.driver is None:
+                names = join_names(mechanism.friction)
+                words = f"friction of {names} resists a motion: name the load that drives it"
+                raise MissingValue("run.driver", None, words)
+            moved = motion and solve_with_friction(mechanism, run.driver, motion.position)
+            still = solve_with_friction(mechanism, run.driver, drawn.position)
+            friction = MechanismFriction(run.driver, still, moved)
         return cls(design, drawn, motion, over, friction)
 
     @property
@@ -168,16 +163,12 @@ class MechanismAnswer(PlanarAnswer):
     @property
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
-        moved = self._warnings_of_stroke(self.motion) if self.motion else ()
-        held = self.friction.warnings if self.friction else ()
-        return tuple(map(in_small_units, (*self.last.warnings, *moved, *held)))
-
-    def _warnings_of_stroke(self, motion: Stroke) -> Iterator[str]:
-        """Toggle positions, and joints that the motion shows to be doubtful."""
-        yield from (toggle.message for toggle in motion.toggles)
-        angles = {body: motion.position.angle(body) for body in self._mechanism.bodies}
-        for joint in self._mechanism.joints:
-            yield from joint.doubts(angles)
+        said = [*self.last.warnings]
+        if self.motion is not None:  # joints that the motion shows to be doubtful
+            said += [toggle.message for toggle in self.motion.toggles]
+            angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
+            said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
+        return tuple(map(in_small_units, (*said, *(self.friction.warnings if self.friction else ()))))
 
     @property
     def error(self) -> float:
@@ -187,50 +178,38 @@ class MechanismAnswer(PlanarAnswer):
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
         """As drawn, or with friction the three equilibria as drawn."""
-        if self.friction is None:
-            return super().equilibria
-        found = self.friction.drawn
-        return {"without friction": found.without, "squeezing": found.squeeze, "releasing": found.release}
+        return super().equilibria if self.friction is None else self.friction.drawn.ways
 
     @property
     def _mechanism(self) -> Mechanism:
         return self.equilibrium.position.mechanism
 
     def tables(self) -> list[RenderableType]:
-        """Forces as drawn, with friction, the stroke, and the diagnosis."""
-        return [
-            reactions_table(self.equilibrium, self._forces_title("as drawn")),
-            *([self.friction.table()] if self.friction else []),
-            *(self._stroke_tables(self.motion) if self.motion else []),
-            describe_statics(self.equilibrium, self.message, np.max(self.last.virtual_work), self.error),
-        ]
-
-    def _forces_title(self, where: str) -> str:
-        """Title of a table of forces."""
-        return f"{self.design.title}: forces {where}{', without friction' if self.friction else ''}"
-
-    def _stroke_tables(self, motion: Stroke) -> list[RenderableType]:
-        """Loads over the stroke, and all forces at its end."""
-        columns = self._columns()
-        rows = [[format_force(v[k], 6) for v in columns.values()] for k in select_rows(len(motion.values))]
-        end = motion.position[len(motion.values) - 1]
-        where = f"at {self._travelled(len(motion.values) - 1)}"
-        return [
-            table(f"Stroke of {motion.driver}", [*columns], rows),
-            reactions_table(solve(end.mechanism, end), self._forces_title(where)),
-        ]
+        """Forces as drawn, with friction, the loads over the stroke, all forces at its end, the diagnosis."""
+        title = f"{self.design.title}: forces {{}}{', without friction' if self.friction else ''}"
+        shown = [reactions_table(self.equilibrium, title.format("as drawn"))]
+        if self.friction:
+            shown.append(self.friction.table())
+        if self.motion is not None:
+            columns, end = self._columns(), len(self.motion.values) - 1
+            rows = [[format_force(v[k], 6) for v in columns.values()] for k in select_rows(end + 1)]
+            last = solve(self._mechanism, self.motion.position[end])
+            shown.append(table(f"Stroke of {self.motion.driver}", [*columns], rows))
+            shown.append(reactions_table(last, title.format(f"at {self._travelled(end)}")))
+        virtual_work = np.max(self.last.virtual_work)
+        return [*shown, describe_statics(self.equilibrium, self.message, virtual_work, self.error)]
 
     def _columns(self) -> dict[str, np.ndarray]:
         """Travels and sizes of the loads over the stroke, by name and unit."""
         if self.motion is None or self.over is None:
             return {}
-        units = {load.name: units_of(load) for load in self._mechanism.loads}
-        travels = {
-            f"{name} [{units[name][1]}]": units[name][0] * values
-            for name, values in self.motion.travel.items()
-        }
-        loads = {f"{name} [{units[name][2]}]": size for name, size in self.over.amplitudes.items()}
-        return travels | loads | (self.friction.columns() if self.friction else {})
+        travels, loads = {}, {}
+        for load in self._mechanism.loads:
+            factor, travel, size = units_of(load)
+            travels[f"{load.name} [{travel}]"] = factor * self.motion.travel[load.name]
+            loads[f"{load.name} [{size}]"] = self.over.amplitudes[load.name]
+        rubbing = self.friction.curves() if self.friction else ()
+        return travels | loads | {f"{name} [{load.unit}]": size for load, name, size in rubbing}
 
     def rows(self) -> Iterator[Sequence[object]]:
         """The stroke, or the forces as drawn: loads, then joints on the bodies named first."""
@@ -265,37 +244,49 @@ class MechanismAnswer(PlanarAnswer):
             Part of the stroke, from 0 to 1; if not given, as drawn, which the table of forces shows.
         """
         index = self._index_at(0.0 if place is None else place)
-        return mechanism_figure(self._drawing(index), self._over_stroke(index))
+        return mechanism_figure(self._drawing(index), self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
         """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """The loads over the stroke, if there is one."""
-        loads = self._over_stroke(self._index_at(place))
-        return () if loads is None else loads.charts()
+        """Forces and moments over the stroke, if there is one."""
+        if self.motion is None or self.over is None:
+            return ()
+        curves = [(load, load.name, self.over.amplitudes[load.name]) for load in self._mechanism.loads]
+        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        return loads_over_stroke(
+            travel_axis(f"travel of {self.motion.driver}", unit, factor * self.motion.values),
+            factor * self.motion.values,
+            [*curves, *(self.friction.curves() if self.friction else ())],
+            factor * float(self.motion.values[self._index_at(place)]),
+            self.friction.locked() if self.friction else {},
+        )
 
     def _index_at(self, place: float) -> int:
-        return 0 if self.motion is None else _index(self.motion, place)
+        """The position at a part of the stroke, from 0 to 1."""
+        return 0 if self.motion is None else round(place * (len(self.motion.values) - 1))
 
     def _drawing(self, index: int) -> Drawing:
-        caption = self.friction.caption(index) if self.friction else ""
-        title = "\n".join(filter(None, (self._heading(index), *caption.split("; "))))
-        now = self._equilibrium_at(index)
+        """The mechanism at one of its positions, with the forces of the branch that is drawn."""
+        way, title = f", {self.branch}" if self.friction else "", self.design.title
+        if self.motion is None:
+            title += way
+        else:
+            title += f": {self._travelled(index)}{way}; grey: as drawn" if index else f": as drawn{way}"
+        captions = self.friction.caption(index).split("; ") if self.friction else ()
+        position = self.equilibrium.position if self.motion is None else self.motion.position[index]
+        if self.friction is not None and self.branch != WITHOUT:
+            now = solve_with_friction(self._mechanism, self.friction.driver, position).ways[self.branch]
+        else:
+            now = self.equilibrium if self.motion is None else solve(self._mechanism, position)
+        title = "\n".join(filter(None, (title, *captions)))
         drawn = open_and_closed(self.equilibrium.position, now, title)
         if now.status == "self-locking":
             drawn = with_lock(drawn, now, unknown_loads(self._mechanism)[-1].name)
         points = getattr(self.design, "points", {})  # of a file; a named caliper has dimensions
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
-
-    def _heading(self, index: int) -> str:
-        """Title, position and branch."""
-        way = f", {self.branch}" if self.friction else ""
-        if self.motion is None:
-            return f"{self.design.title}{way}"
-        moved = f"{self._travelled(index)}{way}; grey: as drawn"
-        return f"{self.design.title}: {moved if index else f'as drawn{way}'}"
 
     def _travelled(self, index: int) -> str:
         """Travel of the driver at one of the positions."""
@@ -303,45 +294,3 @@ class MechanismAnswer(PlanarAnswer):
             return ""
         factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
         return f"{factor * self.motion.values[index]:.3g} {unit} of {self.motion.driver}"
-
-    def _over_stroke(self, index: int) -> LoadsOverStroke | None:
-        """Forces and moments over the stroke, if there is one."""
-        if self.motion is None or self.over is None:
-            return None
-        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
-        sizes = {
-            couples: {
-                load.name: self.over.amplitudes[load.name]
-                for load in self._mechanism.loads
-                if load.is_couple == couples
-            }
-            | (self.friction.curves(couples) if self.friction else {})
-            for couples in (False, True)
-        }
-        travel = factor * self.motion.values
-        locked = self.friction.locked() if self.friction else {}
-        return LoadsOverStroke(
-            travel, self.motion.driver, unit, sizes[False], sizes[True], float(travel[index]), locked
-        )
-
-    def _equilibrium_at(self, index: int) -> Equilibrium:
-        """Forces of the branch that is drawn."""
-        position = self.equilibrium.position if self.motion is None else self.motion.position[index]
-        if self.friction is not None and self.branch != WITHOUT:
-            return self.friction.at(position, self.branch)
-        return self.equilibrium if self.motion is None else solve(position.mechanism, position)
-
-
-def _driver(design: CaliperInput | MechanismInput, mechanism: Mechanism) -> str:
-    """The load that drives the motion against which friction acts."""
-    if design.run.driver is None:
-        names = join_names(mechanism.friction)
-        raise MissingValue(
-            "run.driver", None, f"friction of {names} resists a motion: name the load that drives it"
-        )
-    return design.run.driver
-
-
-def _index(motion: Stroke, part: float) -> int:
-    """The position at a part of a stroke."""
-    return round(part * (len(motion.values) - 1))

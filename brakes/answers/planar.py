@@ -1,15 +1,14 @@
-"""What answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
+"""Parts that answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn.common.edge.input_sweep import Output
@@ -24,17 +23,10 @@ from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
-from brakes.planar import (
-    Equilibrium,
-    FrictionalEquilibrium,
-    Joint,
-    Load,
-    Mechanism,
-    Position,
-    Stroke,
-    solve_with_friction,
-)
-from brakes.planar.rows import Row
+from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROWS = 5  # of a stroke's table
 
@@ -69,42 +61,31 @@ def select_rows(count: int) -> np.ndarray:
 
 def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
     """Loads, forces of all joints on the bodies named first, and forces in two-force bodies."""
-    mechanism = equilibrium.position.mechanism
-    heads = ("force", "of", "x [N]", "y [N]", "size", "unit", "")
-    loads = [
+    mechanism, magnitudes = equilibrium.position.mechanism, equilibrium.magnitudes
+    rows: list[Sequence[str]] = [
         (load.name, "load", "", "", format_force(equilibrium.amplitudes[load.name]), load.unit, "")
         for load in mechanism.loads
     ]
-    joints = [_joint_row(joint, equilibrium) for joint in mechanism.joints]
-    return table(title, heads, [*loads, (), *joints, *_member_rows(equilibrium)], (0, 1, 5, 6))
-
-
-def _joint_row(joint: Joint, equilibrium: Equilibrium) -> Sequence[str]:
-    force = np.ravel(equilibrium.reactions.get(joint.name, (np.nan, np.nan)))
-    size = equilibrium.magnitudes[joint.name]
-    xy = ("", "") if joint.is_couple else (format_force(force[0]), format_force(force[1]))
-    sense = _sense(joint, float(np.ravel(size)[0]), _least_force(equilibrium))
-    ends = f"on {joint.acts_on[0]} from {joint.acts_on[-1]}"
-    return (joint.name, ends, *xy, format_force(size), joint.unit, sense)
-
-
-def _sense(joint: Joint, size: float, least: float) -> str:
-    return "" if not abs(size) > least else joint.signs[0] if size > 0 else joint.signs[1]
-
-
-def _least_force(equilibrium: Equilibrium) -> float:
-    """The error of the forces [N]: a smaller one neither pulls nor pushes."""
-    sizes = np.concatenate([np.ravel(size) for size in equilibrium.magnitudes.values()])
-    error = float(np.nan_to_num(np.fmax.reduce(equilibrium.error, axis=None)))
-    return max(1e-9, error * float(np.nan_to_num(np.abs(sizes)).max(initial=0.0)))
-
-
-def _member_rows(equilibrium: Equilibrium) -> Iterable[Sequence[str]]:
+    rows.append(())
+    # The error of the forces [N]: a smaller one neither pulls nor pushes.
+    largest = np.nan_to_num(np.abs(np.concatenate([(0.0,), *map(np.ravel, magnitudes.values())])))
+    least = max(1e-9, float(np.nan_to_num(largest_error(equilibrium))) * float(largest.max(initial=0.0)))
+    for joint in mechanism.joints:
+        size = float(np.ravel(magnitudes[joint.name])[0])
+        xy = (
+            ("", "")
+            if joint.is_couple
+            else map(format_force, np.ravel(equilibrium.reactions[joint.name])[:2])
+        )
+        sense = joint.signs[0 if size > 0 else 1] if abs(size) > least else ""
+        ends = f"on {joint.acts_on[0]} from {joint.acts_on[-1]}"
+        rows.append((joint.name, ends, *xy, format_force(size), joint.unit, sense))
     for member in members(equilibrium.position, equilibrium):
-        if member.name in equilibrium.position.mechanism.bodies and np.isfinite(member.force):
-            pulls = abs(member.force) > _least_force(equilibrium)
-            kind = "" if not pulls else "tension" if member.force > 0 else "compression"
-            yield member.name, "two-force body", "", "", format_force(abs(member.force)), "N", kind
+        if member.name in mechanism.bodies and np.isfinite(member.force):
+            pulls = "tension" if member.force > 0 else "compression"
+            size, sense = format_force(abs(member.force)), pulls if abs(member.force) > least else ""
+            rows.append((member.name, "two-force body", "", "", size, "N", sense))
+    return table(title, ("force", "of", "x [N]", "y [N]", "size", "unit", ""), rows, (0, 1, 5, 6))
 
 
 def format_force(value: Any, digits: int = 5) -> str:
@@ -138,11 +119,7 @@ def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float
 # Friction in a mechanism: its forces without friction, squeezing and releasing, side by side -------------
 
 
-WITHOUT = "without friction"
-BRANCHES = (WITHOUT, "squeezing", "releasing")
-_ROUNDING = (
-    1e-9  # a load of this part of the largest is shown as 0, such as a brake's torque without friction
-)
+_ROUNDING = 1e-9  # of the largest load: what is shown as 0, such as a brake's torque without friction
 
 
 @dataclass(frozen=True)
@@ -164,107 +141,95 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
-        ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}
-        yield from (f"{name}: {way.status}" for name, way in ways.items())
+        yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
 
-    @classmethod
-    def of(cls, drawn: Equilibrium, driver: str, motion: Stroke | None) -> MechanismFriction:
-        """Solve with the friction of the joints; see `brakes.planar.solve_with_friction`."""
-        position = drawn.position
-        mechanism = position.mechanism
-        over = None if motion is None else solve_with_friction(mechanism, driver, motion.position)
-        return cls(driver, solve_with_friction(mechanism, driver, position), over)
+    @staticmethod
+    def _moving(found: FrictionalEquilibrium) -> list[tuple[str, Equilibrium]]:
+        """Names and equilibria of the two directions of motion."""
+        return [*found.ways.items()][1:]
 
     @property
     def last(self) -> FrictionalEquilibrium:
         """The equilibria over the stroke if there is one, else those as drawn."""
         return self.over or self.drawn
 
+    def locking(self, answered: bool) -> list[str]:
+        """Sentences on directions in which it does not just move, but has an answer, or has none."""
+        return [
+            f"{name}: {way.message}"
+            for name, way in self._moving(self.last)
+            if way.status != "determined" and way.has_answer == answered
+        ]
+
     @property
     def refusals(self) -> Sequence[str]:
         """Sentences on directions in which no force moves it, a contact opens, or a cable slackens."""
-        return [sentence for way, sentence in self._locking() if not way.has_answer]
+        return self.locking(answered=False)
 
     @property
     def warnings(self) -> Sequence[str]:
         """Sentences on directions in which it locks itself, and on what jams at the least offset."""
-        found = self.last.squeeze, self.last.release
         said = self.last.without.warnings
-        jams = dict.fromkeys(warning for way in found for warning in way.warnings if warning not in said)
-        return [*(sentence for way, sentence in self._locking() if way.has_answer), *jams]
-
-    def _locking(self) -> list[tuple[Equilibrium, str]]:
-        ways = {"squeezing": self.last.squeeze, "releasing": self.last.release}
-        return [(way, f"{name}: {way.message}") for name, way in ways.items() if way.status != "determined"]
+        jams = (warning for _, way in self._moving(self.last) for warning in way.warnings)
+        return [*self.locking(answered=True), *dict.fromkeys(each for each in jams if each not in said)]
 
     @property
     def error(self) -> float:
         """Largest error of the forces, over the largest force, where there is equilibrium."""
-        return max(largest_error(way) for way in _ways(self.last))
+        return max(largest_error(way) for way in self.last.ways.values())
 
     def table(self) -> RenderableType:
         """Sizes of loads, joints and friction as drawn: without friction, squeezing, releasing."""
-        mechanism, ways = self.drawn.without.position.mechanism, _ways(self.drawn)
+        mechanism, ways = self.drawn.without.position.mechanism, self.drawn.ways
+        sizes = [way.amplitudes | way.magnitudes for way in ways.values()]
         rows = [
-            _row(part.name, [(way.amplitudes | way.magnitudes)[part.name] for way in ways], part.unit)
+            (part.name, *(format_force(size[part.name]) for size in sizes), part.unit)
             for part in (*mechanism.loads, *mechanism.joints)
         ]
         rubbing = [
-            _row(f"friction of {name}", [0.0, *(way.friction[name] for way in ways[1:])], _unit(law.row))
+            (
+                f"friction of {name}",
+                *map(format_force, (0.0, *(way.friction[name] for _, way in self._moving(self.drawn)))),
+                "N m" if law.row.is_couple else "N",
+            )
             for name, (_, law) in mechanism.friction.items()
         ]
-        heads = ("size of", "without friction", "squeezing", "releasing", "unit")
         title = f"With friction, as drawn; squeezing: motion along {self.driver}, releasing: against it"
-        return table(title, heads, [*rows, (), *rubbing], (0, 4))
+        return table(title, ("size of", *ways, "unit"), [*rows, (), *rubbing], (0, 4))
 
-    def columns(self) -> dict[str, np.ndarray]:
-        """The unknown load over the stroke, squeezing and releasing, by name and unit."""
-        return {f"{name} [{load.unit}]": size for load, name, size in self._curves()}
-
-    def curves(self, couples: bool) -> dict[str, np.ndarray]:
-        """Moments, or forces, of the unknown loads over the stroke, squeezing and releasing, by name."""
-        return {name: size for load, name, size in self._curves() if load.is_couple == couples}
-
-    def _curves(self) -> list[tuple[Load, str, np.ndarray]]:
-        over = self.last
-        ways = {"squeezing": over.squeeze, "releasing": over.release}
-        loads = unknown_loads(over.without.position.mechanism)
+    def curves(self) -> list[tuple[Load, str, np.ndarray]]:
+        """Unknown loads over the stroke, squeezing and releasing: the load, its name, and its size."""
         return [
             (load, f"{load.name}, {name}", way.amplitudes[load.name])
-            for load in loads
-            for name, way in ways.items()
+            for load in unknown_loads(self.last.without.position.mechanism)
+            for name, way in self._moving(self.last)
         ]
 
     def caption(self, index: int) -> str:
         """The unknown load in three numbers, at one of the positions."""
         sentences = []
         for load in unknown_loads(self.drawn.without.position.mechanism):
-            sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in _ways(self.last)])
+            sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in self.last.ways.values()])
             sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
-            without, squeezing, releasing = (format_size(size, load.unit, 4) for size in sizes)
-            sentences.append(
-                f"{load.name}: {without} without friction, {squeezing} squeezing, {releasing} releasing"
+            said = (
+                f"{format_size(size, load.unit, 4)} {way}"
+                for size, way in zip(sizes, self.last.ways, strict=True)
             )
+            sentences.append(f"{load.name}: {', '.join(said)}")
         return "; ".join(sentences)
-
-    def at(self, position: Position, branch: str) -> Equilibrium:
-        """Equilibrium of a branch at one position."""
-        found = solve_with_friction(position.mechanism, self.driver, position)
-        return _ways(found)[BRANCHES.index(branch)]
 
     def locked(self) -> dict[str, np.ndarray]:
         """Where the mechanism locks over the stroke, by the name of each curve on which it does.
 
         There it jams, so that there is no force, or the unknown load has to act in the other direction.
         """
-        over = self.last
-        found = {}
-        for load, name, size in self._curves():
-            without = over.without.amplitudes[load.name]
-            least = _ROUNDING * np.nanmax(np.abs([*over.without.amplitudes.values()]), initial=0.0)
+        amplitudes, found = self.last.without.amplitudes, {}
+        least = _ROUNDING * np.nanmax(np.abs([*amplitudes.values()]), initial=0.0)
+        for load, name, size in self.curves():
+            without = amplitudes[load.name]
             turned = (np.abs(without) > least) & (size * np.sign(without) < -least)
             found[name] = np.isnan(size) | turned
         return {name: where for name, where in found.items() if where.any()}
@@ -272,27 +237,15 @@ class MechanismFriction(Result):
     def to_dict(self) -> dict[str, Any]:
         """The equilibria as drawn, by the direction of motion, as plain numbers, lists and strings."""
         keys = ("status", "message", "reactions", "magnitudes", "amplitudes", "friction", "residual")
-        ways = {"squeezing": self.drawn.squeeze, "releasing": self.drawn.release}
+        ways = self._moving(self.drawn)
         return {"driver": self.driver} | {
-            name: {key: plain(getattr(way, key)) for key in keys} for name, way in ways.items()
+            n: {key: plain(getattr(way, key)) for key in keys} for n, way in ways
         }
 
 
 def unknown_loads(mechanism: Mechanism) -> list[Load]:
     """Loads without a given magnitude, which equilibrium gives."""
     return [load for load in mechanism.loads if load.amplitude(np.zeros(1)) is None]
-
-
-def _ways(found: FrictionalEquilibrium) -> tuple[Equilibrium, Equilibrium, Equilibrium]:
-    return found.without, found.squeeze, found.release
-
-
-def _row(name: str, sizes: Sequence[Any], unit: str) -> Sequence[str]:
-    return (name, *map(format_force, sizes), unit)
-
-
-def _unit(row: Row) -> str:
-    return "N m" if row.is_couple else "N"
 
 
 # Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation -----------
@@ -320,7 +273,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, its status first; see `Result.headline`."""
+        """The answer in one line, its status first; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -11,9 +11,9 @@ import numpy as np
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.spread_options import OPTION, in_units_of, parse_spreads
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis
+from beamdyn.common.edge.varying import SPREAD, in_units_of, parse_spreads
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
@@ -72,16 +72,12 @@ def spread_of_brake(
     with in_units_of(given):
         for each in given:
             _check_reach(inputs[each.name], each)
-    _check_count(brake, count_designs(len(given), used), samples)
+    if (designs := count_designs(len(given), used)) > brake.most_cases:
+        bound = f"these are {designs} designs, and at most {brake.most_cases} are solved"
+        raise InvalidValue("--samples", samples, bound, "give fewer samples")
     units = {each.name: each.unit for each in given}
     answers = _BrakeAnswers(brake, SweepRequest(design, tables, (), "zip", run), inputs, units, wanted)
     return solve_spread(named, given, used, check_seed(seed), answers, cautions=cautions)
-
-
-def _check_count(brake: BrakeType[Any], designs: int, samples: int) -> None:
-    if designs > brake.most_cases:
-        bound = f"these are {designs} designs, and at most {brake.most_cases} are solved"
-        raise InvalidValue("--samples", samples, bound, "give fewer samples")
 
 
 def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
@@ -94,7 +90,7 @@ def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
     """
     value = part_at(design, entry.path)
     if not isinstance(value, int | float):
-        raise InvalidValue(OPTION, entry.path, "the file gives it no value", "give it one, or leave it out")
+        raise InvalidValue(SPREAD, entry.path, "the file gives it no value", "give it one, or leave it out")
     return float(value), "rad" if isinstance(value, Angle) else entry.quantity.unit
 
 

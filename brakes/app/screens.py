@@ -7,8 +7,7 @@ from typing import Any
 
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.screens.folded_parts import FoldedPart
-from beamdyn.common.screens.screens import Document, Screen, Sweeps
+from beamdyn.common.screens.screens import Document, FoldedPart, Screen, Sweeps
 from brakes.answers.base import BrakeType
 from brakes.app.bases import base
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -39,20 +39,6 @@ Split = Annotated[Literal["equal force", "equal work"], Described(meaning="how t
 LeverRatio = Annotated[float, Described(meaning="travel of the finger over that of the cable", above=0)]
 Clearance = Annotated[float, Described("m", meaning="mean gap between pad and rim, open", above=0)]
 PivotRadius = Annotated[float, Described("m", meaning="radius of the pivots", least=0)]
-
-
-class _Forces(NamedTuple):
-    """Forces at S positions: status, arrays by name."""
-
-    status: str
-    message: str
-    warnings: tuple[str, ...]
-    pads: np.ndarray
-    reactions: dict[str, np.ndarray]
-    magnitudes: dict[str, np.ndarray]
-    virtual_work: np.ndarray
-    residual: np.ndarray
-    error: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -177,12 +163,9 @@ class Caliper:
         finger = positive("finger", finger, "N")
         tension = self.lever_ratio * finger
         forces = self._forces(motion.position, tension)
-        toggles = [toggle.message for toggle in motion.toggles]
+        forces["warnings"] += tuple(toggle.message for toggle in motion.toggles)
         return CaliperStroke(
             caliper=self.name,
-            status=forces.status,
-            message=forces.message,
-            warnings=(*forces.warnings, *toggles),
             finger_force=finger,
             tension=tension,
             lever_ratio=self.lever_ratio,
@@ -190,14 +173,9 @@ class Caliper:
             finger=motion.values * self.lever_ratio,
             pad_travel=self._pads(motion.travel),
             pad_ratio=self._pads(motion.ratio),
-            pad_force=forces.pads,
-            advantage=forces.pads / finger,
-            reactions=forces.reactions,
-            magnitudes=forces.magnitudes,
-            virtual_work=forces.virtual_work,
-            residual=forces.residual,
-            error=forces.error,
+            advantage=forces["pad_force"] / finger,
             motion=motion,
+            **forces,
         )
 
     def equilibrium(self, travel: float | None = None, finger: float = _FINGER) -> Equilibrium:
@@ -205,7 +183,7 @@ class Caliper:
         position = stroke(self.free, self.cable, [self.contact if travel is None else travel]).position
         tension = self.lever_ratio * positive("finger", finger, "N")
         # without centring joints the split gives one of the two forces
-        force = np.nan if self.centring else float(self._forces(position, tension).pads[0, 0])
+        force = np.nan if self.centring else float(self._forces(position, tension)["pad_force"][0, 0])
         return self._at(position[0], tension, force)
 
     def equilibrium_after(self, run: CaliperStroke) -> Equilibrium:
@@ -222,8 +200,8 @@ class Caliper:
             self.mechanism, dict(zip((self.cable, *self.pads), (tension, right, left), strict=True))
         )
 
-    def _forces(self, position: Position, tension: float) -> _Forces:
-        """Forces at a tension [N].
+    def _forces(self, position: Position, tension: float) -> dict[str, Any]:
+        """Forces at a tension [N], by the names of the attributes of a `CaliperStroke`.
 
         Where the arms are coupled, the answer is between those with one pad alone: any such mean is in
         equilibrium, and the weight is the share of the right pad in the work.
@@ -252,13 +230,19 @@ class Caliper:
         travel = self.contact if travel is None else travel
         motion = stroke(self.free, self.cable, [travel])
         tension = self.lever_ratio * positive("finger", finger, "N")
-        right, left = self._forces(motion.position, tension).pads[0]
+        right, left = self._forces(motion.position, tension)["pad_force"][0]
         joints = tuple(joint.with_pivot(self.pivot_radius, coefficient) for joint in self.free.joints)
         magnitudes = {self.cable: None, self.pads[0]: right, self.pads[1]: left}
         mechanism = _with_magnitudes(replace(self.free, joints=joints), magnitudes)
         band = solve_with_friction(mechanism, self.cable, motion.position.of(mechanism))
         squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
-        status, message = _friction_verdict({"squeezing": band.squeeze, "releasing": band.release})
+        ways = {name: way for name, way in band.ways.items() if way is not band.without}
+        wrong = {name: way for name, way in ways.items() if way.status != "determined"}
+        # One that opens outweighs one that locks.
+        worst = max(
+            (way.status for way in wrong.values()), key=lambda s: s != "self-locking", default="determined"
+        )
+        words = "; ".join(f"{name}: {way.message}" for name, way in wrong.items())
         return PivotFriction(
             coefficient=coefficient,
             cable=float(travel),
@@ -268,8 +252,8 @@ class Caliper:
             squeeze=0.0 if np.isnan(squeeze) else tension / squeeze,
             release=0.0 if np.isnan(release) else max(release / tension, 0.0),
             error=float(np.fmax.reduce((*band.squeeze.error, *band.release.error))),
-            status=status,
-            message=message,
+            status=worst,
+            message=words or "the brake closes and opens",
         )
 
     def worn(self, lost: float) -> Caliper:
@@ -288,15 +272,6 @@ class Caliper:
         return PadWear(lost, cable, cable * self.lever_ratio, advantage)
 
 
-def _friction_verdict(ways: dict[str, Equilibrium]) -> tuple[str, str]:
-    """Status and message of the ways to move with friction; one that opens outweighs one that locks."""
-    wrong = {way: found for way, found in ways.items() if found.status != "determined"}
-    if not wrong:
-        return "determined", "the brake closes and opens"
-    status = max((found.status for found in wrong.values()), key=lambda status: status != "self-locking")
-    return status, "; ".join(f"{way}: {found.message}" for way, found in wrong.items())
-
-
 def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
     """The mechanism with other magnitudes of some of its loads."""
     loads = tuple(
@@ -306,7 +281,9 @@ def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) 
     return replace(mechanism, loads=loads)
 
 
-def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float) -> _Forces:
+def _mean(
+    a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float
+) -> dict[str, Any]:
     """The weighted mean of two equilibria, `share` the weight of the first; or the first alone."""
     b = a if b is None else b
     weight = np.broadcast_to(share, a.residual.shape)
@@ -317,36 +294,23 @@ def _mean(a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: n
 
     forces = np.stack([mean(a.amplitudes[name], b.amplitudes[name]) for name in pads], axis=-1)
     mechanism, multiplier = a.position.mechanism, mean(a.multiplier, b.multiplier)
-    sizes = {
-        joint.name: joint.size(multiplier[:, mechanism.system.joints[joint.name]])
-        for joint in mechanism.joints
+    system = mechanism.system
+    sizes = {joint.name: joint.size(multiplier[:, system.joints[joint.name]]) for joint in mechanism.joints}
+    if not (a.is_determined and b.is_determined):
+        status, message = (b.status, b.message) if a.is_determined else (a.status, a.message)
+    else:
+        least = tolerance(system) * np.abs(multiplier / system.unit).max(axis=1)
+        ways = dict.fromkeys(pads, _PAD) | one_way_parts(mechanism.joints)
+        pressed = dict(zip(pads, forces.T, strict=True))
+        status, message = combine([*find_wrong_way(ways, sizes | pressed, least).values()])
+    return {
+        "status": status,
+        "message": message,
+        "warnings": tuple(dict.fromkeys((*a.warnings, *b.warnings))),
+        "pad_force": forces,
+        "reactions": {name: mean(force, b.reactions[name]) for name, force in a.reactions.items()},
+        "magnitudes": sizes,
+        **{
+            key: np.maximum(getattr(a, key), getattr(b, key)) for key in ("virtual_work", "residual", "error")
+        },
     }
-    pressed = dict(zip(pads, forces.T, strict=True))
-    status, message = _verdict((a, b), sizes, pressed, multiplier)
-    return _Forces(
-        status=status,
-        message=message,
-        warnings=tuple(dict.fromkeys((*a.warnings, *b.warnings))),
-        pads=forces,
-        reactions={name: mean(force, b.reactions[name]) for name, force in a.reactions.items()},
-        magnitudes=sizes,
-        virtual_work=np.maximum(a.virtual_work, b.virtual_work),
-        residual=np.maximum(a.residual, b.residual),
-        error=np.maximum(a.error, b.error),
-    )
-
-
-def _verdict(
-    parts: Sequence[Equilibrium],
-    sizes: dict[str, np.ndarray],
-    pads: dict[str, np.ndarray],
-    multiplier: np.ndarray,
-) -> tuple[str, str]:
-    """Status and message of a mean of equilibria: its sizes of joints and pads, multipliers (S, R)."""
-    for part in parts:
-        if not part.is_determined:
-            return part.status, part.message
-    mechanism = parts[0].position.mechanism
-    least = tolerance(mechanism.system) * np.abs(multiplier / mechanism.system.unit).max(axis=1)
-    ways = dict.fromkeys(pads, _PAD) | one_way_parts(mechanism.joints)
-    return combine([*find_wrong_way(ways, sizes | pads, least).values()])

@@ -326,7 +326,7 @@ CENTRED = (RotationLock("return springs", LEFT, RIGHT, -1.0),)
 
 
 def mirrored(point: Point) -> Point:
-    """The same point of the other side."""
+    """Mirror image of a point, on the other side."""
     return -point[0], point[1]
 
 

@@ -89,7 +89,7 @@ class CaliperStroke(Result):
     motion: Stroke = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{self.caliper}, {counted(len(self.cable), 'position')}"
         yield f"cable to {number(1e3 * self.cable[-1], 'mm')}"
         yield f"advantage {number(self.total_advantage[-1])}"
@@ -173,7 +173,7 @@ class PivotFriction(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"coefficient {number(self.coefficient)}"
         yield f"efficiency {number(self.squeeze)} squeezing, {number(self.release)} releasing"
         yield self.status
@@ -212,6 +212,6 @@ class PadWear(Result):
     advantage: np.ndarray
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{spanned(1e3 * self.lost, 'mm')} lost"
         yield f"finger to {spanned(1e3 * self.finger, 'mm')}, advantage {spanned(self.advantage.sum(axis=1))}"

@@ -71,18 +71,14 @@ class Stance:
         check_inputs(self)
         one_of("braked_wheel", self.braked_wheel, ("front", "rear"))
         place = "cg_height", "cg_behind_front"
-        self._check_complete("tyre_friction", ("wheelbase", *place))
-        for name in place:
-            self._check_complete(name, place)
+        for name, needed in {"tyre_friction": ("wheelbase", *place), **dict.fromkeys(place, place)}.items():
+            missing = " and ".join(other for other in needed if getattr(self, other) is None)
+            if getattr(self, name) is not None and missing:
+                raise ValueError(f"{name} needs {missing}: give {missing} in m")
         x, length = self.cg_behind_front, self.wheelbase
         if x is not None and length is not None and x >= length * (1 - EQUAL):
             bound = "it is behind the rear axle, at {other} = {limit}"
             raise InvalidValue("cg_behind_front", x, bound, unit="m", limit=length, other="wheelbase")
-
-    def _check_complete(self, name: str, needed: tuple[str, ...]) -> None:
-        missing = [other for other in needed if getattr(self, other) is None]
-        if getattr(self, name) is not None and missing:
-            raise ValueError(f"{name} needs {' and '.join(missing)}: give {' and '.join(missing)} in m")
 
     def pitch_limit(self, lift: float) -> float:
         """Deceleration at which the rear wheel lifts [m/s2]; nan if the centre of gravity is not given.
@@ -171,7 +167,7 @@ class StoppingDistance(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
         yield f"limited by {self.limited_by}"
         yield self.status
@@ -249,25 +245,28 @@ def stop(
     grip, pitch = stance.grip_limit(lift, inertia / mass), stance.pitch_limit(lift)
     most = float(np.fmin(grip, pitch)) * inertia / factor
     most = math.inf if math.isnan(most) else most
-    distance, peak = _distance(energy, factor, pad_force, most)
+    if callable(pad_force):
+        path = (
+            _integrated(energy, factor, lambda s: min(float(pad_force(s)), most)) if energy else np.zeros(1)
+        )
+        distance = float(path[-1])
+        peak = max(float(pad_force(s)) for s in path if s < math.inf) if energy else 0.0
+    else:
+        peak = not_negative("pad_force", pad_force, "N")  # the greatest force of a pad that is asked for
+        distance = energy / (factor * min(peak, most)) if peak else math.inf
     limit = "grip" if grip < pitch * (1 - EQUAL) else "pitching over"
     limited_by = "brake" if peak <= most * (1 + EQUAL) else limit
     stops = distance < math.inf
     deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
     held = factor * min(peak, most) / inertia / GRAVITY if math.isnan(grip) else 0.0
     status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP * (1 + EQUAL) else "beyond grip"
-    words = _WORDS[status].format(distance=distance, held=held)
-    return StoppingDistance(
-        distance,
-        energy,
-        deceleration,
-        grip,
-        pitch,
-        most,
-        limited_by,
-        status,
-        "; ".join((words, *_explain(stance, limited_by, grip, pitch, most))),
-    )
+    words = [_WORDS[status].format(distance=distance, held=held)]
+    if limited_by != "brake":
+        slips = f"the {stance.braked_wheel} tyre slips" if limited_by == "grip" else "the rear wheel lifts"
+        at = f"{min(grip, pitch) / GRAVITY:.3g} g, {most:.4g} N on each pad"
+        words.append(f"limited by {limited_by}: {slips} at {at}")
+    message = "; ".join((*words, *_unchecked(grip, pitch)))
+    return StoppingDistance(distance, energy, deceleration, grip, pitch, most, limited_by, status, message)
 
 
 _WORDS = {
@@ -278,36 +277,12 @@ _WORDS = {
 }
 
 
-def _explain(stance: Stance, limited_by: str, grip: float, pitch: float, most: float) -> Iterator[str]:
-    """What limits the stop, and the limits that were not given."""
-    limit = f"{min(grip, pitch) / GRAVITY:.3g} g, {most:.4g} N on each pad"
-    if limited_by == "grip":
-        yield f"limited by grip: the {stance.braked_wheel} tyre slips at {limit}"
-    elif limited_by == "pitching over":
-        yield f"limited by pitching over: the rear wheel lifts at {limit}"
-    yield from _unchecked(grip, pitch)
-
-
 def _unchecked(grip: float, pitch: float) -> Iterator[str]:
     """Which limits [m/s2] are not known, and what to give."""
     if math.isnan(grip):
         yield "grip is not checked: give tyre_friction, wheelbase, cg_height and cg_behind_front"
     if math.isnan(pitch):
         yield "pitching over is not checked: give cg_height and cg_behind_front"
-
-
-def _distance(
-    energy: float, factor: float, pad_force: float | Callable[[float], float], most: float
-) -> tuple[float, float]:
-    """Stopping distance [m], and the greatest force of a pad that is asked for [N]."""
-    if not callable(pad_force):
-        force = not_negative("pad_force", pad_force, "N")
-        return (energy / (factor * min(force, most)) if force else math.inf), force
-    if not energy:
-        return 0.0, 0.0
-    given = pad_force
-    path = _integrated(energy, factor, lambda s: min(float(given(s)), most))
-    return float(path[-1]), max(float(given(s)) for s in path if s < math.inf)
 
 
 def check_wheels(inertia: float, tyre_radius: float | None, rim_radius: float | None) -> None:

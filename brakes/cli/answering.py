@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,11 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Parameter
 
 from beamdyn.common.edge import program
-from beamdyn.common.edge.outputs import NO_FILES, Outputs, write
-from beamdyn.common.edge.program import NoAnswer, examples
-from beamdyn.common.edge.spread_options import NO_SPREAD, OPTION, SpreadOptions
-from beamdyn.common.edge.varying import NOTHING_VARIED, VaryOptions
-from beamdyn.common.edge.varying import OPTION as VARY
+from beamdyn.common.edge.outputs import Outputs, write
+from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Question
@@ -43,58 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return program.run(app, arguments)
 
 
-def warn(warnings: Iterable[str]) -> None:
-    """Print warnings on standard error."""
-    program.warn("brakes", warnings)
-
-
-BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
 What = Annotated[str | None, Parameter(name="--what")]
 Files = Mapping[str, tuple[Path | None, Callable[["Answer", Path], object]]]
-
-
-def add_command(app: App, name: str, help: str) -> None:
-    """Give the command line a command on a type of brake that needs no options of its own.
-
-    Parameters
-    ----------
-    app : App
-        The command line.
-    name : str
-        Of the command and of the module in `brakes.answers`.
-    help : str
-        What it shows.
-    """
-    plain = f"brakes {name} examples/{name}.toml"
-
-    @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))
-    def answer_file(
-        file: BrakeFile,
-        /,
-        *,
-        varying: VaryOptions = NOTHING_VARIED,
-        spreading: SpreadOptions = NO_SPREAD,
-        what: What = None,
-        outputs: Outputs = NO_FILES,
-    ) -> None:
-        """Answer a file.
-
-        Parameters
-        ----------
-        file
-            The TOML file that describes the brake.
-        varying
-            Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
-        spreading
-            Inputs that have a tolerance, e.g. --spread "friction=+-10%": ranges of results.
-        what
-            Results with --vary or --spread, separated by commas, such as "torque,pin_1"; the file of --csv
-            without them lists all names.
-        outputs
-            Files to write.
-        """
-        brake = import_module(f"brakes.answers.{name}").BRAKE
-        run_command(brake, name, str(file), varying, spreading, what, outputs)
 
 
 def run_command(
@@ -147,16 +94,17 @@ def run_command(
     given = varying.options | spreading.options
     question = Question.of(f"brakes {command}", file, text, **options, **given, what=what)
     spreading.check(varying)
-    _check_of_one(varying, spreading, written)
-    if spreading.spread:
-        _answer_spread(brake, tables, question, (file, varying, spreading, what), outputs)
-        return
-    varying.check()
-    if varying.vary:
-        _answer_many(brake, tables, question, (file, varying, what), outputs)
+    many = OPTION if varying.vary else SPREAD if spreading.spread else ""
+    for option, path in written.items():
+        if many and path is not None:
+            raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
+    if not spreading.spread:
+        varying.check()
+    if many:
+        _answer_many(brake, tables, question, file, varying, spreading, what, outputs)
         return
     if what is not None:
-        raise ValueError(f"--what goes with --vary or {OPTION}: without them, all results are shown")
+        raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
     more = [(part.title, partial(part.in_report, answer)) for part in brake.more]
@@ -166,75 +114,52 @@ def run_command(
         if path is not None:
             save(answer, path)
     show(shown)
-    warn(answer.warnings)
+    program.warn("brakes", answer.warnings)
     if answer.refusals:
         raise NoAnswer("; ".join(answer.refusals))
-
-
-def _check_of_one(varying: VaryOptions, spreading: SpreadOptions, files: Mapping[str, Path | None]) -> None:
-    """Refuse files that show one design where there are many."""
-    many = VARY if varying.vary else OPTION if spreading.spread else ""
-    for option, path in files.items():
-        if many and path is not None:
-            raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
 
 
 def _answer_many(
     brake: BrakeType[Any],
     tables: Mapping[str, Any],
     question: Question,
-    request: tuple[str, VaryOptions, str | None],
+    file: str,
+    varying: VaryOptions,
+    spreading: SpreadOptions,
+    what: str | None,
     outputs: Outputs,
 ) -> None:
-    import numpy as np
-
-    from beamdyn._version import __version__
-    from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.edge.input_sweep import sweep_csv
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.tables import show
-    from beamdyn.common.plots.curves import sweep_figure
-    from brakes.answers.tables import sweep_table
-
-    file, varying, what = request
-    with at_work("designs") as progress:
-        run = varying.runner("brakes study", (__version__, np.__version__), progress)
-        made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
-    shown = [sweep_table(made)]
-    report = Report(question, shown, warnings)
-    write(made, outputs, sweep_csv(made), lambda: sweep_figure(made), report)
-    show(shown)
-    warn(warnings)
-    if not any(np.isfinite(values).any() for values in made.found):
-        raise NoAnswer(f"at none of {made.designs.count} values is there an answer")
-
-
-def _answer_spread(
-    brake: BrakeType[Any],
-    tables: Mapping[str, Any],
-    question: Question,
-    request: tuple[str, VaryOptions, SpreadOptions, str | None],
-    outputs: Outputs,
-) -> None:
+    """Answer the designs of a sweep, or of inputs with tolerances; write the files, and print the answer."""
     import numpy as np
 
     from beamdyn._version import __version__
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.spread_tables import spread_csv, spread_table
     from beamdyn.common.edge.tables import show
-    from beamdyn.common.spreading.result import spread_figure
-    from brakes.answers.spread import spread_of_brake
 
-    file, varying, spreading, what = request
     with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)
-        how = spreading.samples, spreading.seed, run
-        made = spread_of_brake(brake, tables, file, spreading.spread, what, *how)
-    shown = [spread_table(made)]
-    report = Report(question, shown, made.warnings)
-    write(made, outputs, spread_csv(made), lambda: spread_figure(made), report)
-    show(shown)
-    warn(made.warnings)
-    if (made.scatter.no_answer == 1).all():
-        raise NoAnswer(f"none of {made.designs} random designs has an answer")
+        if spreading.spread:
+            from beamdyn.common.edge.spread_tables import spread_csv, spread_table
+            from beamdyn.common.spreading.result import spread_figure
+            from brakes.answers.spread import spread_of_brake
+
+            how = spreading.samples, spreading.seed, run
+            made = spread_of_brake(brake, tables, file, spreading.spread, what, *how)
+            shown, rows, figure = spread_table(made), spread_csv(made), partial(spread_figure, made)
+            warnings, answered = made.warnings, not (made.scatter.no_answer == 1).all()
+            none = f"none of {made.designs} random designs has an answer"
+        else:
+            from beamdyn.common.edge.input_sweep import sweep_csv
+            from beamdyn.common.plots.curves import sweep_figure
+            from brakes.answers.tables import sweep_table
+
+            made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
+            shown, rows, figure = sweep_table(made), sweep_csv(made), partial(sweep_figure, made)
+            answered = any(np.isfinite(values).any() for values in made.found)
+            none = f"at none of {made.designs.count} values is there an answer"
+    write(made, outputs, rows, figure, Report(question, [shown], warnings))
+    show([shown])
+    program.warn("brakes", warnings)
+    if not answered:
+        raise NoAnswer(none)

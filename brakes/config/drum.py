@@ -144,23 +144,17 @@ class DrumInput(CoreSection):
     @cached_property
     def core(self) -> DrumBrake:
         """The brake."""
-        second = self._second()
+        given = {key: value for key, value in self.second_shoe or () if value is not None}
+        try:  # the second shoe is what [second_shoe] gives, and the rest of the first
+            second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
+        except InvalidValue as error:
+            between = ": " if " " in error.field else "."  # which is no key
+            raise replace(error, field=f"second_shoe{between}{error.field}") from None
         if self.brake.assembly == "single":
             if self.second_shoe is not None:
                 raise ValueError('second_shoe does not go with assembly = "single"; leave it out')
             return DrumBrake((self.shoe.core,), (True,))
         return (simplex if self.brake.assembly == "simplex" else duplex)(self.shoe.core, second)
-
-    def _second(self) -> Shoe | None:
-        """The second shoe: what [second_shoe] gives, and the rest of the first."""
-        if self.second_shoe is None:
-            return None
-        given = {key: value for key, value in self.second_shoe if value is not None}
-        try:
-            return _Shoe.model_construct(**dict(self.shoe) | given).core
-        except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # which is no key
-            raise replace(error, field=f"second_shoe{between}{error.field}") from None
 
     def solve(self) -> BrakeResult:
         """Compute the forces in the brake.

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from os import PathLike
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
@@ -29,7 +30,7 @@ from brakes.config.caliper import (
     model_of,
     named,
 )
-from brakes.planar import JOINTS, LOADS, Joint, Load, Mechanism, Part
+from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
 from brakes.planar.part import DescribedPoint, is_list
 from brakes.planar.rows import Point as Coordinates
 
@@ -121,22 +122,32 @@ class MechanismInput(CoreSection):
         )
         self._check_run({load.name: load for load in loads})
         if self.caliper is None:
-            made = Mechanism(tuple(self.bodies), self._with_friction(joints), tuple(loads))
-            self._check_driver(made)
+            friction = self.run.friction
+            try:  # that of [run] is of the pins that have none of their own
+                joints = [joint.with_pivot(0.0, friction) for joint in joints] if friction else joints
+            except ValueError as error:
+                bound = f"it is that of every pin; {error}"
+                raise InvalidInput("run.friction", friction, bound) from None
+            made = Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
+            if friction and not made.friction:
+                bound = "it is that of pins, and there is none; give friction at the slot or contact"
+                raise InvalidInput("run.friction", friction, bound)
+            rubs = made.friction or "friction" in self.run.model_fields_set  # which may be 0 in a sweep
+            if self.run.driver is not None and self.run.travel is None and not rubs:
+                raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
             return made
         roles = self.caliper
         missing = [name for name in roles.centring if name not in {joint.name for joint in joints}]
         if missing:
             raise ValueError(f"caliper.centring: {missing[0]!r} is not a joint; name one of the joints")
-        mechanism = Mechanism(
-            tuple(self.bodies), tuple(j for j in joints if j.name not in roles.centring), tuple(loads)
-        )
-        centring = tuple(j for j in joints if j.name in roles.centring)
+        lasting = tuple(joint for joint in joints if joint.name not in roles.centring)
+        centring = tuple(joint for joint in joints if joint.name in roles.centring)
         given: dict[str, Any] = dict(roles)
         given |= {"centring": centring, "pads": tuple(given["pads"])}
-        return Caliper(mechanism, **given, name=self.title)
+        return Caliper(Mechanism(tuple(self.bodies), lasting, tuple(loads)), **given, name=self.title)
 
     def _check_run(self, loads: Mapping[str, Load]) -> None:
+        """Refuse a stroke without a driver, a driver that does not exist, and a travel of another kind."""
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
@@ -151,26 +162,6 @@ class MechanismInput(CoreSection):
             wanted = 'an angle, e.g. "10 deg"' if turns else 'a length, e.g. "3 mm"'
             bound, unit = f"the driver {show(run.driver)} moves by {wanted}", "m" if turns else "rad"
             raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
-
-    def _check_driver(self, made: Mechanism) -> None:
-        """Refuse friction that acts nowhere, and a driver that drives nothing."""
-        run = self.run
-        if run.friction and not made.friction:
-            bound = "it is that of pins, and there is none; give friction at the slot or contact"
-            raise InvalidInput("run.friction", run.friction, bound)
-        rubs = made.friction or "friction" in run.model_fields_set  # which may be 0 in a sweep
-        if run.driver is not None and run.travel is None and not rubs:
-            raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
-
-    def _with_friction(self, joints: Sequence[Joint]) -> tuple[Joint, ...]:
-        """The joints with the friction of [run] in the pins that have none of their own."""
-        friction = self.run.friction
-        if not friction:
-            return tuple(joints)
-        try:
-            return tuple(joint.with_pivot(0.0, friction) for joint in joints)
-        except ValueError as error:
-            raise InvalidInput("run.friction", friction, f"it is that of every pin; {error}") from None
 
 
 _ROLES = fields_of(Caliper, leave_out=("mechanism", "centring", "name"))
@@ -187,79 +178,70 @@ def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
     """The tables with the names of points replaced by what [points] says of them."""
     points = data.get("points")
     known = points if isinstance(points, dict) else {}
-    return dict(data) | {
-        part.key(): [_table_with_points(table, part, known) for table in data[part.key()]]
-        for part in (*JOINTS, *LOADS)
-        if isinstance(data.get(part.key()), list)
-    }
 
-
-def _table_with_points(table: Any, part: type[Part], known: Mapping[str, Any]) -> Any:
-    """The table of a joint or load with the names of points replaced; anything else as it is."""
-    if not isinstance(table, dict):
-        return table
-
-    def place(value: Any) -> Any:
+    def place(value: Any, many: bool = False) -> Any:
+        if many and isinstance(value, list):
+            return [place(each) for each in value]
         return known.get(value, value) if isinstance(value, str) else value
 
-    replaced = {}
-    for key, hint in described_hints(part).items():
-        if isinstance(description(hint), DescribedPoint) and key in table:
-            many = is_list(hint) and isinstance(table[key], list)
-            replaced[key] = [place(value) for value in table[key]] if many else place(table[key])
-    return table | replaced
+    made = dict(data)
+    for part in (*JOINTS, *LOADS):
+        hints = described_hints(part).items()
+        many = {key: is_list(hint) for key, hint in hints if isinstance(description(hint), DescribedPoint)}
+        if isinstance(tables := data.get(part.key()), list):
+            made[part.key()] = [
+                table | {key: place(table[key], many[key]) for key in many if key in table}
+                if isinstance(table, dict)
+                else table
+                for table in tables
+            ]
+    return made
 
 
 # Descriptions of the inputs of calipers and mechanisms for forms and sweeps; named designs as TOML -------
 
 
-def _keys(part: type[Part]) -> str:
-    """The kind of part, and its required and optional keys, as help text."""
-    fields, keys = SECTIONS[part.key()].model_fields, {True: [], False: []}
-    for key, described in descriptions(part).items():
-        otherwise = described.meaning.partition("; ")[2]  # such as "the ground if not given"
-        keys[fields[key].is_required()].append(f"{key} ({otherwise})" if otherwise else key)
-    return f"{part.label}: {'; '.join(', '.join(some) for some in (keys[True], keys[False]) if some)}"
+PARTS: dict[str, str] = {}  # by table: the kind of part, and its required and optional keys, as help text
+for _part in (*JOINTS, *LOADS):
+    _keys: dict[bool, list[str]] = {True: [], False: []}
+    for _key, _described in descriptions(_part).items():
+        _otherwise = _described.meaning.partition("; ")[2]  # such as "the ground if not given"
+        _required = SECTIONS[_part.key()].model_fields[_key].is_required()
+        _keys[_required].append(f"{_key} ({_otherwise})" if _otherwise else _key)
+    PARTS[_part.key()] = f"{_part.label}: {'; '.join(', '.join(some) for some in _keys.values() if some)}"
 
 
-PARTS = {part.key(): _keys(part) for part in (*JOINTS, *LOADS)}
-_LISTED = ("points", *PARTS)
+def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
+    """Inputs of the caliper or mechanism that the tables of a file describe.
 
+    A caliper without dimensions has those that all have; a mechanism has one for each of its points, one for
+    each list of parts, and the rest.
+    """
+    name, points = tables.get("caliper"), tables.get("points")
+    if isinstance(name, str):
+        return describe(type(named(name)) if name in NAMED else CaliperInput)
 
-def caliper_inputs(name: str) -> list[Input]:
-    """Inputs of the caliper of a name; those without dimensions where there is no such name."""
-    return describe(type(named(name)) if name in NAMED else CaliperInput)
+    def made(path: str, kind: Any, quantity: Quantity, required: bool = False) -> Input:
+        return Input(path, CompleteMechanismInput, kind, quantity, (), required, None if required else [])
 
-
-def mechanism_inputs(points: Iterable[str]) -> list[Input]:
-    """Inputs of a mechanism: one for each of its points, one for each list of parts."""
-    rest = {
-        entry.path: entry for entry in describe(CompleteMechanismInput) if _table(entry.path) not in _LISTED
-    }
+    every = describe(CompleteMechanismInput)
+    rest = {entry.path: entry for entry in every if _table(entry.path) not in ("points", *PARTS)}
     place = PointQuantity("m", meaning="point in the drawing")
     return [
         rest.pop("title"),
         rest.pop("bodies"),
-        *(_input(f"points.{name}", Coordinates, place, required=True) for name in points),
-        *(_input(part, list[dict], Quantity(meaning=words)) for part, words in PARTS.items()),
+        *(
+            made(f"points.{at}", Coordinates, place, True)
+            for at in (points if isinstance(points, dict) else ())
+        ),
+        *(made(part, list[dict], Quantity(meaning=words)) for part, words in PARTS.items()),
         *rest.values(),
     ]
 
 
 def _table(path: str) -> str:
+    """The table of an input's path."""
     return path.partition(".")[0]
-
-
-def _input(path: str, kind: Any, description: Quantity, required: bool = False) -> Input:
-    return Input(path, CompleteMechanismInput, kind, description, (), required, None if required else [])
-
-
-def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
-    """Inputs of the caliper or mechanism that the tables of a file describe."""
-    name, points = tables.get("caliper"), tables.get("points")
-    if isinstance(name, str):
-        return caliper_inputs(name)
-    return mechanism_inputs(points if isinstance(points, dict) else ())
 
 
 def idle_inputs(entries: Mapping[str, str]) -> list[str]:
@@ -272,20 +254,15 @@ def idle_inputs(entries: Mapping[str, str]) -> list[str]:
 
 
 def named_text(name: str) -> str:
-    """TOML text of a named caliper with all its dimensions."""
-    given = named(name)
-    inputs = [entry for entry in caliper_inputs(name) if entry.path.startswith("dimensions.")]
-    lines = [f"{entry.name} = {_shown(entry)}" for entry in inputs]
-    return "\n".join([f"caliper = {show(given.caliper)}", "", "[dimensions]", *lines]) + "\n"
-
-
-def _shown(entry: Input) -> str:
-    """A dimension as a file gives it, lengths in mm."""
-    value: Any = entry.default
-    if isinstance(value, tuple):
-        return f"[{', '.join(_length(part) for part in value)}]"
-    return _length(value) if entry.quantity.unit == "m" else show(value)
-
-
-def _length(metres: float) -> str:
-    return f'"{1e3 * metres:.12g} mm"'
+    """TOML text of a named caliper with all its dimensions, lengths in mm."""
+    lines = [f"caliper = {show(named(name).caliper)}", "", "[dimensions]"]
+    for entry in inputs_of_tables({"caliper": name}):
+        if entry.path.startswith("dimensions."):
+            default: Any = entry.default
+            if entry.quantity.unit == "m":
+                lengths = [f'"{1e3 * part:.12g} mm"' for part in np.ravel(default).tolist()]
+                value = f"[{', '.join(lengths)}]" if isinstance(default, tuple) else lengths[0]
+            else:
+                value = show(default)
+            lines.append(f"{entry.name} = {value}")
+    return "\n".join(lines) + "\n"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.calipers import NAMED, Caliper, CaliperStroke
@@ -96,19 +96,20 @@ def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Ch
     cable : float
         Where the cursor is [m].
     """
-    sizes = [(joint.is_couple, joint.name, run.magnitudes[joint.name]) for joint in caliper.mechanism.joints]
+    joints = caliper.mechanism.joints
     forces, couples = (
-        {name: size for kind, name, size in sizes if kind is is_couple} for is_couple in (False, True)
+        merged({joint.name: run.magnitudes[joint.name] for joint in joints if joint.unit == unit})
+        for unit in ("N", "N m")
+    )
+    advantage, ratio = (
+        {f"{side} pad": pair[:, k] for k, side in enumerate(("right", "left"))}
+        for pair in (run.advantage, run.pad_ratio)
     )
     shown = (
-        ("Mechanical advantage of each pad", ChartAxis("pad force / finger force"), _sides(run.advantage)),
-        (
-            "Velocity ratio of each pad",
-            ChartAxis("pad travel / cable travel"),
-            _sides(run.pad_ratio),
-        ),
-        ("Forces of the joints", ChartAxis("force of the joint", "N"), merged(forces)),
-        ("Couples of the joints", ChartAxis("couple of the joint", "N m"), merged(couples)),
+        ("Mechanical advantage of each pad", ChartAxis("pad force / finger force"), advantage),
+        ("Velocity ratio of each pad", ChartAxis("pad travel / cable travel"), ratio),
+        ("Forces of the joints", ChartAxis("force of the joint", "N"), forces),
+        ("Couples of the joints", ChartAxis("couple of the joint", "N m"), couples),
     )
     x = 1e3 * run.cable
     travel = travel_axis("cable travel", "mm", x)
@@ -117,10 +118,6 @@ def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Ch
         for title, axis, curves in shown
         if curves
     ]
-
-
-def _sides(pair: np.ndarray) -> dict[str, np.ndarray]:
-    return {"right pad": pair[:, 0], "left pad": pair[:, 1]}
 
 
 # Sketches that explain the inputs of calipers and mechanisms: dimensions, symbols of joints, angles ------
@@ -185,49 +182,26 @@ def mechanism_sketch(stops: bool) -> Rows:
 
 
 def _symbols() -> Drawing:
+    """How joints are drawn."""
     s = Sketch()
-    symbols: Sequence[tuple[str, Callable[[Sketch, float, float], None]]] = (
-        ("pin", _pin),
-        ("pin on the ground", _grounded),
-        ("bar", _bar),
-        ("cable", _cable),
-        ("spring", _spring),
-        ("slot, contact", _face),
-    )
-    for i, (words, draw) in enumerate(symbols):
-        x, y = 2.6 * (i % 2), -0.8 * (i // 2)
-        draw(s, x, y)
-        s.labels.append(Label(words, (x + 0.4, y), "text", (1.0, 0.0), size=_LETTERS))
+    line = np.array([(-0.35, 0.0), (0.35, 0.0)])
+    symbols: dict[str, tuple[Callable[[np.ndarray], DrawnShape], ...]] = {
+        "pin": (lambda at: Symbol("pin", at, "pin"),),
+        "pin on the ground": (
+            lambda at: Symbol("ground", at, "ground", 14.0),
+            lambda at: Symbol("pin", at, "pin"),
+        ),
+        "bar": (lambda at: Outline(at + line, "neutral", 4.0),),
+        "cable": (lambda at: Outline(at + line, "cable", 1.4, (5.0, 3.0)),),
+        "spring": (lambda at: Outline(at + line, "spring", 1.4, (1.5, 2.0)),),
+        "slot, contact": (lambda at: Outline(at + line, "contact", 1.6),),
+    }
+    for i, (words, shapes) in enumerate(symbols.items()):
+        at = np.array([2.6 * (i % 2), -0.8 * (i // 2)])
+        s.add(*(shape(at) for shape in shapes))
+        s.labels.append(Label(words, at + np.array((0.4, 0.0)), "text", (1.0, 0.0), size=_LETTERS))
     s.room = [(5.0, 0.0)]  # of the words on the right
     return s.drawing("Signs of joints", "How pins, bars, cables, springs, slots and contacts are drawn")
-
-
-def _pin(s: Sketch, x: float, y: float) -> None:
-    s.add(Symbol("pin", (x, y), "pin"))
-
-
-def _grounded(s: Sketch, x: float, y: float) -> None:
-    s.add(Symbol("ground", (x, y), "ground", 14.0), Symbol("pin", (x, y), "pin"))
-
-
-def _line(s: Sketch, x: float, y: float, role: str, width: float, dash: tuple[float, ...] = ()) -> None:
-    s.add(Outline([(x - 0.35, y), (x + 0.35, y)], role, width, dash))
-
-
-def _bar(s: Sketch, x: float, y: float) -> None:
-    _line(s, x, y, "neutral", 4.0)
-
-
-def _cable(s: Sketch, x: float, y: float) -> None:
-    _line(s, x, y, "cable", 1.4, (5.0, 3.0))
-
-
-def _spring(s: Sketch, x: float, y: float) -> None:
-    _line(s, x, y, "spring", 1.4, (1.5, 2.0))
-
-
-def _face(s: Sketch, x: float, y: float) -> None:
-    _line(s, x, y, "contact", 1.6)
 
 
 def _directions() -> Drawing:

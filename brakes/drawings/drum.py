@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,9 +9,8 @@ from matplotlib.figure import Figure
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
-from beamdyn.common.inputs.array_checks import Numbers
 from brakes.drawings.arrows import ForceArrows
-from brakes.drum import BrakeResult, DrumBrake, Shoe, ShoeResult, brake_torque
+from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
 _FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
 _ANGLES, _FRICTIONS = 61, 121  # points of the curves
@@ -31,7 +28,11 @@ def brake_figure(result: BrakeResult) -> Figure:
 
     figure = Figure(figsize=(11.5, 7.0))
     draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing_of(result))
-    _plot_charts(figure, charts_of(result), left=0.62)
+    charts = charts_of(result)
+    rows = len(charts)
+    cells = figure.add_gridspec(rows, 1, left=0.62, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
+    for row, chart in enumerate(charts):
+        plot_chart(figure.add_subplot(cells[row, 0]), chart)
     return figure
 
 
@@ -41,118 +42,74 @@ def charts_of(result: BrakeResult) -> list[Chart]:
     return [factors_over_friction] if result.locked else [pressure_chart(result), factors_over_friction]
 
 
-def _plot_charts(figure: Figure, charts: Sequence[Chart], left: float) -> None:
-    """Plot charts below one another, from a part of the figure's width on."""
-    rows = len(charts)
-    cells = figure.add_gridspec(rows, 1, left=left, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
-    for row, chart in enumerate(charts):
-        plot_chart(figure.add_subplot(cells[row, 0]), chart)
-
-
 def drawing_of(result: BrakeResult) -> Drawing:
-    """The brake with its forces, or where it locks."""
-    return locked_brake(result) if result.locked else free_body(result)
-
-
-def locked_brake(result: BrakeResult) -> Drawing:
-    """The shoes in the drum, with a mark on those that lock; of one case, in m."""
-    r = float(result.shoes[0].shoe.drum_radius)
-    arrows = ForceArrows(0.0)
-    _draw_drum(arrows, r, result.reverse)
-    for i, shoe in enumerate(result.shoes):
-        placed = _placement(result, i)
-        _draw_ends(arrows, *_draw_parts(arrows, shoe.shoe, placed))
-        if shoe.locked:
-            _mark_locked(arrows, shoe, placed, f"{i + 1}")
-    title = f"Friction {float(result.friction):.3g}: the brake locks itself"
-    return arrows.drawing(title, "A drum brake that locks: its shoes, and a mark on each that locks", {})
-
-
-def free_body(result: BrakeResult) -> Drawing:
-    """The shoes in the drum with their forces to one scale; of one case, in m.
+    """The shoes in the drum with their forces to one scale, or a mark on each that locks; of one case, in m.
 
     The resultants N of the pressure and T of the friction act where their lines of action cross, which is
     outside the drum, at the effective arm from its centre.
     """
     r = float(result.shoes[0].shoe.drum_radius)
-    largest = max(float(np.hypot(*v)) for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
-    arrows = ForceArrows(0.75 * r / max(largest, float(result.force)))
-    _draw_drum(arrows, r, result.reverse)
-    for i, shoe in enumerate(result.shoes):
-        _draw_shoe(arrows, shoe, _placement(result, i), f"{i + 1}")
+    vectors = (v for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
+    largest = 0.0 if result.locked else max(float(result.force), *(float(np.hypot(*v)) for v in vectors))
+    arrows = ForceArrows(0.0 if result.locked else 0.75 * r / largest)
+    # The drum's sense of rotation at the top is clockwise when it turns forward.
+    start, end = np.radians((70.0, 110.0) if result.reverse else (110.0, 70.0))
+    way = arc((0, 0), 1.08 * r, start, end)
+    arrows.shapes += [
+        Disc((0, 0), r, "neutral", 1.4),
+        Symbol("cross", (0, 0), "axis", 9.0),
+        Outline(way[:-4], "neutral", 1.5),
+        Arrow(way[-6], way[-1], "neutral", width=1.5),
+        Symbol("dot", (0.0, r), "neutral", 3.0),
+    ]
+    arrows.labels.append(Label("drum", (0.0, 1.08 * r), "neutral", (0.0, 1.0)))
+    for i, shoe in enumerate(result.shoes):  # the first on the right, the second on the left
+        same = result.brake.leading[0] == result.brake.leading[i]
+        placed = np.eye(2) if i == 0 else np.diag((-1.0, -1.0 if same else 1.0))
+        _draw_shoe(arrows, shoe, placed, f"{i + 1}", bool(result.locked))
+    if result.locked:
+        title = f"Friction {float(result.friction):.3g}: the brake locks itself"
+        return arrows.drawing(title, "A drum brake that locks: its shoes, and a mark on each that locks", {})
     title = f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
     key = {"load": "actuating force P", "normal": "pressure N", "friction": "friction T", "reaction": "pin R"}
     return arrows.drawing(title, "A drum brake: its shoes with the forces on them", key)
 
 
-def _mark_locked(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
-    """Mark a shoe that locks, on its lining, and say from which friction on it does."""
-    r, middle = float(s.shoe.drum_radius), np.array([np.mean(s.shoe.lining)])
-    arrows.shapes.append(Symbol("cross", (_on_rim(r, middle) @ placed)[0], "inside", 16.0))
-    text = f"{name}: locks from\nfriction {float(s.locking_friction):.3g} on"
-    arrows.labels.append(Label(text, r * np.array([0.36, 0.3]) @ placed, "inside", priority=4))
-
-
-def _placement(result: BrakeResult, i: int) -> np.ndarray:
-    """Matrix from a shoe's own axes to the picture: the first on the right, the second on the left."""
-    if i == 0:
-        return np.eye(2)
-    same = result.brake.leading[0] == result.brake.leading[i]
-    return np.diag((-1.0, -1.0)) if same else np.diag((-1.0, 1.0))
-
-
-def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str) -> None:
-    r = float(s.shoe.drum_radius)
-    pin, lever = _draw_parts(arrows, s.shoe, placed)
-    centre = -float(s.effective_arm) * s.normal / np.hypot(*s.normal) @ placed
-    arrows.shapes.append(Outline(np.vstack([(0, 0), centre]), "normal", 0.9, (1.0, 2.0)))
-    arrows.add(lever, np.array([float(s.force), 0.0]) @ placed, f"P_{name}", "load", ends_here=True)
-    acting = (
-        (centre, s.normal, "N", "normal"),
-        (centre, s.tangential, "T", "friction"),
-        (pin, s.pin_reaction, "R", "reaction"),
-    )
-    for at, vector, symbol, role in acting:
-        arrows.add(at, vector @ placed, f"{symbol}_{name}", role)
-    _draw_ends(arrows, pin, lever)
-    word = "leading" if s.leading else "trailing"
-    middle = r * np.array([0.36, 0.3]) @ placed
-    text = f"{name}: {word}\n{float(s.torque):.4g} N m\nC* {float(s.c_star):.3g}"
-    arrows.labels.append(Label(text, middle))
-
-
-def _draw_parts(arrows: ForceArrows, shoe: Shoe, placed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Add a shoe with lining and pin; return the points (2,) of the pin and of the force."""
-    r = float(shoe.drum_radius)
+def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str, bare: bool) -> None:
+    """Add a shoe with lining and pin by the matrix from its own axes, and its forces unless it is bare."""
+    r, shoe = float(s.shoe.drum_radius), s.shoe
     rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
-    pin = np.array(shoe.pivot, dtype=float) @ placed
-    lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
+    pin, lever = (
+        np.array(shoe.pivot, dtype=float) @ placed,
+        np.array([0.55 * r, float(shoe.force_arm)]) @ placed,
+    )
+    middle = r * np.array([0.36, 0.3]) @ placed
     arrows.shapes += [
         Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0),
         Outline(rim, "support", 7.0),
         *(Symbol("dot", at, "support", 3.0) for at in (rim[0], rim[-1])),
     ]
-    return pin, lever
-
-
-def _draw_ends(arrows: ForceArrows, pin: np.ndarray, lever: np.ndarray) -> None:
-    """Add the pin, and the point of the force, over what has been drawn."""
+    if not bare:
+        centre = -float(s.effective_arm) * s.normal / np.hypot(*s.normal) @ placed
+        arrows.shapes.append(Outline(np.vstack([(0, 0), centre]), "normal", 0.9, (1.0, 2.0)))
+        arrows.add(lever, np.array([float(s.force), 0.0]) @ placed, f"P_{name}", "load", ends_here=True)
+        arrows.add(centre, s.normal @ placed, f"N_{name}", "normal")
+        arrows.add(centre, s.tangential @ placed, f"T_{name}", "friction")
+        arrows.add(pin, s.pin_reaction @ placed, f"R_{name}", "reaction")
+        word = "leading" if s.leading else "trailing"
+        text = f"{name}: {word}\n{float(s.torque):.4g} N m\nC* {float(s.c_star):.3g}"
+        arrows.labels.append(Label(text, middle))
     arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
+    if bare and s.locked:
+        at = (_on_rim(r, np.array([np.mean(shoe.lining)])) @ placed)[0]
+        arrows.shapes.append(Symbol("cross", at, "inside", 16.0))
+        text = f"{name}: locks from\nfriction {float(s.locking_friction):.3g} on"
+        arrows.labels.append(Label(text, middle, "inside", priority=4))
 
 
 def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
     """Points (k, 2) on the drum at angles from straight down [rad]."""
     return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
-
-
-def _draw_drum(arrows: ForceArrows, r: float, reverse: bool) -> None:
-    """Add the drum with its sense of rotation at the top: clockwise when forward."""
-    arrows.shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
-    start, end = np.radians((70.0, 110.0) if reverse else (110.0, 70.0))
-    way = arc((0, 0), 1.08 * r, start, end)
-    arrows.shapes += [Outline(way[:-4], "neutral", 1.5), Arrow(way[-6], way[-1], "neutral", width=1.5)]
-    arrows.shapes.append(Symbol("dot", (0.0, r), "neutral", 3.0))
-    arrows.labels.append(Label("drum", (0.0, 1.08 * r), "neutral", (0.0, 1.0)))
 
 
 def pressures(ax: Axes, result: BrakeResult) -> Axes:
@@ -161,25 +118,19 @@ def pressures(ax: Axes, result: BrakeResult) -> Axes:
 
 
 def pressure_chart(result: BrakeResult) -> Chart:
-    """The pressure over the linings, of one case."""
-    return Chart(
-        "Pressure on the linings",
-        ChartAxis("angle from straight down", "deg"),
-        ChartAxis("pressure", "MPa", low=0.0),
-        [_pressure(i, shoe) for i, shoe in enumerate(result.shoes)],
-    )
-
-
-def _pressure(i: int, shoe: ShoeResult) -> ChartCurve:
-    """The pressure over a lining, down to zero at its ends."""
-    a1, a2 = (float(a) for a in shoe.shoe.lining)
-    alpha = np.linspace(a1, a2, _ANGLES)
-    p = 1e-6 * shoe.pressure(alpha)
-    alpha, p = np.r_[a1, alpha, a2], np.r_[0.0, p, 0.0]
-    return ChartCurve(_name(i, shoe), np.degrees(alpha), p, dashed=bool(i % 2))
+    """The pressure over the linings, of one case, down to zero at their ends."""
+    curves = []
+    for i, shoe in enumerate(result.shoes):
+        a1, a2 = (float(a) for a in shoe.shoe.lining)
+        alpha = np.linspace(a1, a2, _ANGLES)
+        p = np.r_[0.0, 1e-6 * shoe.pressure(alpha), 0.0]
+        curves.append(ChartCurve(_name(i, shoe), np.degrees(np.r_[a1, alpha, a2]), p, dashed=bool(i % 2)))
+    angle, pressure = ChartAxis("angle from straight down", "deg"), ChartAxis("pressure", "MPa", low=0.0)
+    return Chart("Pressure on the linings", angle, pressure, curves)
 
 
 def _name(i: int, shoe: ShoeResult) -> str:
+    """Name of a shoe's curve."""
     return f"{i + 1}: {'leading' if shoe.leading else 'trailing'}"
 
 
@@ -221,16 +172,12 @@ def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool 
     marks = [ChartMark(friction, f"{friction:g}", at_foot=True)] if friction else []
     if limit < _LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
+    # C* grows without bound towards locking.
+    near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, result.c_star))
     return Chart(
         "Shoe factors",
         ChartAxis("friction of the linings", low=0.0),
-        ChartAxis("C* = torque / (force radius)", low=0.0, high=_ceiling(result.c_star, mu, friction)),
+        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0)),
         [*of_shoes, *whole],
         marks=marks,
     )
-
-
-def _ceiling(c_star: Numbers, mu: np.ndarray, friction: float | None) -> float:
-    """Upper limit of the C* axis, as C* grows without bound towards locking."""
-    near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, c_star))
-    return max(2.5 * near, 1.0)

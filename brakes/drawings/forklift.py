@@ -14,7 +14,7 @@ from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.plots.curves import curves
 from beamdyn.common.results.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
-from brakes.drawings.duo_servo import bare_shoes, free_bodies, positions
+from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
@@ -49,8 +49,7 @@ def answer_drawings(
     if followed is not None:
         rows.append(positions(followed))
     if forces is not None:
-        draw = free_bodies if forces.status == "equilibrium" else bare_shoes
-        rows.append(draw(forces, outlines))
+        rows.append(free_bodies(forces, outlines))
     return rows
 
 
@@ -59,9 +58,8 @@ def truck(stop: Stop) -> Drawing:
     t, sense = stop.truck, stop.conditions.sense
     beta = sense * float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
-    turn = np.array(
-        [[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]]
-    )  # row vectors; downhill to +x, of a truck that drives forwards to -x
+    # Of row vectors; downhill is to +x, of a truck that drives forwards to -x.
+    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.conditions.friction) * float(stop.front_load)
     arrows = ForceArrows(1.1 * L / weight)
@@ -79,23 +77,16 @@ def truck(stop: Stop) -> Drawing:
     for name, (at, vector, role) in places.items():
         arrows.add(at @ turn, vector @ turn, name, role, ends_here=name.startswith("N"))
     arrows.shapes.append(Symbol("dot", cg @ turn, "weight", 7.0))
-    if not stop.stops:
-        _mark_moving_on(arrows, cg + np.array([0.0, 1.2 * r1]), sense * L, turn)
-    key = {"weight": "weight", "normal": "axle loads", "friction": "friction of the tyres"}
-    return arrows.drawing(_title(stop), "A forklift on a slope with the forces on it", key)
-
-
-def _mark_moving_on(arrows: ForceArrows, at: np.ndarray, length: float, turn: np.ndarray) -> None:
-    """Add an arrow of a length [m] along x, down the slope, with the words that the truck does not stop."""
-    foot, tip = at @ turn, (at + np.array([length, 0.0])) @ turn
-    arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))
-    places = np.stack([(foot + tip) / 2, tip])
-    arrows.labels.append(Label("does not stop", places, "compression", (0.0, 1.0), priority=4))
-
-
-def _title(stop: Stop) -> str:
+    if not stop.stops:  # an arrow down the slope
+        at = cg + np.array([0.0, 1.2 * r1])
+        foot, tip = at @ turn, (at + np.array([sense * L, 0.0])) @ turn
+        arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))
+        ends = np.stack([(foot + tip) / 2, tip])
+        arrows.labels.append(Label("does not stop", ends, "compression", (0.0, 1.0), priority=4))
     slope, speed = np.degrees(float(stop.conditions.slope)), 3.6 * float(stop.conditions.speed)
-    return f"{slope:.3g} deg, {speed:.3g} km/h: {outcome(stop)}"
+    title = f"{slope:.3g} deg, {speed:.3g} km/h: {outcome(stop)}"
+    key = {"weight": "weight", "normal": "axle loads", "friction": "friction of the tyres"}
+    return arrows.drawing(title, "A forklift on a slope with the forces on it", key)
 
 
 def outcome(stop: Stop) -> str:
@@ -110,20 +101,22 @@ def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
     r2 = 0.75 * r1
     ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn
     shapes.append(Outline(ground, "ground", 2.0))
-    body = [
-        (0.1 * L, r1),
-        (0.1 * L, 2.6 * r1),
-        (0.75 * L, 2.6 * r1),
-        (1.28 * L, 2.3 * r1),
-        (1.28 * L, 0.8 * r1),
-        (L, 0.8 * r1),
-    ]
-    cab = [(0.25 * L, 2.6 * r1), (0.3 * L, 4.9 * r1), (0.85 * L, 4.9 * r1), (0.95 * L, 2.5 * r1)]
-    mast = [(-0.2 * L, 0.3 * r1), (-0.2 * L, 5.6 * r1), (-0.12 * L, 5.6 * r1), (-0.12 * L, 0.3 * r1)]
+    body = [(0.1, 1.0), (0.1, 2.6), (0.75, 2.6), (1.28, 2.3), (1.28, 0.8), (1.0, 0.8)]
+    cab = [(0.25, 2.6), (0.3, 4.9), (0.85, 4.9), (0.95, 2.5)]
+    mast = [(-0.2, 0.3), (-0.2, 5.6), (-0.12, 5.6), (-0.12, 0.3)]
     for shape, role in ((cab, "second"), (body, "body"), (mast, "body")):
-        shapes.append(Outline(np.array(shape) @ turn, role, 1.0, closed=True, filled=True))
+        corners = np.array(shape) * (L, r1) @ turn
+        shapes.append(Outline(corners, role, 1.0, closed=True, filled=True))
     if has_load(t):
-        shapes += _load(t, turn)
+        x, y = float(t.load_cg[0]), float(t.load_cg[1]) + r1
+        half = min(abs(x) - 0.2 * L, y - 0.3 * r1)
+        box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)]) + np.array([x, y])
+        fork = np.array([(-0.16 * L, y - half), (x - half, y - half)])
+        shapes += [
+            Outline(box @ turn, "second", 1.0, closed=True, filled=True),
+            Outline(fork @ turn, "neutral", 3.0),
+            Symbol("dot", np.array([x, y]) @ turn, "neutral", 3.0),
+        ]
     for x, r in ((0.0, r1), (L, r2)):
         hub = np.array([x, r]) @ turn
         shapes += [Disc(hub, r, "wheel", 1.2, filled=True), Symbol("cross", hub, "axis", 6.0)]
@@ -132,24 +125,6 @@ def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
 def has_load(t: Truck) -> bool:
     """Whether there is a load on the fork."""
     return bool(float(t.load_mass)) and float(t.load_cg[0]) < 0
-
-
-def _load(t: Truck, turn: np.ndarray) -> list[DrawnShape]:
-    """The load and its fork."""
-    x, y, r1 = (
-        float(t.load_cg[0]),
-        float(t.load_cg[1]) + float(t.front_wheel_radius),
-        float(t.front_wheel_radius),
-    )
-    half = min(abs(x) - 0.2 * float(t.wheelbase), y - 0.3 * r1)
-    box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)]) + np.array([x, y])
-    fork = np.array([(-0.16 * float(t.wheelbase), y - half), (x - half, y - half)])
-    at = np.array([x, y]) @ turn
-    return [
-        Outline(box @ turn, "second", 1.0, closed=True, filled=True),
-        Outline(fork @ turn, "neutral", 3.0),
-        Symbol("dot", at, "neutral", 3.0),
-    ]
 
 
 def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) -> Axes:
@@ -166,15 +141,10 @@ def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) 
     distance : ndarray, shape (m, n)
         [m]; inf where the truck does not stop.
     """
-    stops = [bool(np.isfinite(row).any()) for row in distance]
-    names = [f"{np.degrees(b):.3g} deg" for b in np.asarray(slopes)]
-    curves(
-        ax,
-        3.6 * np.asarray(speeds),
-        distance[np.array(stops)],
-        [n for n, s in zip(names, stops, strict=True) if s],
-    )
-    for name in (n for n, s in zip(names, stops, strict=True) if not s):
+    stops = np.isfinite(distance).any(axis=1)
+    names = np.array([f"{np.degrees(b):.3g} deg" for b in np.asarray(slopes)])
+    curves(ax, 3.6 * np.asarray(speeds), distance[stops], names[stops].tolist())
+    for name in names[~stops].tolist():
         ax.plot([], [], " ", label=f"{name}: never stops")
     ax.set_ylim(bottom=0)
     ax.set_xlabel("speed [km/h]")

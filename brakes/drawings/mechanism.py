@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
 from beamdyn.common.results.pictures import save_animation
 from brakes.drawings import mechanism_parts as parts
-from brakes.planar import GROUND, Action, Equilibrium, Position, free_body
+from brakes.planar import GROUND, Equilibrium, Load, Position, free_body
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,11 +66,12 @@ def mechanism_drawing(position: Position, equilibrium: Equilibrium | None = None
 
 
 def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium | None) -> None:
+    """Add bodies, members, cables, springs, pins and faces."""
     straight = parts.two_force_bodies(position.mechanism)
     outlines = {body: parts.outline(position, body) for body in position.mechanism.bodies}
     for body, corners in outlines.items():
         if body not in straight and len(corners):  # else nothing acts on it yet
-            sketch.shapes.append(_body(corners * _MM))
+            sketch.shapes.append(_body(corners))
             places = np.vstack([parts.label_place(outlines, body), corners.mean(axis=0)]) * _MM
             sketch.labels.append(Label(body, places, priority=_BODIES))
     for cable in parts.cables(position, equilibrium):
@@ -81,27 +81,14 @@ def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium
     for member in parts.members(position, equilibrium):
         _add_member(sketch, member, 4.0)
     for _, shape, points in parts.shapes(position, "pin"):
-        sketch.shapes += _pin(points[0] * _MM, GROUND in dict(shape.ends))
+        support = [Symbol("ground", points[0] * _MM, "ground", 14.0)] if GROUND in dict(shape.ends) else []
+        sketch.shapes += [*support, Symbol("pin", points[0] * _MM, "pin")]
     sketch.shapes += [Outline(face, "contact", 1.6) for face in _faces(position)]
 
 
-def _ghost(position: Position) -> list[DrawnShape]:
-    """The mechanism without names and forces, in one pale colour."""
-    straight = parts.two_force_bodies(position.mechanism)
-    bodies = [body for body in position.mechanism.bodies if body not in straight]
-    outlines = [parts.outline(position, body) * _MM for body in bodies]
-    members = [(member.ends * _MM, 3.0, ()) for member in parts.members(position)]
-    members += [(cable.ends * _MM, 1.4, _CABLE) for cable in parts.cables(position)]
-    pins = [points[0] * _MM for _, _, points in parts.shapes(position, "pin")]
-    return [
-        *(Outline(corners, "ghost", closed=True) for corners in outlines),
-        *(Outline(ends, "ghost", width, dash) for ends, width, dash in members),
-        *(Symbol("dot", at, "ghost", 4.0) for at in pins),
-    ]
-
-
 def _body(corners: np.ndarray) -> Outline:
-    return Outline(corners, "body", 2.0, closed=True, filled=len(corners) > 2)
+    """A body by its corners [m]."""
+    return Outline(corners * _MM, "body", 2.0, closed=True, filled=len(corners) > 2)
 
 
 def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple[float, ...] = ()) -> None:
@@ -126,7 +113,9 @@ def _faces(position: Position) -> Iterator[np.ndarray]:
     half = 0.06 * _size(position) * _MM
     for _, shape, points in parts.shapes(position, "face"):
         if len(points) > 1:
-            yield _arc(points[0] * _MM, points[1] * _MM, half)
+            out = complex(*(points[0] - points[1])) * _MM
+            turned = out * np.exp(1j * np.linspace(-1.0, 1.0, 9) * half / abs(out))
+            yield points[1] * _MM + np.stack((turned.real, turned.imag), axis=1)
             continue
         x, y = shape.along
         angle = float(position.angle(shape.frame)) + np.arctan2(y, x)
@@ -134,16 +123,8 @@ def _faces(position: Position) -> Iterator[np.ndarray]:
         yield np.stack((at - along, at + along))
 
 
-def _arc(middle: np.ndarray, centre: np.ndarray, half: float) -> np.ndarray:
-    """Points (k, 2) of an arc about a centre, from `half` its length before the middle to as much behind."""
-    x, y = middle - centre
-    turn = np.linspace(-1.0, 1.0, 9) * half / np.hypot(x, y)
-    return centre + np.stack(
-        (x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)), axis=1
-    )
-
-
 def _size(position: Position) -> float:
+    """Distance of opposite corners around all points [m]."""
     low, high = parts.extent(position)
     return float(np.linalg.norm(high - low))
 
@@ -178,11 +159,31 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
     low, high = parts.extent(closed.position)
     scale = force_scale(forces, math.dist(low, high))
     if rim is not None:
-        _add_rim(sketch, np.asarray(rim))
+        left, right = np.sort(np.asarray(rim)[:, 0]) * _MM
+        half, middle = 0.3 * (right - left), float(np.mean(np.asarray(rim)[:, 1])) * _MM
+        around = ((left, -half), (right, -half), (right, half), (left, half))
+        corners = [(x, middle + y) for x, y in around]
+        sketch.shapes.append(Outline(np.array(corners), "rim", 1.0, closed=True, filled=True))
+        sketch.labels.append(Label("rim", np.mean(corners, axis=0)))
     if not np.array_equal(open_.coordinates, closed.position.coordinates):
-        sketch.shapes += _ghost(open_)
+        straight = parts.two_force_bodies(open_.mechanism)
+        bodies = [body for body in open_.mechanism.bodies if body not in straight]
+        members = [(member.ends, 3.0, ()) for member in parts.members(open_)]
+        members += [(cable.ends, 1.4, _CABLE) for cable in parts.cables(open_)]
+        pins = [points[0] for _, _, points in parts.shapes(open_, "pin")]
+        sketch.shapes += [
+            *(Outline(parts.outline(open_, body) * _MM, "ghost", closed=True) for body in bodies),
+            *(Outline(ends * _MM, "ghost", width, dash) for ends, width, dash in members),
+            *(Symbol("dot", at * _MM, "ghost", 4.0) for at in pins),
+        ]
     _add_mechanism(sketch, closed.position, closed)
-    _add_forces(sketch, forces, scale, (low, high))
+    said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
+    centre = (low + high) / 2
+    for outer in forces:
+        aside = outer.at[0] - centre[0]  # from outside, where it would cross the middle
+        far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
+        pressed = outer.along_bar and outer.force @ (centre - outer.at) > 0
+        _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)
     words = "A mechanism with its forces as arrows to one scale: loads, and reactions of the ground"
     return sketch.drawing(title=title, words=words, newton=scale * _MM)
 
@@ -221,30 +222,6 @@ def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
         shapes=(*drawing.shapes, Symbol("cross", at, "inside", 16.0)),
         labels=(*drawing.labels, Label(words, at, "inside", (0.0, 1.0), priority=4)),
     )
-
-
-def _add_rim(sketch: _Sketch, pads: np.ndarray) -> None:
-    """Add the rim between the faces of two pads."""
-    low, high = np.sort(pads[:, 0]) * _MM
-    height, middle = 0.3 * (high - low), float(pads[:, 1].mean()) * _MM
-    corners = np.array(
-        [(low, middle - height), (high, middle - height), (high, middle + height), (low, middle + height)]
-    )
-    sketch.shapes.append(Outline(corners, "rim", 1.0, closed=True, filled=True))
-    sketch.labels.append(Label("rim", corners.mean(axis=0)))
-
-
-def _add_forces(
-    sketch: _Sketch, forces: Sequence[parts.OuterForce], scale: float, extent: tuple[np.ndarray, np.ndarray]
-) -> None:
-    low, high = extent
-    said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
-    middle = (low + high) / 2
-    for outer in forces:
-        aside = outer.at[0] - middle[0]  # from outside, where it would cross the middle
-        far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
-        pressed = outer.along_bar and outer.force @ (middle - outer.at) > 0
-        _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)
 
 
 def _add_arrow(
@@ -291,8 +268,10 @@ def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawi
     """Drawings of every body with all that acts on it, three in a row; see `free_body_diagrams`."""
     rows = []
     for heading, equilibrium in equilibria.items():
-        scale = _scale_of_actions(equilibrium)
         bodies = equilibrium.position.mechanism.bodies
+        actions = (action for body in bodies for action in free_body(equilibrium, body))
+        largest = float(np.nanmax([np.linalg.norm(action.force) for action in actions], initial=0.0))
+        scale = _LONGEST * _size(equilibrium.position) / largest if largest else 0.0
         made = [free_body_drawing(equilibrium, body, scale, heading) for body in bodies]
         rows += [made[i : i + 3] for i in range(0, len(made), 3)]
     return rows
@@ -301,13 +280,14 @@ def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawi
 def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading: str = "") -> Drawing:
     """The free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
     sketch, corners = _Sketch(), parts.outline(equilibrium.position, body)
-    sketch.shapes.append(_body(corners * _MM))
+    sketch.shapes.append(_body(corners))
     loads = {load.name for load in equilibrium.position.mechanism.loads}
     pulling = {name for name, _, _ in parts.shapes(equilibrium.position, "cable")} - loads
     couples, points = [], []
     for action in free_body(equilibrium, body):
         if not np.isfinite(action.at).all():
-            couples.append(_describe_couple(action))
+            if abs(action.couple) > _COUPLE:
+                couples.append(f"{action.name}: couple {action.couple:.4g} N m")
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
         inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
@@ -315,19 +295,8 @@ def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading
         _add_arrow(sketch, outer, scale, inwards)
         points.append(Symbol("pin", action.at * _MM, "pin", 5.0))
     sketch.shapes += points
-    title = "\n".join((", ".join(filter(None, (body, heading))), *filter(None, couples)))
+    title = "\n".join((", ".join(filter(None, (body, heading))), *couples))
     return sketch.drawing(title=title, words=f"Free body of {body}", newton=scale * _MM)
-
-
-def _describe_couple(action: Action) -> str:
-    return f"{action.name}: couple {action.couple:.4g} N m" if abs(action.couple) > _COUPLE else ""
-
-
-def _scale_of_actions(equilibrium: Equilibrium) -> float:
-    mechanism = equilibrium.position.mechanism
-    forces = [np.linalg.norm(a.force) for body in mechanism.bodies for a in free_body(equilibrium, body)]
-    largest = float(np.nanmax(forces, initial=0.0))
-    return _LONGEST * _size(equilibrium.position) / largest if largest else 0.0
 
 
 # Motion -------------------------------------------------------------------------------------------
@@ -378,76 +347,61 @@ def animate(
 # Curves over the stroke of a mechanism or a caliper ------------------------------------------------------
 
 
-class LoadsOverStroke(NamedTuple):
-    """Loads over a stroke.
+def loads_over_stroke(
+    axis: ChartAxis,
+    travel: np.ndarray,
+    curves: Sequence[tuple[Load, str, np.ndarray]],
+    place: float,
+    locked: Mapping[str, np.ndarray],
+) -> list[Chart]:
+    """Charts of forces and of moments over a stroke, as far as there are any.
 
     Parameters
     ----------
+    axis : ChartAxis
+        Axis of the driver's travel.
     travel : ndarray, shape (S,)
-        Travel of the driver, in `unit`.
-    driver, unit : str
-        Name of the driver, and the unit of its travel.
-    forces, moments : mapping of str to ndarray, shape (S,)
-        Loads by name [N], [N m].
+        Travel of the driver, in the axis's unit.
+    curves : sequence of (Load, str, ndarray)
+        Loads, names of the curves, and sizes (S,) [N, N m].
     place : float
-        Travel to mark, in `unit`.
+        Travel to mark.
     locked : mapping of str to ndarray of bool, shape (S,)
-        Where the mechanism locks, by the name of the load.
+        Where the mechanism locks, by the name of the curve: points on the axis of zero force.
     """
-
-    travel: np.ndarray
-    driver: str
-    unit: str
-    forces: Mapping[str, np.ndarray]
-    moments: Mapping[str, np.ndarray]
-    place: float
-    locked: Mapping[str, np.ndarray] = MappingProxyType({})
-
-    def charts(self) -> list[Chart]:
-        """Charts of the forces and of the moments, as far as there are any."""
-        return [
-            self._chart(*each)
-            for each in (("Forces", "force", "N", self.forces), ("Moments", "moment", "N m", self.moments))
-            if each[-1]
-        ]
-
-    def _chart(self, title: str, what: str, unit: str, loads: Mapping[str, np.ndarray]) -> Chart:
-        return Chart(
-            f"{title} of the loads over the stroke",
-            travel_axis(f"travel of {self.driver}", self.unit, self.travel),
-            ChartAxis(f"{what} of the load", unit),
-            named_curves(self.travel, loads),
-            [*self._locked(loads)],
-            cursor=self.place,
-        )
-
-    def _locked(self, loads: Mapping[str, np.ndarray]) -> Iterator[ChartPoints]:
-        """Yield points on the axis of zero force where the mechanism locks."""
-        for name in loads:
-            if name in self.locked:
-                at = self.travel[self.locked[name]].tolist()
-                yield ChartPoints(f"{name}: locks", [(x, 0.0, f"{name}: locks") for x in at], "inside")
+    charts = []
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        if shown := {name: size for load, name, size in curves if load.unit == unit}:
+            points = [
+                ChartPoints(
+                    f"{n}: locks", [(x, 0.0, f"{n}: locks") for x in travel[locked[n]].tolist()], "inside"
+                )
+                for n in shown
+                if n in locked
+            ]
+            title, y = f"{what.title()}s of the loads over the stroke", ChartAxis(f"{what} of the load", unit)
+            charts.append(Chart(title, axis, y, named_curves(travel, shown), points, cursor=place))
+    return charts
 
 
-def mechanism_figure(drawing: Drawing, loads: LoadsOverStroke | None) -> Figure:
-    """Draw a mechanism and its loads over the stroke.
+def mechanism_figure(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
+    """Draw a mechanism and, beside it, charts of its loads over the stroke.
 
     Parameters
     ----------
     drawing : Drawing
         From `brakes.drawings.mechanism.open_and_closed`.
-    loads : LoadsOverStroke, optional
-        Its loads, forces and moments in an axes each.
+    charts : sequence of Chart
+        From `loads_over_stroke`; none if there is no stroke.
     """
     from matplotlib.figure import Figure
 
     from beamdyn.common.drawing.on_axes import draw_in
 
-    width = 12.0 if loads else 7.5
+    width = 12.0 if charts else 7.5
     figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
-    draw_in(figure, (0.005, 0.01, (6.2 if loads else width) / width - 0.01, 0.98), drawing)
-    if loads is not None:
-        charts = loads.charts()
+    draw_in(figure, (0.005, 0.01, (6.2 if charts else width) / width - 0.01, 0.98), drawing)
+    if charts:
         plot_charts_of_one_x(figure, charts, 7.0 / width, [1.0] * len(charts))
     return figure
 

@@ -60,28 +60,25 @@ def _chain(points: np.ndarray, flat: float) -> list[np.ndarray]:
     """Corners on the side of sorted points where one turns left all along, without the last."""
     kept: list[np.ndarray] = []
     for point in points:
-        while len(kept) > 1 and _turn(kept[-2], kept[-1], point) <= flat:
+        while len(kept) > 1:
+            (x, y), (u, v) = kept[-1] - kept[-2], point - kept[-2]
+            if x * v - y * u > flat:  # twice the area of the triangle, positive anticlockwise
+                break
             kept.pop()
         kept.append(point)
     return kept[:-1]
 
 
-def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
-    """Twice the area of the triangle from three points, positive anticlockwise."""
-    (x, y), (u, v) = b - a, c - a
-    return float(x * v - y * u)
-
-
 def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
     """Bodies on which two pins act, at two places, and nothing else."""
-    return tuple(body for body in mechanism.bodies if _is_two_force(mechanism, body))
-
-
-def _is_two_force(mechanism: Mechanism, body: str) -> bool:
-    joints = [joint for joint in mechanism.joints if body in joint.acts_on]
-    loaded = any(body in load.acts_on for load in mechanism.loads)
-    straight = len(joints) == len(mechanism.points[body]) == 2
-    return straight and all(joint.is_hinge for joint in joints) and not loaded
+    found = []
+    for body in mechanism.bodies:
+        joints = [joint for joint in mechanism.joints if body in joint.acts_on]
+        loaded = any(body in load.acts_on for load in mechanism.loads)
+        straight = len(joints) == len(mechanism.points[body]) == 2
+        if straight and all(joint.is_hinge for joint in joints) and not loaded:
+            found.append(body)
+    return tuple(found)
 
 
 def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
@@ -101,7 +98,12 @@ def members(position: Position, equilibrium: Equilibrium | None = None) -> Itera
     yield from _members("bar", position, equilibrium)
     for body in two_force_bodies(position.mechanism):
         ends = np.array([position.point(body, at) for at in position.mechanism.points[body]])
-        yield Member(body, ends, np.nan if equilibrium is None else _axial(equilibrium, body, ends))
+        force = np.nan
+        if equilibrium is not None:
+            along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+            acting = (a for a in free_body(equilibrium, body) if np.allclose(a.at, ends[1], rtol=1e-9))
+            force = float(next(acting).force @ along)
+        yield Member(body, ends, force)
 
 
 def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
@@ -116,45 +118,27 @@ def _members(style: str, position: Position, equilibrium: Equilibrium | None) ->
         yield Member(name, points, float(np.ravel(sizes.get(name, np.nan))[0]))
 
 
-def _axial(equilibrium: Equilibrium, body: str, ends: np.ndarray) -> float:
-    """Tension of a body that two pins hold."""
-    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    at_end = [a.force @ along for a in free_body(equilibrium, body) if np.allclose(a.at, ends[1], rtol=1e-9)]
-    return float(at_end[0])
-
-
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
     """External forces on the mechanism: loads, and reactions and friction of the ground.
 
     The reaction on a bar is drawn at its end on the ground, where the arrow does not cover the bar.
     """
     mechanism = equilibrium.position.mechanism
-    on_ground = _ends_on_ground(equilibrium.position)
+    on_ground = {
+        name: points[k]
+        for name, shape, points in shapes(equilibrium.position, "bar")
+        for k, (body, _) in enumerate(shape.ends)
+        if body == GROUND
+    }
     loads = {load.name for load in mechanism.loads}
     outer = {part.name for part in mechanism.parts if GROUND in part.acts_on}
     outer |= {f"friction of {name}" for name in outer & {*mechanism.friction}}
     return [
-        OuterForce(
-            action.name,
-            on_ground.get(action.name, action.at),
-            action.force,
-            action.name not in loads,
-            action.name in on_ground,
-        )
+        OuterForce(name, on_ground.get(name, action.at), action.force, name not in loads, name in on_ground)
         for body in mechanism.bodies
         for action in free_body(equilibrium, body)
-        if action.name in outer and np.isfinite(action.at).all()
+        if (name := action.name) in outer and np.isfinite(action.at).all()
     ]
-
-
-def _ends_on_ground(position: Position) -> dict[str, np.ndarray]:
-    """The ends (2,) [m] of bars on the ground, by the names of the bars."""
-    return {
-        name: points[k]
-        for name, shape, points in shapes(position, "bar")
-        for k, (body, _) in enumerate(shape.ends)
-        if body == GROUND
-    }
 
 
 def extent(*positions: Position) -> tuple[np.ndarray, np.ndarray]:

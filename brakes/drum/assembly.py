@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -135,7 +135,7 @@ class BrakeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
@@ -198,28 +198,18 @@ def brake_torque(
     value = positive(name, value, units[name])
     mu = not_negative("friction", friction)
     together(friction=mu, **{name: value})
-    at_unit_force = _solve_shoes(brake, mu, 1.0, reverse)
+    sides = [*zip(brake.shoes, (leads is not reverse for leads in brake.leading), strict=True)]
+    at_unit_force = [solve_shoe(shoe, mu, leads, "force", 1.0) for shoe, leads in sides]
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-        bound, locked = "a shoe locks: no torque can be demanded of the brake", _any_locked(at_unit_force)
+        bound = "a shoe locks: no torque can be demanded of the brake"
+        locked = _over(np.logical_or, [shoe.locked for shoe in at_unit_force])
         refuse(locked, "friction", mu, "", bound, "give a force to see which one, or less friction")
         value = value / sum(shoe.torque for shoe in at_unit_force)
     elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
-        value = value / _largest([shoe.peak_pressure for shoe in at_unit_force])
-    return _assemble_result(brake, reverse, mu, _solve_shoes(brake, mu, value, reverse))
-
-
-def _solve_shoes(brake: DrumBrake, mu: Numbers, force: Numbers, reverse: bool) -> tuple[ShoeResult, ...]:
-    return tuple(
-        solve_shoe(shoe, mu, leading is not reverse, "force", force)
-        for shoe, leading in zip(brake.shoes, brake.leading, strict=True)
-    )
-
-
-def _assemble_result(
-    brake: DrumBrake, reverse: bool, mu: Numbers, shoes: tuple[ShoeResult, ...]
-) -> BrakeResult:
-    limit = _least([shoe.locking_friction for shoe in shoes])
+        value = value / _over(np.maximum, [shoe.peak_pressure for shoe in at_unit_force])
+    shoes = tuple(solve_shoe(shoe, mu, leads, "force", value) for shoe, leads in sides)
+    limit = _over(np.minimum, [shoe.locking_friction for shoe in shoes])
     return BrakeResult(
         brake=brake,
         reverse=reverse,
@@ -227,25 +217,18 @@ def _assemble_result(
         friction=mu,
         force=shoes[0].force,
         torque=sum(shoe.torque for shoe in shoes),
-        peak_pressure=_largest([shoe.peak_pressure for shoe in shoes]),
+        peak_pressure=_over(np.maximum, [shoe.peak_pressure for shoe in shoes]),
         c_star=sum(shoe.c_star for shoe in shoes),
         c_star_slope=sum(shoe.c_star_slope for shoe in shoes),
         locking_friction=limit,
         margin=1 - mu / limit,
-        locked=_any_locked(shoes),
+        locked=_over(np.logical_or, [shoe.locked for shoe in shoes]),
     )
 
 
-def _any_locked(shoes: tuple[ShoeResult, ...]) -> np.ndarray:
-    return np.logical_or.reduce(np.broadcast_arrays(*(shoe.locked for shoe in shoes)))[()]
-
-
-def _least(limits: list[Numbers]) -> Numbers:
-    return np.minimum.reduce(np.broadcast_arrays(*limits))[()]
-
-
-def _largest(values: list[Numbers]) -> Numbers:
-    return np.maximum.reduce(np.broadcast_arrays(*values))[()]
+def _over(function: np.ufunc, values: Sequence[Numbers]) -> Numbers:
+    """The least, the largest, or whether any, of the shoes' values in each case."""
+    return function.reduce(np.broadcast_arrays(*values))[()]
 
 
 def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
@@ -309,11 +292,8 @@ def stop_energy(
     >>> drum.stop_energy(mass=1000.0, speed=20.0)  # J: m v^2 / 2
     200000.0
     """
-    m, v1, v2 = (
-        positive("mass", mass, "kg"),
-        positive("speed", speed, "m/s"),
-        numbers("final_speed", final_speed),
-    )
+    m, v1 = positive("mass", mass, "kg"), positive("speed", speed, "m/s")
+    v2 = numbers("final_speed", final_speed)
     refuse((np.asarray(v2) < 0) | (v2 >= v1), "final_speed", v2, "m/s", "give 0 or more, below speed")
     rotating = not_negative("inertia", inertia, "kg m2")
     if np.any(rotating) and rolling_radius is None:

@@ -93,28 +93,14 @@ class Shoe:
         (a1, a2), (b, y) = self.lining, self.pivot
         together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,
                  lining_start=a1, lining_end=a2, pivot_x=b, pivot_y=y)  # fmt: skip
-        self._check_pin()
-        self._check_arc()
-
-    def _check_pin(self) -> None:
-        b, y = self.pivot
-        least = _LEAST_MARGIN * np.asarray(self.drum_radius)
-        refuse(
-            np.asarray(y) >= -least,
-            "pivot[1]",
-            y,
-            "m",
-            "the pin lies below the centre",
-            "give (b, -c), c > 0",
-        )
+        y, least = np.asarray(y), _LEAST_MARGIN * np.asarray(self.drum_radius)
+        bound, remedy = "the pin lies below the centre", "give (b, -c), c > 0"
+        refuse(y >= -least, "pivot[1]", self.pivot[1], "m", bound, remedy)
         far = np.hypot(b, y)
         name, bound = "distance of the pivot from the centre", "more than two drum radii"
         refuse(far > 2 * (np.asarray(self.drum_radius) + least), name, far, "m", bound, "give {unit}")
-        arm = self.force_arm - np.asarray(y)
-        refuse(arm <= least, "force_arm", self.force_arm, "m", "the force must act above the pin (at -c)")
-
-    def _check_arc(self) -> None:
-        a1, a2 = self.lining
+        above = "the force must act above the pin (at -c)"
+        refuse(self.force_arm - y <= least, "force_arm", self.force_arm, "m", above)
         bound = "the arc is empty: it must exceed {other}"
         refuse(np.asarray(a2) - a1 <= _ROUNDING, "lining[1]", a2, "rad", bound, other="lining[0]")
         pin, start = self.pin_angle, np.asarray(a1)
@@ -125,15 +111,8 @@ class Shoe:
         refuse(bad, "lining[0]", a1, "rad", "the pressure would be negative below 0", advice)
         end = np.pi + np.minimum(self.phase, pin)
         bound = "past {limit} the lining leaves the drum"
-        refuse(
-            np.asarray(a2) > end + _ROUNDING,
-            "lining[1]",
-            a2,
-            "rad",
-            bound,
-            "end it before; give {unit}",
-            limit=end,
-        )
+        late = np.asarray(a2) > end + _ROUNDING
+        refuse(late, "lining[1]", a2, "rad", bound, "end it before; give {unit}", limit=end)
 
     @property
     def pin_angle(self) -> Numbers:
@@ -174,47 +153,26 @@ class _Integrals:
 
 
 def _integrals(shoe: Shoe) -> _Integrals:
+    """Integrals over the lining of a shoe, and the bounds of their rounding."""
     a1, a2 = (np.asarray(end) - shoe.phase for end in shoe.lining)
     m, h = (a1 + a2) / 2, (a2 - a1) / 2
     K = 2 * np.sin(m) * np.sin(h)
     S = h - np.cos(2 * m) * np.sin(2 * h) / 2
     C = np.sin(2 * m) * np.sin(2 * h) / 2
-    b, c = _turned(shoe)
+    (b, y), far = shoe.pivot, np.hypot(*shoe.pivot)
+    b, c = (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))  # in turned axes
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
     peak = np.where(inside, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
-    K_error, S_error, C_error = _errors_of_integrals(shoe, a1, a2, h)
-    return _Integrals(
-        K,
-        S,
-        C,
-        c * S - b * C,
-        shoe.drum_radius * K - b * S - c * C,
-        peak,
-        K_error / K,
-        (S_error + C_error) / np.hypot(S, C),
-        c * S_error + np.abs(b) * C_error,
-        shoe.drum_radius * K_error + np.abs(b) * S_error + c * C_error,
-    )
-
-
-def _errors_of_integrals(
-    shoe: Shoe, a1: np.ndarray, a2: np.ndarray, h: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed."""
+    # Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed.
     ends = np.stack(np.broadcast_arrays(a1, a2))
     angle = _EPS * (np.abs(ends + shoe.phase).max(axis=0) + np.abs(shoe.phase))
     sines, cosines = np.abs(np.sin(ends)), np.abs(np.cos(ends))
-    return (
-        angle * sines.sum(axis=0) + _EPS * np.sin(h) * sines.max(axis=0),
-        angle * (sines**2).sum(axis=0) + 2 * _EPS * h,
-        angle * (sines * cosines).sum(axis=0) + _EPS * np.abs(np.sin(2 * h)),
-    )
-
-
-def _turned(shoe: Shoe) -> tuple[Numbers, Numbers]:
-    """The pin's b and c [m] in axes turned by delta."""
-    (b, y), far = shoe.pivot, np.hypot(*shoe.pivot)
-    return (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))
+    dK = angle * sines.sum(axis=0) + _EPS * np.sin(h) * sines.max(axis=0)
+    dS = angle * (sines**2).sum(axis=0) + 2 * _EPS * h
+    dC = angle * (sines * cosines).sum(axis=0) + _EPS * np.abs(np.sin(2 * h))
+    n, d = c * S - b * C, shoe.drum_radius * K - b * S - c * C
+    dn, dd = c * dS + np.abs(b) * dC, shoe.drum_radius * dK + np.abs(b) * dS + c * dC
+    return _Integrals(K, S, C, n, d, peak, dK / K, (dS + dC) / np.hypot(S, C), dn, dd)
 
 
 class SlidesOrLocks(Result):
@@ -231,7 +189,7 @@ class SlidesOrLocks(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence."""
+        """Meaning of the status, in one sentence."""
         locked = np.asarray(self.locked)
         if not locked.any():
             return "slides: the friction is below self-locking"
@@ -247,15 +205,15 @@ class SlidesOrLocks(Result):
 
 
 def _say_locked(friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
+    """Say that shoes lock, with the ranges of their friction and of that at which they do."""
+    mu, least = (
+        " to ".join(dict.fromkeys(f"{float(end(values)):.4g}" for end in (np.min, np.max)))
+        for values in (friction, locking)
+    )
     return (
-        f"locked{where}: friction {_say_range(friction)} is at or past self-locking, {_say_range(locking)}; "
+        f"locked{where}: friction {mu} is at or past self-locking, {least}; "
         "the shoe grips by itself, and its torque does not follow from what presses it"
     )
-
-
-def _say_range(values: np.ndarray) -> str:
-    ends = f"{float(np.min(values)):.4g}", f"{float(np.max(values)):.4g}"
-    return " to ".join(dict.fromkeys(ends))
 
 
 @dataclass(frozen=True)
@@ -324,7 +282,7 @@ class ShoeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{'leading' if self.leading else 'trailing'}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
@@ -427,6 +385,14 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
     pin = -(normal + tangential)
     pin[..., 0] -= force
     torque = mu * load * r * i.K
+    # The sum of the moments about the centre, which the solution does not use, relative to P (a + c).
+    b, y = shoe.pivot
+    left = s * torque - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
+    # The largest relative error, from that of n + s mu d: of dC*/dmu, or of vectors.
+    arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
+    from_bracket = bracket_error / bracket
+    slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket
+    error = _EPS * (4 + arms) + from_bracket + np.maximum(slope_error, i.SC_error)
     return ShoeResult(
         shoe=shoe,
         leading=leading,
@@ -438,8 +404,8 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
         tangential=tangential,
         pin_reaction=pin,
         effective_arm=(r * i.K / np.hypot(i.S, i.C))[()],
-        closure=_closure(shoe, force, s * torque, pin)[()],
-        error=_error(shoe, i, bracket_error / bracket)[()],
+        closure=(np.abs(left) / (np.abs(force) * arm))[()],
+        error=error[()],
         c_star=(mu * arm * i.K / bracket)[()],
         c_star_slope=(arm * i.K * n / bracket**2)[()],
         locking_friction=limit[()],
@@ -448,25 +414,13 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers
     )
 
 
-def _error(shoe: Shoe, i: _Integrals, bracket_error: np.ndarray) -> np.ndarray:
-    """Largest relative error, from that of n + s mu d: of dC*/dmu, or of vectors."""
-    arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
-    slope = i.K_error + i.n_error / np.abs(i.n) + bracket_error
-    return _EPS * (4 + arms) + bracket_error + np.maximum(slope, i.SC_error)
-
-
-def _closure(shoe: Shoe, force: np.ndarray, moment: np.ndarray, pin: np.ndarray) -> np.ndarray:
-    """Sum of the moments about the centre, which the solution does not use, relative to P (a + c)."""
-    b, y = shoe.pivot
-    left = moment - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
-    return np.abs(left) / (np.abs(force) * shoe.moment_arm)
-
-
 def _vector(x: Numbers, y: Numbers) -> np.ndarray:
+    """Vectors (..., 2) of these components."""
     return np.stack(np.broadcast_arrays(x, y), axis=-1)
 
 
 def _turn(v: np.ndarray, angle: Numbers) -> np.ndarray:
+    """Vectors (..., 2) turned anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return _vector(c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1])
 

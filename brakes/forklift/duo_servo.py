@@ -84,9 +84,6 @@ class DuoServo:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        self._check_pins()
-
-    def _check_pins(self) -> None:
         (x, y), (ax, ay) = self.tip, self.adjuster
         together(tip_x=x, tip_y=y, adjuster_x=ax, adjuster_y=ay, drum_radius=self.drum_radius,
                  face_tilt=self.face_tilt, contact_angle=self.contact_angle)  # fmt: skip
@@ -94,15 +91,9 @@ class DuoServo:
             side = "above" if sense > 0 else "below"
             refuse(np.asarray(u) <= 0, f"{name}[0]", u, "m", "the right side is described: give x > 0")
             refuse(sense * np.asarray(v) <= 0, f"{name}[1]", v, "m", f"it lies {side} the drum's centre")
-            far = np.hypot(u, v)
-            bound = "it must lie inside the drum (drum_radius)"
-            refuse(
-                far >= self.drum_radius * (1 - LEAST_MARGIN),
-                f"distance of {name} from the centre",
-                far,
-                "m",
-                bound,
-            )
+            what, far = f"distance of {name} from the centre", np.hypot(u, v)
+            outside = far >= self.drum_radius * (1 - LEAST_MARGIN)
+            refuse(outside, what, far, "m", "it must lie inside the drum (drum_radius)")
 
     def move_shoes(
         self, clearance: Annotated[Numbers, Described("m", "c_L", "between lining and drum at rest", above=0)]
@@ -136,7 +127,9 @@ class DuoServo:
         outside = np.hypot(*tip) >= self.drum_radius * (1 - LEAST_MARGIN)
         bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
         refuse(outside, "clearance", c, "m", bound, advice)
-        psi = self._drum_turn(*tip)
+        # The turn psi pushes the right piston to its bottom.
+        lowest = (self.piston_position(*self.tip) - self.piston_bottom) * np.cos(self.face_tilt)
+        psi = _arccos(lowest / np.hypot(*tip)) - self.face_tilt - np.arctan2(tip[1], tip[0])
         bound = "larger than the drum allows: the piston does not reach its bottom"
         refuse(np.isnan(psi), "clearance", c, "m", bound, advice)
         return self._assemble_motion(c, turn, psi, tip)
@@ -180,22 +173,33 @@ class DuoServo:
         return np.arctan2(across, along) - _arccos(target / np.hypot(along, across))
 
     def _after_seating(self, turn: np.ndarray, x: Numbers, y: Numbers) -> tuple[np.ndarray, np.ndarray]:
+        """Where a point of the right shoe at rest is after stage 1 [m]."""
         hx, hy = self.adjuster
         dx, dy = _turned(x - hx, y - hy, -turn)
         return hx + dx, hy + dy
 
-    def _drum_turn(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Turn psi [rad] that pushes the right piston to its bottom, or nan."""
-        bottom = self.piston_position(*self.tip) - self.piston_bottom
-        angle = _arccos(bottom * np.cos(self.face_tilt) / np.hypot(x, y))
-        return angle - self.face_tilt - np.arctan2(y, x)
-
     def _assemble_motion(
         self, c: Numbers, turn: np.ndarray, psi: np.ndarray, tip: tuple[np.ndarray, np.ndarray]
     ) -> ShoeMotion:
+        """The motion from the turns of its two stages and the tip's place after the first."""
         (x, y), rest = tip, self.piston_position(*self.tip)
         right, left = _turned(x, y, psi), _turned(-x, y, psi)
-        depth, angle = self._penetration(c, turn)
+        # The depth by which a lining that is concentric at rest enters the drum, and the angle there.
+        ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
+        ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
+        where = np.clip(np.arctan2(oy, ox) + turn, *ends)
+        dx, dy = _turned(self.drum_radius - c, 0.0, where - turn)
+        sine, cosine = np.sin(self.face_tilt), np.cos(self.face_tilt)
+        levers = Levers(
+            drum_radius=self.drum_radius,
+            a1=right[0] * sine + right[1] * cosine,
+            a2=-left[0] * sine + left[1] * cosine,
+            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum: gamma = psi
+            b2=-np.asarray(self.adjuster[1]),
+            alpha1=self.face_tilt,
+            alpha2=self.face_tilt,
+            gamma=psi,
+        )
         return ShoeMotion(
             geometry=self,
             clearance=c,
@@ -207,34 +211,10 @@ class DuoServo:
             right_tip=np.stack(right, axis=-1),
             left_tip=np.stack(left, axis=-1),
             tip_gap=(self.drum_radius - np.hypot(x, y))[()],
-            lining_penetration=depth[()],
-            penetration_angle=angle[()],
-            levers=self._levers(right, left, psi),
+            lining_penetration=(np.hypot(ox + dx, oy + dy) - self.drum_radius)[()],
+            penetration_angle=where[()],
+            levers=levers,
         )
-
-    def _levers(
-        self, right: tuple[np.ndarray, np.ndarray], left: tuple[np.ndarray, np.ndarray], psi: np.ndarray
-    ) -> Levers:
-        s, c = np.sin(self.face_tilt), np.cos(self.face_tilt)
-        return Levers(
-            drum_radius=self.drum_radius,
-            a1=right[0] * s + right[1] * c,
-            a2=-left[0] * s + left[1] * c,
-            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum: gamma = psi
-            b2=-np.asarray(self.adjuster[1]),
-            alpha1=self.face_tilt,
-            alpha2=self.face_tilt,
-            gamma=psi,
-        )
-
-    def _penetration(self, c: Numbers, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Depth [m] by which a lining concentric at rest enters the drum, and the angle there [rad]."""
-        ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
-        ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
-        where = np.clip(np.arctan2(oy, ox) + turn, *ends)
-        radius, angle = self.drum_radius - c, where - turn
-        far = np.hypot(ox + radius * np.cos(angle), oy + radius * np.sin(angle))
-        return far - self.drum_radius, where
 
 
 @dataclass(frozen=True)
@@ -293,7 +273,7 @@ class ShoeMotion(Result):
     levers: Levers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"drum turns {spanned(np.degrees(self.drum_turn), 'deg')}"
         travels = (spanned(np.multiply(1e3, each), "mm") for each in (self.right_travel, self.left_travel))
         yield f"pistons travel {' and '.join(travels)}"
@@ -326,9 +306,8 @@ class ShoeMotion(Result):
 
     def levers_and_error(self, clearance: None = None) -> tuple[Levers, Numbers]:
         """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
-        return self.levers, self.error * self.geometry.drum_radius / np.minimum(
-            self.levers.a1, self.levers.a2
-        )
+        least = np.minimum(self.levers.a1, self.levers.a2)
+        return self.levers, self.error * self.geometry.drum_radius / least
 
     @property
     def residual(self) -> Numbers:
@@ -372,6 +351,7 @@ BENDIX_12_5 = DuoServo(
 
 
 def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndarray]:
+    """Components turned anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return c * x - s * y, s * x + c * y
 

@@ -122,7 +122,7 @@ class InternalForces(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
@@ -130,7 +130,7 @@ class InternalForces(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many of each."""
+        """Meaning of the status, in one sentence; of many cases, how many of each."""
         if np.ndim(self.status):
             names, counts = np.unique(self.status, return_counts=True)
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))
@@ -218,19 +218,9 @@ def internal_forces(
 
 def _locks(levers: Levers, mu: Numbers, rounding: Numbers) -> np.ndarray:
     """Whether friction is at self-locking, as far as rounding tells, or past it."""
-    return _least_margin(levers, mu) <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), rounding)
-
-
-def _least_margin(levers: Levers, mu: Numbers) -> np.ndarray:
-    """Smaller margin of the two shoes to self-locking, 1 - s / a1 or 1 - s / b2."""
-    return 1 - levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu) / np.minimum(levers.a1, levers.b2)
-
-
-def _error_from_friction(levers: Levers, mu: np.ndarray, rounding: Numbers) -> np.ndarray:
-    """Relative error of what follows from a friction: of dC*/dmu, twice that of the shoes' forces."""
-    s = levers.drum_radius * mu / np.hypot(1.0, mu)
-    shoes = levers.b2 / (levers.b2 - s) + levers.a1 / (levers.a1 - s)
-    return rounding * (1 + 2 * shoes)
+    s = levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu)
+    margin = 1 - s / np.minimum(levers.a1, levers.b2)  # the smaller one of the two shoes
+    return margin <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), rounding)
 
 
 def _solve_from_torque(
@@ -303,7 +293,8 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Nu
     cosine = 1 / np.hypot(1.0, mu)
     forces = (cosine * R_L, sigma * R_L, cosine * R_T, sigma * R_T, Q, P_L)
     status = np.broadcast_to(np.where(locked, "locked", "equilibrium"), np.shape(R_L))
-    error = _error_from_friction(levers, np.where(locked, np.nan, mu), rounding)
+    # The relative error is that of dC*/dmu, twice that of the shoes' forces.
+    error = rounding * (1 + 2 * (levers.b2 / (levers.b2 - s) + levers.a1 / (levers.a1 - s)))
     return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None, error)
 
 

@@ -142,20 +142,19 @@ class Kinematics(Result):
     interference: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"clearance {number(1e3 * self.clearance, 'mm')}"
         yield from (f"{each.name} at {number(np.degrees(each.turn), 'deg')}" for each in self.events)
         yield warned(self.interference)
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings."""
-        stages = {name: _stage_dict(getattr(self, name)) for name in ("right", "left", "drum")}
-        return super().to_dict() | stages
-
-
-def _stage_dict(stage: Stage) -> dict[str, Any]:
-    travel = {side: values.tolist() for side, values in stage.travel.items()}
-    return plain(stage) | {"travel": travel}
+        made = super().to_dict()
+        for name in ("right", "left", "drum"):
+            stage = getattr(self, name)
+            travel = {side: values.tolist() for side, values in stage.travel.items()}
+            made[name] = plain(stage) | {"travel": travel}
+        return made
 
 
 def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
@@ -193,10 +192,32 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     kind("geometry", geometry, DuoServo)
     c, n = positive("clearance", clearance, "m"), count("positions", positions, 2, MOST_POSITIONS)
     interference = geometry.move_shoes(c).interference
-    right, left = (_follow_seating(geometry, c, side, n) for side in ("right", "left"))
-    tips = tuple(_seated_tip(geometry, stage, side) for stage, side in ((right, "right"), (left, "left")))
-    drum = _follow_turning(geometry, tips, float(right.travel["right"][-1]), n)
-    return Kinematics(geometry, c, right, left, drum, _events(right, left, drum), interference)
+    seated, tips, events = {}, [], []
+    for side in ("right", "left"):
+        mechanism = build_seating_mechanism(geometry, c, side)
+        path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
+        turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
+        rank = constraint_rank(path.position)
+        seated[side] = Stage(mechanism, path.position, {side: path.travel[side]}, turn, *rank)
+        x, y = path.position.point(f"{side} shoe", _on_side(side, geometry.tip))[-1]
+        tips.append((float(x), float(y)))
+        message = (
+            f"the {side} lining reaches the drum after {np.degrees(turn[-1]):.4f} deg, "
+            f"the piston {1e3 * path.travel[side][-1]:.3f} mm out"
+        )
+        events.append(Event("lining reaches the drum", 1, float(turn[-1]), message))
+    mechanism = build_turning_mechanism(geometry, *tips)
+    bottom = -float(seated["right"].travel["right"][-1]) - geometry.piston_bottom
+    path = stroke(mechanism, "right", np.linspace(0.0, bottom, n))
+    travel, turn = {side: path.travel[side] for side in ("right", "left")}, path.travel["drum"]
+    drum = Stage(mechanism, path.position, travel, turn, *constraint_rank(path.position))
+    out = seated["left"].travel["left"][-1] + travel["left"][-1]
+    message = (
+        f"the right piston reaches its bottom after the drum turns {np.degrees(turn[-1]):.4f} deg; "
+        f"the left piston is {1e3 * out:.3f} mm out"
+    )
+    events.append(Event("piston bottoms", 2, float(turn[-1]), message))
+    return Kinematics(geometry, c, **seated, drum=drum, events=tuple(events), interference=interference)
 
 
 def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
@@ -273,31 +294,14 @@ def _measure(side: str, tip: Point) -> Force:
 
 
 def _on_side(side: str, p: Point) -> Point:
+    """A point of the right side at its place on a side."""
     return (float(p[0]), float(p[1])) if side == "right" else (-float(p[0]), float(p[1]))
 
 
 def _contact(geometry: DuoServo, c: float) -> Point:
+    """The contact point of the right lining at a clearance c [m]."""
     radius, angle = geometry.drum_radius - c, geometry.contact_angle
     return radius * np.cos(angle), radius * np.sin(angle)
-
-
-def _follow_seating(geometry: DuoServo, c: float, side: str, n: int) -> Stage:
-    mechanism = build_seating_mechanism(geometry, c, side)
-    path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
-    turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
-    return Stage(mechanism, path.position, {side: path.travel[side]}, turn, *constraint_rank(path.position))
-
-
-def _follow_turning(geometry: DuoServo, tips: tuple[Point, ...], seated: float, n: int) -> Stage:
-    mechanism = build_turning_mechanism(geometry, *tips)
-    path = stroke(mechanism, "right", np.linspace(0.0, -seated - geometry.piston_bottom, n))
-    travel = {side: path.travel[side] for side in ("right", "left")}
-    return Stage(mechanism, path.position, travel, path.travel["drum"], *constraint_rank(path.position))
-
-
-def _seated_tip(geometry: DuoServo, stage: Stage, side: str) -> Point:
-    x, y = stage.position.point(f"{side} shoe", _on_side(side, geometry.tip))[-1]
-    return float(x), float(y)
 
 
 def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
@@ -331,25 +335,3 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
     values = np.linalg.svd(rows, compute_uv=False)
     relative = values / values[:, :1]
     return (relative > _RANK_TOLERANCE).sum(axis=1), relative[:, -1]
-
-
-def _events(right: Stage, left: Stage, drum: Stage) -> tuple[Event, ...]:
-    reached = tuple(
-        Event(
-            "lining reaches the drum",
-            1,
-            float(stage.turn[-1]),
-            f"the {side} lining reaches the drum after {np.degrees(stage.turn[-1]):.4f} deg, "
-            f"the piston {1e3 * stage.travel[side][-1]:.3f} mm out",
-        )
-        for side, stage in (("right", right), ("left", left))
-    )
-    out = left.travel["left"][-1] + drum.travel["left"][-1]
-    bottom = Event(
-        "piston bottoms",
-        2,
-        float(drum.turn[-1]),
-        f"the right piston reaches its bottom after the drum turns {np.degrees(drum.turn[-1]):.4f} deg; "
-        f"the left piston is {1e3 * out:.3f} mm out",
-    )
-    return (*reached, bottom)

@@ -72,7 +72,7 @@ class Levers:
 
     @property
     def in_radii(self) -> Levers:
-        """The same with all lengths over the drum's radius."""
+        """Levers with all lengths over the drum's radius."""
         arms = {name: getattr(self, name) / self.drum_radius for name in ("a1", "a2", "b1", "b2")}
         return replace(self, drum_radius=1.0, **arms)
 

@@ -46,7 +46,7 @@ class Procedure(Result):
     forces: InternalForces
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"stop in {spanned(self.stop.distance, 'm')}"
         yield f"drum turns {spanned(np.degrees(self.motion.drum_turn), 'deg')}"
         yield f"C* {spanned(self.forces.c_star)}"

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -105,16 +105,8 @@ class Truck:
         ahead = "it is ahead of the front wheel: the truck tips over it"
         refuse(x <= least, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
         behind = "it is behind the rear wheel, at wheelbase = {limit}"
-        refuse(
-            x >= self.wheelbase - least,
-            f"x of {name}",
-            x,
-            "m",
-            behind,
-            remedy,
-            limit=self.wheelbase,
-            other="empty_cg",
-        )
+        late, length = x >= self.wheelbase - least, self.wheelbase
+        refuse(late, f"x of {name}", x, "m", behind, remedy, limit=length, other="empty_cg")
         low = "it is below the ground (-front_wheel_radius)"
         refuse(y + self.front_wheel_radius <= least, f"y of {name}", y, "m", low, remedy, other="empty_cg")
 
@@ -282,7 +274,7 @@ class Stop(Result):
     standing_rear_load: Numbers
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The result in one line; see `Result.headline`."""
         yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
         yield f"torque of a brake {spanned(self.torque_per_brake, 'N m')}"
         yield self.message
@@ -308,7 +300,7 @@ class Stop(Result):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many do not stop."""
+        """Meaning of the status, in one sentence; of many cases, how many do not stop."""
         if np.ndim(self.status):
             short = int(np.sum(~self.stops))
             return f"{short} of {np.size(self.stops)} cases do not stop" if short else "every case stops"
@@ -372,31 +364,46 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
     together(truck=one_case, **conditions.numbers)
     beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case)
-    slide = _slide(truck, beta, mu, g, conditions.sense)
-    phases = _brake(V, slide.acceleration, t2)
+    (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
+    h, b, gc, gs = (
+        conditions.sense * (y + truck.front_wheel_radius),
+        L - a,
+        g * np.cos(beta),
+        g * np.sin(beta),
+    )
+    front, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
+    A = gs - mu * front / M
+    # The deceleration rises linearly to -A within t2; for A >= 0 there is no end.
+    v2 = V + A * t2 / 2
+    in_rise = v2 <= LEAST_MARGIN * V
+    slowing = np.where(A < 0, A, -1.0)  # what follows from the -1 is replaced below
+    tau = np.sqrt(2 * V * t2 / -slowing)
+    rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
+    braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
+    time = t1 + np.where(in_rise, tau, t2 / 2 - V / slowing)
     undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
-    stops, near = slide.acceleration < -undecided, np.abs(slide.acceleration) <= undecided
-    braking = np.where(stops, phases.braking_distance, np.inf)
+    stops, near = -undecided > A, np.abs(A) <= undecided
+    braking = np.where(stops, braking, np.inf)
     kinds = ["too near to decide", "never stops", "stops in the rise time"]
-    status = np.select([near, ~stops, phases.in_rise], kinds, default="stops")
+    status = np.select([near, ~stops, in_rise], kinds, default="stops")
     return Stop(
         truck=truck,
         conditions=conditions,
         stops=stops[()],
         status=status[()],
-        acceleration=slide.acceleration[()],
-        distance=(V * t1 + phases.rise_distance + braking)[()],
-        time=np.where(stops, t1 + phases.time, np.inf)[()],
+        acceleration=A[()],
+        distance=(V * t1 + rise + braking)[()],
+        time=np.where(stops, time, np.inf)[()],
         reaction_distance=(V * t1)[()],
-        rise_distance=phases.rise_distance[()],
+        rise_distance=rise[()],
         braking_distance=braking[()],
-        speed_lost_in_rise=phases.speed_lost[()],
-        speed_gained_coasting=(g * np.sin(beta) * t1)[()],
-        torque_per_brake=(truck.front_wheel_radius * mu * slide.front_load / 2)[()],
-        front_load=slide.front_load[()],
-        rear_load=slide.rear_load[()],
-        standing_front_load=slide.standing_front_load[()],
-        standing_rear_load=slide.standing_rear_load[()],
+        speed_lost_in_rise=np.where(in_rise, V, V - v2)[()],
+        speed_gained_coasting=(gs * t1)[()],
+        torque_per_brake=(truck.front_wheel_radius * mu * front / 2)[()],
+        front_load=front[()],
+        rear_load=(M * gc - front)[()],
+        standing_front_load=standing[()],
+        standing_rear_load=(M * gc - standing)[()],
     )
 
 
@@ -423,43 +430,3 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:
     bad, limit = (sense < 0) & (a <= least), a / (y + truck.front_wheel_radius)
     bound = "braking overturns the truck over the front axle from {limit} on"
     refuse(bad, "friction", mu, "", bound, "less load, or nearer the axle and lower", limit=limit)
-
-
-class _Slide(NamedTuple):
-    """Acceleration and axle loads with locked front wheels, and the axle loads at rest."""
-
-    acceleration: np.ndarray
-    front_load: np.ndarray
-    rear_load: np.ndarray
-    standing_front_load: np.ndarray
-    standing_rear_load: np.ndarray
-
-
-def _slide(truck: Truck, beta: np.ndarray, mu: np.ndarray, g: np.ndarray, sense: int) -> _Slide:
-    (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
-    h, b, gc, gs = sense * (y + truck.front_wheel_radius), L - a, g * np.cos(beta), g * np.sin(beta)
-    N_A = M * b * gc / (L + mu * h)
-    standing = M * (b * gc - h * gs) / L
-    return _Slide(gs - mu * N_A / M, N_A, M * gc - N_A, standing, M * gc - standing)
-
-
-class _Phases(NamedTuple):
-    """Distances while the brake force rises and after that, their time, whether the rise suffices."""
-
-    rise_distance: np.ndarray
-    braking_distance: np.ndarray
-    time: np.ndarray
-    in_rise: np.ndarray
-    speed_lost: np.ndarray
-
-
-def _brake(V: np.ndarray, A: np.ndarray, t2: np.ndarray) -> _Phases:
-    """Phases of a stop whose deceleration rises linearly to -A within t2; for A >= 0 there is no end."""
-    v2 = V + A * t2 / 2
-    in_rise = v2 <= LEAST_MARGIN * V
-    slowing = np.where(A < 0, A, -1.0)  # the caller replaces what follows from the -1
-    tau = np.sqrt(2 * V * t2 / -slowing)
-    rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
-    braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
-    time = np.where(in_rise, tau, t2 / 2 - V / slowing)
-    return _Phases(rise, braking, time, in_rise, np.where(in_rise, V, V - v2))

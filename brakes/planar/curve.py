@@ -35,7 +35,7 @@ class Node(NamedTuple):
     regularity: float
 
     def reversed(self) -> Node:
-        """The same node with the curve traversed in the opposite direction."""
+        """The node with the curve traversed in the opposite direction."""
         return Node(self.y, -self.tangent, self.value, -self.rate, -self.regularity)
 
 

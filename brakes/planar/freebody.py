@@ -13,7 +13,7 @@ from brakes.planar.statics import Equilibrium
 
 
 class Action(NamedTuple):
-    """What a joint or load does to a body.
+    """Force or couple of a joint or load on a body.
 
     name : str
         The joint or load; "friction of" it for its friction.

@@ -54,6 +54,11 @@ class FrictionalEquilibrium:
     release: Equilibrium
     without: Equilibrium
 
+    @property
+    def ways(self) -> dict[str, Equilibrium]:
+        """All three by their names: "without friction", "squeezing", "releasing"."""
+        return {"without friction": self.without, "squeezing": self.squeeze, "releasing": self.release}
+
 
 def solve_with_friction(
     mechanism: Mechanism, driver: str, position: Position | None = None

@@ -154,7 +154,7 @@ class Position:
         return Position(self.mechanism, self.batch[index])
 
     def of(self, mechanism: Mechanism) -> Position:
-        """The same position, for another mechanism with the same bodies and drawing."""
+        """The position, for another mechanism with the same bodies and drawing."""
         if mechanism is self.mechanism:
             return self
         if mechanism.bodies != self.mechanism.bodies:

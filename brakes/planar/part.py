@@ -1,4 +1,4 @@
-"""What every joint and every load is, brings and is given; the base classes tell how to write a new one."""
+"""Joints and loads: what each is, brings and is given; the base classes tell how to write a new one."""
 
 from __future__ import annotations
 
@@ -50,37 +50,29 @@ def check_inputs(core: object, prefix: str = "") -> None:
     ValueError
         With the first that is refused.
     """
-    for name, wanted in _wanted(type(core)).items():
+    for name, wanted, listed, optional, described in _wanted(type(core)):
         value = getattr(core, name)
-        if value is None and wanted.optional:
+        if value is None and optional:
             continue
-        if wanted.listed:
+        if listed:
             for k, part in enumerate(several(prefix + name, value, object)):
-                _check(f"{prefix}{name}[{k}]", part, wanted.kind, wanted.described)
-        elif (checked := _check(prefix + name, value, wanted.kind, wanted.described)) is not None:
+                _check(f"{prefix}{name}[{k}]", part, wanted, described)
+        elif (checked := _check(prefix + name, value, wanted, described)) is not None:
             set_fields(core, **{name: checked})
 
 
-class _Wanted(NamedTuple):
-    """What is wanted of an input: its type, or that of its parts if it is a list; whether it may be None."""
-
-    kind: Any
-    listed: bool
-    optional: bool
-    described: Described
-
-
 @cache
-def _wanted(core: type) -> dict[str, _Wanted]:
-    """What is wanted of each input of a dataclass: told once, since designs are made by the thousand."""
-    hints = described_hints(core)
-    return {name: _read(hints[name], described) for name, described in descriptions(core).items()}
+def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
+    """Name of each input of a dataclass, its type, whether it is a list of these, whether it may be None.
 
-
-def _read(hint: Any, described: Described) -> _Wanted:
-    kinds, listed = kinds_of(hint), is_list(hint)
-    kind = kinds_of(get_args(kinds[0])[0])[0] if listed else kinds[0]
-    return _Wanted(kind, listed, NoneType in kinds, described)
+    Told once, since designs are made by the thousand.
+    """
+    hints, wanted = described_hints(core), []
+    for name, described in descriptions(core).items():
+        kinds, listed = kinds_of(hints[name]), is_list(hints[name])
+        kind = kinds_of(get_args(kinds[0])[0])[0] if listed else kinds[0]
+        wanted.append((name, kind, listed, NoneType in kinds, described))
+    return wanted
 
 
 def _check(name: str, value: object, wanted: Any, described: Described) -> float | None:
@@ -117,14 +109,11 @@ Coefficient = Annotated[
 ]
 
 
-def _magnitude(unit: str) -> Described:
-    return Described(
-        unit, meaning="magnitude; unknown if not given", remedy="or None for an unknown amplitude"
-    )
-
-
-Newtons = Annotated[float, _magnitude("N")]
-NewtonMetres = Annotated[float, _magnitude("N m")]
+_NEWTONS = Described(
+    "N", meaning="magnitude; unknown if not given", remedy="or None for an unknown amplitude"
+)
+Newtons = Annotated[float, _NEWTONS]
+NewtonMetres = Annotated[float, replace(_NEWTONS, unit="N m")]
 
 
 class Shape(NamedTuple):
@@ -201,7 +190,7 @@ class Part:
 
     @classmethod
     def kind(cls) -> str:
-        """What it is in words, such as "rotation lock"."""
+        """Name of the kind, such as "rotation lock"."""
         return "".join(f" {c.lower()}" if c.isupper() else c for c in cls.__name__).strip()
 
     @classmethod
@@ -215,7 +204,7 @@ class Part:
         return f"{self.kind()} {self.name!r}"
 
     def rows(self) -> tuple[Row, ...]:
-        """What it forbids (a joint), or the coordinate on which it does its work (a load)."""
+        """Rows that it forbids (a joint), or the coordinate on which it does its work (a load)."""
         raise NotImplementedError
 
     def shapes(self) -> tuple[Shape, ...]:
@@ -328,7 +317,7 @@ class Load(Part):
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:
-        """The same load of another magnitude [N, N m].
+        """The load with another magnitude [N, N m].
 
         Raises
         ------
@@ -358,5 +347,5 @@ class AppliedLoad(Load):
         return self.magnitude
 
     def with_magnitude(self, magnitude: float | None) -> Self:
-        """The same load of another magnitude [N, N m]."""
+        """The load with another magnitude [N, N m]."""
         return replace(self, magnitude=magnitude)

@@ -6,16 +6,17 @@ has only the right one.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
 
+from beamdyn.common.edge.reports import draw_pictures, print_heading, print_notes
 from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.results.comparison import Verdict
-from beamdyn.common.results.pictures import save_figure
-from brakes.published import load
-from brakes.reproduce import caliper, drum, forklift
+from brakes.reproduce import drum_as_printed, eebrake, forklift_tables
+
+_PAPERS = drum_as_printed, forklift_tables
 
 
 def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
@@ -33,50 +34,30 @@ def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
     sequence of Verdict
         All that was compared.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    checked: list[Verdict] = []
-    for part in (drum, forklift):
+    for paper in _PAPERS:
         screen.rule()
-        screen.print(part.title(), style="bold")
-        screen.print(f"\n{part.introduction()}\n")
-        _print_notes(screen, part.summary())
-        for made in part.tables():
+        print_heading(screen, paper.PAPER)
+        screen.print(f"\n{paper.INTRODUCTION}\n")
+        print_notes(screen, paper.summary())
+        for made in paper.shown():
             screen.print(made)
-        _print_notes(screen, part.notes())
-    checked += cells()
-    checked += _caliper(screen, folder)
-    for path in draw(folder):
-        screen.print(f"drawn: {path}", soft_wrap=True)
-    return checked
+        print_notes(screen, paper.notes())
+    screen.rule()
+    print_heading(screen, eebrake.PAPER)
+    screen.print("")
+    compared = eebrake.sections()
+    for title, rows in compared.items():
+        screen.print(comparison_table(title, rows))
+    print_notes(screen, eebrake.notes())
+    draw_pictures(screen, folder, pictures())
+    return [*cells(), *(row for rows in compared.values() for row in rows)]
 
 
 def cells() -> list[Verdict]:
     """Compare all numbers of both papers on drum brakes."""
-    rows = [*drum.rows(), *(row for table in forklift.rows().values() for row in table)]
-    return [cell for row in rows for cell in row.cells]
+    return [cell for paper in _PAPERS for table in paper.tables().values() for cell in table.cells]
 
 
-def draw(folder: Path) -> list[Path]:
-    """Draw the pictures of both papers into a folder."""
-    made = drum.pictures() | forklift.pictures()
-    return [save_figure(figure, folder / f"{name}.png", force=True) for name, figure in made.items()]
-
-
-def _print_notes(screen: Console, notes: Iterable[str]) -> None:
-    for note in notes:
-        screen.print(f"{note}\n")
-
-
-def _caliper(screen: Console, folder: Path) -> list[Verdict]:
-    """Print and draw the section on bicycle calipers."""
-    compared: list[Verdict] = []
-    page = load("eebrake")
-    screen.rule()
-    screen.print(f"{page['title']}\n{page['journal']}, {page['year']}\n", style="bold")
-    for title, rows in caliper.sections().items():
-        screen.print(comparison_table(title, rows))
-        compared += rows
-    _print_notes(screen, caliper.notes())
-    for path in caliper.draw(folder):
-        screen.print(f"drawn: {path}", soft_wrap=True)
-    return compared
+def pictures() -> dict:
+    """Functions that draw the pictures of all papers, by the names of their files."""
+    return eebrake.PICTURES | drum_as_printed.PICTURES | forklift_tables.PICTURES

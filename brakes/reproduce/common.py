@@ -1,16 +1,16 @@
-"""A printed number beside ours, rows of such cells, and tables of them and of errata."""
+"""A printed number beside ours, tables of such numbers, and errors of a paper with what they cost."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 from rich.console import Group
 
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results.comparison import Verdict
-from brakes.published.errata import Erratum
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,8 @@ class Cell(Verdict):
     def texts(self) -> list[str]:
         """The printed number, then ours and, if there is one, the right one, each with a digit more."""
         decimals = max(0, 1 - round(math.log10(self.step)))
-        shown = [self.printed, f"{self.ours:.{decimals}f}"]
-        if self.right is None:
-            return shown
-        return [*shown, f"{self.right:.{decimals}f}" if math.isfinite(self.right) else "never stops"]
+        numbers = [x for x in (self.ours, self.right) if x is not None]
+        return [self.printed, *(f"{x:.{decimals}f}" if math.isfinite(x) else "never stops" for x in numbers)]
 
 
 def step(printed: str, digits: int | None = None) -> float:
@@ -70,30 +68,100 @@ def step(printed: str, digits: int | None = None) -> float:
     return 10.0 if printed.endswith("0") else 1.0
 
 
-Heads = tuple[tuple[str, ...], tuple[str, ...]]  # of the inputs and of the quantities of a table's rows
+@dataclass(frozen=True)
+class PrintedTable:
+    """A table of a paper, of numbers beside ours.
+
+    Parameters
+    ----------
+    title : str
+        Its title.
+    inputs, quantities : tuple of str
+        Headings of the inputs that vary from row to row, and of the compared numbers.
+    rows : list of (tuple of str, list of Cell)
+        Inputs and numbers of each row.
+    unit : str
+        Unit of all quantities, where the title has it and the headings do not.
+    """
+
+    title: str
+    inputs: tuple[str, ...]
+    quantities: tuple[str, ...]
+    rows: list[tuple[tuple[str, ...], list[Cell]]]
+    unit: str = ""
+
+    @property
+    def cells(self) -> list[Cell]:
+        """All numbers, row by row."""
+        return [cell for _, cells in self.rows for cell in cells]
+
+    def shown(self) -> Group:
+        """The table, with the printed number, ours by the paper's way, and the right one of each quantity."""
+        heads = [*self.inputs]
+        for name, cell in zip(self.quantities, self.cells, strict=False):
+            heads += [name, "ours", "corrected"][: len(cell.texts)]
+        lines = []
+        for inputs, cells in self.rows:
+            different = "; ".join(f"{c.printed} {c.verdict}" for c in cells if c.verdict != "agrees")
+            lines.append([*inputs, *(t for cell in cells for t in cell.texts), different or "agrees"])
+        return table(self.title, (*heads, "verdict"), lines, (len(heads),))
 
 
 @dataclass(frozen=True)
-class Row:
-    """A row of a printed table: the inputs that vary, as text, and the compared numbers."""
+class Erratum:
+    """An error in a paper and its consequence: the number that follows from it beside the right one.
 
-    inputs: tuple[str, ...]
-    cells: tuple[Cell, ...]
+    Attributes
+    ----------
+    name : str
+        Short name.
+    where, printed, right : str
+        The place in the paper, what it has there, and what it should have.
+    quantity, unit : str
+        Name and unit of the two values; an empty quantity where nothing follows from the error.
+    printed_value, right_value : float
+        The number that follows from the error, and the right one.
+    remark : str
+        A further remark on the consequence.
+    """
+
+    name: str
+    where: str
+    printed: str
+    right: str
+    quantity: str = ""
+    unit: str = ""
+    printed_value: float = 0.0
+    right_value: float = 0.0
+    remark: str = ""
 
     @property
-    def verdict(self) -> str:
-        """The comparison of all its cells in words."""
-        different = [f"{c.printed} {c.verdict}" for c in self.cells if c.verdict != "agrees"]
-        return "; ".join(different) or "agrees"
+    def consequence(self) -> str:
+        """The consequence in a sentence."""
+        if not self.quantity:
+            return "none further on"
+        unit, remark = (self.unit and f" {self.unit}"), (self.remark and f"; {self.remark}")
+        return f"{self.quantity}: {self.printed_value:.5g} in place of {self.right_value:.5g}{unit}{remark}"
 
 
-def rows_table(title: str, inputs: Sequence[str], quantities: Sequence[str], rows: Sequence[Row]) -> Group:
-    """Make a table with the printed number, ours by the paper's way, and the right one of each quantity."""
-    heads: list[str] = [*inputs]
-    for name, cell in zip(quantities, rows[0].cells, strict=True):
-        heads += [name, "ours", "corrected"][: len(cell.texts)]
-    lines = ([*row.inputs, *(t for cell in row.cells for t in cell.texts), row.verdict] for row in rows)
-    return table(title, (*heads, "verdict"), lines, (len(heads),))
+def errata_of(
+    paper: Mapping[str, Any], costs: Mapping[str, tuple[str, str, Any, Any]]
+) -> tuple[Erratum, ...]:
+    """The errors that a published file lists, in its order, with what they cost.
+
+    Parameters
+    ----------
+    paper : mapping
+        Contents of the file.
+    costs : mapping
+        By name of the error: the quantity, its unit, its value as printed and the right one.
+    """
+    found = []
+    for known in paper["erratum"]:
+        quantity, unit, printed, right = costs.get(known["name"], ("", "", 0.0, 0.0))
+        erratum = Erratum(**known, quantity=quantity, unit=unit)
+        found.append(replace(erratum, printed_value=float(printed), right_value=float(right)))
+    return tuple(found)
 
 
 def errata_table(title: str, errata: Iterable[Erratum]) -> Group:

@@ -1,4 +1,4 @@
-"""The drum paper's own numbers: its Table 1 from its wrong expressions, and what each of its errors costs.
+"""The drum paper's own numbers, from its wrong expressions, beside the right ones, and what its errors cost.
 
 Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
 ``brakes/published/vardanyan_2019.toml``; the consequences are those at the paper's longest arc, 80 degrees,
@@ -7,22 +7,35 @@ unless stated otherwise. For the right mechanics use `brakes.drum.shoe_torque`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from matplotlib.figure import Figure
+from rich.console import Group
 
+from beamdyn.common.edge.tables import table
+from beamdyn.common.plots.curves import grid
+from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.published import values_alone
+from brakes.drawings.drum import brake_figure
 from brakes.drum import BrakeResult, Shoe, brake_torque, shoe_torque, simplex
 from brakes.published import load
-from brakes.published.errata import Erratum
+from brakes.reproduce.common import Cell, Erratum, PrintedTable, errata_of, errata_table, step
 
-_INPUT = {name: entry["value"] for name, entry in load("vardanyan_2019")["input"].items()}
+PAPER = load("vardanyan_2019")
+INTRODUCTION = (
+    "Torques of two shoes in a drum over the arc of the lining. The printed equations (12) and (15) do not "
+    "give the printed table: what does is an effective arm rho with another constant, and (15) with the "
+    "other sign of mu b1."
+)
+_INPUT = values_alone(PAPER["input"])
 _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])  # -, N, rad
 _R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
 _B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
 PressureZero = Literal["axis", "pivot"]
-_AXIS: PressureZero = _INPUT["pressure_zero"]  # of the pressure in (2)
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # where the pressure in (2) is 0
 _WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 
@@ -40,6 +53,11 @@ class Table1:
     def difference(self) -> float:
         """Largest difference of the torques, the paper's Delta M [N m]."""
         return float(np.max(self.second_torque - self.first_torque))
+
+    @property
+    def total(self) -> np.ndarray:
+        """Sum of both torques [N m]."""
+        return self.first_torque + self.second_torque
 
 
 def table_1(arc: np.ndarray | None = None) -> Table1:
@@ -76,31 +94,25 @@ def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
     return _MU * _P * (_C + _A) * np.asarray(rho) / (_C + _MU * b - _MU * np.asarray(rho))
 
 
-def errata() -> tuple[Erratum, ...]:
-    """The paper's errors, in its order, each with its consequence computed."""
-    return tuple(
-        Erratum(**known, **_CONSEQUENCES[known["name"]]()) for known in load("vardanyan_2019")["erratum"]
-    )
-
-
-def corrected(arc: np.ndarray | float, pressure_zero: PressureZero = _AXIS) -> BrakeResult:
-    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad].
+def corrected(arc: np.ndarray | float | None = None, pressure_zero: PressureZero = _AXIS) -> BrakeResult:
+    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad], or those of Table 1.
 
     The pressure is the paper's (2), which vanishes on the axis, or with "pivot" that of a shoe that turns
     about its pin.
     """
+    arc = table_1().arc if arc is None else arc
     first, second = (_shoe(b, arc, pressure_zero) for b in (_B1, _B2))
     return brake_torque(simplex(first, second), friction=_MU, force=_P)
-
-
-# Consequences ---------------------------------------------------------------------------------------
 
 
 def _shoe(b: float, arc: np.ndarray | float = _LONGEST, pressure_zero: PressureZero = _AXIS) -> Shoe:
     return Shoe(_R, _WIDTH, (_START, _START + arc), (b, -_C), _A, pressure_zero)
 
 
-def _integrals(arc: float = _LONGEST) -> tuple[float, float, float]:
+# Errata -----------------------------------------------------------------------------------------------
+
+
+def _integrals(arc: float) -> tuple[float, float, float]:
     """K, S, C: integrals of sin, sin^2 and sin cos over an arc from alpha1."""
     a1, a2 = _START, _START + arc
     K = np.cos(a1) - np.cos(a2)
@@ -108,98 +120,148 @@ def _integrals(arc: float = _LONGEST) -> tuple[float, float, float]:
     return K, S, (np.sin(a2) ** 2 - np.sin(a1) ** 2) / 2
 
 
-def _entry(quantity: str, unit: str, printed: float, right: float) -> dict[str, str | float]:
-    return {"quantity": quantity, "unit": unit, "printed_value": float(printed), "right_value": float(right)}
+def errata() -> tuple[Erratum, ...]:
+    """The paper's errors, in its order, each with its consequence computed."""
+    short = np.radians(10.0)
+    (K, S, C), (short_K, short_S, short_C) = _integrals(_LONGEST), _integrals(short)
+    table, right, rho = table_1(), corrected(np.array([short, _LONGEST])), float(table_arm(_LONGEST))
+    half, near = np.pi / 2 - _START, _C + _MU * rho
+    sum_17 = 2 * _MU * _P * rho * (_C + _A) * near / (near**2 - (_MU * _B1) ** 2)
+    equal = brake_torque(simplex(_shoe(_B1)), friction=_MU, force=_P).torque
+    locking = shoe_torque(_shoe(_B1), friction=_MU, force=_P).locking_friction
+    arms = 1e3 * float(printed_arm(_LONGEST)), 1e3 * (_R * K / np.hypot(S, C))
+    bounds = float(table_arm(short) / _R), short_K / np.hypot(short_S, short_C)
+    trends = table.total[-1] / table.total[0], right.torque[1] / right.torque[0]
+    of_wrong_shoe = "y component of the force on the leading shoe over A pmax"
+    costs = {
+        "projections": ("x component of the normal force over A pmax", "", K, S),
+        "mixed_shoes": (of_wrong_shoe, "", C + _MU * S, C - _MU * S),
+        "missing_half": ("part of N from friction over A pmax", "", 2 * _MU * C, _MU * C),
+        "quarter": ("T over A pmax, the other terms as printed", "", _MU * S + 2 * C, _MU * S + C),
+        "double_angle": (
+            "N over A pmax on the symmetric arc of 120 deg",
+            "",
+            half + np.sin(_START) / 2,
+            half + np.sin(2 * _START) / 2,
+        ),
+        "ratio": ("T / N of the components of a trailing shoe", "", _MU, (C + _MU * S) / (S - _MU * C)),
+        "effective_arm": ("effective arm", "mm", *arms),
+        "bound": ("effective arm over r at 10 deg", "", *bounds),
+        "trend": ("total torque at 80 deg over that at 10 deg", "", *trends),
+        "sign": ("MT1 with the arm of the table", "N m", _torque(rho, -_B1), _torque(rho, _B1)),
+        "second_shoe": (
+            "torque of the second shoe",
+            "N m",
+            _torque(rho, -_B2),
+            corrected(_LONGEST).shoes[1].torque,
+        ),
+        "sum": ("total torque for b1 = b2 = 20 mm", "N m", sum_17, equal),
+        "self_locking": ("friction at self-locking, b = 20 mm", "", -_C / (rho - _B1), locking),
+    }
+    return errata_of(PAPER, costs)
 
 
-def _projections() -> dict:
-    K, S, _ = _integrals()
-    return _entry("x component of the normal force over A pmax", "", K, S)
+# Report -----------------------------------------------------------------------------------------------
 
 
-def _mixed_shoes() -> dict:
-    _, S, C = _integrals()
-    return _entry("y component of the force on the leading shoe over A pmax", "", C + _MU * S, C - _MU * S)
+def tables() -> dict[str, PrintedTable]:
+    """Table 1 beside ours, and the largest difference of its torques."""
+    printed, ours = PAPER["table_1"], table_1()
+    columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
+    rows: list[tuple[tuple[str, ...], list[Cell]]] = []
+    for i, arc in enumerate(printed["arc"]["value"]):
+        texts = {name: printed[name]["printed"][i] for name in columns}
+        numbers = {name: unit * float(getattr(ours, name)[i]) for name, unit in columns.items()}
+        rows.append(((f"{arc}",), [Cell(text, numbers[name], step(text)) for name, text in texts.items()]))
+    heads = ("rho [mm]", "MT1 [N m]", "MT2 [N m]")
+    text = printed["difference"]["printed"]
+    largest = [Cell(text, ours.difference, step(text))]
+    return {
+        "table_1": PrintedTable(
+            "Table 1: effective arm and torques, as printed", ("arc [deg]",), heads, rows
+        ),
+        "difference": PrintedTable("", (), ("largest MT2 - MT1 [N m]",), [((), largest)]),
+    }
 
 
-def _missing_half() -> dict:
-    _, _, C = _integrals()
-    return _entry("part of N from friction over A pmax", "", 2 * _MU * C, _MU * C)
+def shown() -> Iterator[Group]:
+    """Make Table 1, the corrected table, and the table of errata."""
+    yield tables()["table_1"].shown()
+    printed, right = table_1(), corrected()
+    columns = (
+        1e3 * right.shoes[0].effective_arm,
+        right.shoes[0].torque,
+        right.shoes[1].torque,
+        right.torque,
+        printed.total,
+        printed.total / right.torque,
+    )
+    rows = zip(np.degrees(printed.arc), *columns, strict=True)
+    lines = ([f"{arc:.0f}", *(f"{number:.3f}" for number in numbers)] for arc, *numbers in rows)
+    heads = ("arc [deg]", "rho", "leading", "trailing", "total", "printed total", "printed / right")
+    title = "The same brake by the corrected mechanics, with the paper's pressure: rho [mm], torques [N m]"
+    yield table(title, heads, lines, ())
+    heading = (
+        "What is wrong in the paper, and what follows at its longest arc (80 deg)\n"
+        "A pmax: width times radius times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
+        "n = c S - b C and d = r K - b S - c C: arms of the normal and of the friction forces about the pin"
+    )
+    yield errata_table(heading, errata())
 
 
-def _quarter() -> dict:
-    _, S, C = _integrals()
-    return _entry("T over A pmax, the other terms as printed", "", _MU * S + 2 * C, _MU * S + C)
-
-
-def _double_angle() -> dict:
-    half = np.pi / 2 - _START
-    printed, right = half + np.sin(_START) / 2, half + np.sin(2 * _START) / 2
-    return _entry("N over A pmax on the symmetric arc of 120 deg", "", printed, right)
-
-
-def _ratio() -> dict:
-    _, S, C = _integrals()
-    return _entry("T / N of the components of a trailing shoe", "", _MU, (C + _MU * S) / (S - _MU * C))
-
-
-def _effective_arm() -> dict:
-    K, S, C = _integrals()
-    right = _R * K / np.hypot(S, C)
-    return _entry("effective arm", "mm", 1e3 * float(printed_arm(_LONGEST)), 1e3 * right)
-
-
-def _bound() -> dict:
-    K, S, C = _integrals(np.radians(10.0))
-    printed = table_arm(np.radians(10.0)) / _R
-    return _entry("effective arm over r at 10 deg", "", float(printed), K / np.hypot(S, C))
-
-
-def _trend() -> dict:
-    table = table_1()
-    total = table.first_torque + table.second_torque
-    right = corrected(np.radians([10.0, 80.0])).torque
-    return _entry("total torque at 80 deg over that at 10 deg", "", total[-1] / total[0], right[1] / right[0])
-
-
-def _sign() -> dict:
-    rho = table_arm(_LONGEST)
-    return _entry("MT1 with the arm of the table", "N m", float(_torque(rho, -_B1)), float(_torque(rho, _B1)))
-
-
-def _second_shoe() -> dict:
-    rho = table_arm(_LONGEST)
-    return _entry(
-        "torque of the second shoe", "N m", float(_torque(rho, -_B2)), corrected(_LONGEST).shoes[1].torque
+def summary() -> Iterator[str]:
+    """What follows for a brake engineer, a paragraph each."""
+    printed, right, pivot = table_1(), corrected(), corrected(pressure_zero="pivot")
+    short, long = (float(printed.total[i] / right.torque[i]) for i in (0, -1))
+    yield (
+        f"Do not use Table 1. Its total torque is {100 * short:.0f} % of the right one at 10 deg and "
+        f"{100 * long:.0f} % at 80 deg; it rises with the arc, where at a given force the right one falls. "
+        "The paper's second shoe is self-energising as well; in fact it trails, and gives "
+        f"{float(right.shoes[1].torque[-1]):.3g} in place of {float(printed.second_torque[-1]):.4g} N m. The "
+        f"leading shoe locks at a friction of {float(right.shoes[0].locking_friction[-1]):.3g}; the paper's "
+        "condition for that, (18), has no root."
+    )
+    pairs = zip(right.shoes, pivot.shoes, strict=True)
+    more = max(float(np.max(axis.c_star / turning.c_star)) for axis, turning in pairs) - 1
+    yield (
+        "The right numbers here keep the paper's pressure (2), which vanishes on the axis. That of a shoe "
+        "which turns about its pin vanishes on the line to the pin. The axis overstates the C* of a shoe by "
+        f"up to {100 * more:.1f} %; the total at 80 deg is {pivot.torque[-1]:.4g} in place of "
+        f"{right.torque[-1]:.4g} N m. `brakes drum` takes the pin unless the file says otherwise."
     )
 
 
-def _sum() -> dict:
-    rho = float(table_arm(_LONGEST))
-    near = _C + _MU * rho
-    printed = 2 * _MU * _P * rho * (_C + _A) * near / (near**2 - (_MU * _B1) ** 2)
-    brake = brake_torque(simplex(_shoe(_B1)), friction=_MU, force=_P)
-    return _entry("total torque for b1 = b2 = 20 mm", "N m", printed, float(brake.torque))
+def notes() -> Iterator[str]:
+    """Remarks below the tables."""
+    (last,) = tables()["difference"].cells
+    yield f"Largest MT2 - MT1: printed {last.printed}, ours {last.ours:.3f} N m; {last.verdict}."
 
 
-def _self_locking() -> dict:
-    rho = float(table_arm(_LONGEST))
-    right = shoe_torque(_shoe(_B1), friction=_MU, force=_P).locking_friction
-    return _entry("friction at self-locking, b = 20 mm", "", -_C / (rho - _B1), float(right))
+def _over_arc() -> Figure:
+    """Draw the torques over the arc, as printed and corrected."""
+    printed, right = table_1(), corrected()
+    figure = Figure(figsize=(7.5, 4.8), layout="constrained")
+    ax = figure.subplots()
+    lines = (
+        ("corrected: total", right.torque, COLOURS[6], "-"),
+        ("leading shoe", right.shoes[0].torque, COLOURS[0], "-"),
+        ("trailing shoe", right.shoes[1].torque, COLOURS[2], "-"),
+        ("as printed: total", printed.total, COLOURS[6], "--o"),
+        ("MT2", printed.second_torque, COLOURS[2], "--o"),
+        ("MT1", printed.first_torque, COLOURS[0], "--o"),
+    )
+    for label, values, colour, style in lines:
+        ax.plot(np.degrees(printed.arc), values, style, color=colour, ms=4, lw=1.7, label=label)
+    grid(ax)
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("arc of the lining [deg]")
+    ax.set_ylabel("torque at 1000 N on each shoe [N m]")
+    ax.legend(fontsize=9, ncols=2, loc="upper right")
+    ax.set_title("Torque over the arc: Table 1 as printed, and corrected", fontsize=11)
+    return figure
 
 
-_CONSEQUENCES: dict[str, Callable[[], dict]] = {
-    "projections": _projections,
-    "mixed_shoes": _mixed_shoes,
-    "missing_half": _missing_half,
-    "quarter": _quarter,
-    "double_angle": _double_angle,
-    "ratio": _ratio,
-    "effective_arm": _effective_arm,
-    "bound": _bound,
-    "trend": _trend,
-    "sign": _sign,
-    "second_shoe": _second_shoe,
-    "sum": _sum,
-    "self_locking": _self_locking,
+PICTURES = {
+    "drum_forces": lambda: brake_figure(corrected(float(table_1().arc[-1]))),
+    "drum_torque_over_arc": _over_arc,
 }

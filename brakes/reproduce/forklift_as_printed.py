@@ -21,16 +21,15 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.results.published import values_alone
 from brakes.answers.forklift import ForkliftAnswer, solve_stages
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.forklift import BENDIX_12_5, InternalForces, Stop, StopConditions, Truck, internal_forces, stop
 from brakes.published import load
-from brakes.published.errata import Erratum
+from brakes.reproduce.common import Erratum, errata_of
 
-_TRUCK = ("empty_mass", "empty_cg", "load_mass", "load_cg", "front_wheel_radius", "wheelbase")
-_ROAD = ("slope", "friction", "reaction_time", "rise_time")
-_BRAKE = ("torque", "piston_force", "clearance")
-
+VEHICLE, BRAKE = ("table_2", "table_3", "table_4"), ("table_5", "table_6", "table_7")
+FORCES = ("A", "B", "Q", "P_L")
 Tables = dict[tuple[str, str], np.ndarray]  # by table and quantity, e.g. ("table_4", "torque")
 
 
@@ -138,15 +137,42 @@ def tables() -> Tables:
         Tables 5-7, rows and columns as printed.
     """
     computed = _vehicle_tables(stop_as_printed)
-    for name, varied in (("table_5", "torque"), ("table_6", "piston_force"), ("table_7", "clearance")):
-        forces = _forces(varied, _column(name, varied))
-        computed |= {(name, quantity): getattr(forces, quantity) for quantity in ("A", "B", "Q", "P_L")}
+    for name in BRAKE:
+        forces = base_forces(**inputs_of(name))
+        computed |= {(name, force): getattr(forces, force) for force in FORCES}
     return computed
 
 
 def corrected_tables() -> Tables:
     """Compute Tables 2-4 by the right mechanics, in SI units; the distance is inf without a stop."""
     return _vehicle_tables(stop)
+
+
+def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
+    """Compute Tables 2-4 by a way to compute a stop."""
+    computed: Tables = {}
+    for name in VEHICLE:
+        (down, rows), (across, columns) = inputs_of(name).items()
+        found = solve(*base_case(**{down: rows[:, None], across: columns}))
+        numbers = {
+            "distance": found.distance,
+            "acceleration": found.acceleration,
+            "torque": found.torque_per_brake,
+        }
+        computed |= {(name, quantity): numbers[quantity] for quantity in quantities_of(name)}
+    return computed
+
+
+def inputs_of(name: str) -> dict[str, np.ndarray]:
+    """Values of the inputs that vary in a table, rows first, by their keys in the published file."""
+    entries = load("yoo_1997")[name].items()
+    varied = {key: entry for key, entry in entries if key != "padded" and "value" in entry}
+    return {key: np.array(entry["value"]) for key, entry in varied.items()}
+
+
+def quantities_of(name: str) -> tuple[str, ...]:
+    """Keys of the printed quantities of a table in the published file."""
+    return tuple(key for key, entry in load("yoo_1997")[name].items() if "printed" in entry)
 
 
 def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
@@ -157,98 +183,44 @@ def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
     **varied : float or ndarray
         Inputs that differ from the paper's Table 1, in its units: the speed in km/h.
     """
-    paper = load("yoo_1997")
-    case = {name: entry["value"] for name, entry in paper["input"].items()} | varied
-    return Truck(**{name: case[name] for name in _TRUCK}), StopConditions(
-        **{name: case[name] for name in _ROAD},
+    paper = values_alone(load("yoo_1997"))
+    case = paper["input"] | varied
+    truck = ("empty_mass", "empty_cg", "load_mass", "load_cg", "front_wheel_radius", "wheelbase")
+    road = ("slope", "friction", "reaction_time", "rise_time")
+    return Truck(**{name: case[name] for name in truck}), StopConditions(
+        **{name: case[name] for name in road},
         speed=case["speed"] / 3.6,  # printed in km/h
-        gravity=paper["reproduction"]["gravity"]["value"],
+        gravity=paper["reproduction"]["gravity"],
+    )
+
+
+def base_forces(**varied: Numbers) -> InternalForces:
+    """Solve the forces at the base case of Tables 5-7, or with some of its inputs varied."""
+    case = values_alone(load("yoo_1997")["input"]) | varied
+    return internal_forces(
+        BENDIX_12_5, **{name: case[name] for name in ("torque", "piston_force", "clearance")}
     )
 
 
 def errata() -> tuple[Erratum, ...]:
     """The paper's errors, each with its consequence at the base case computed."""
-    entries = load("yoo_1997")["erratum"]
-    return tuple(Erratum(**known, **_CONSEQUENCES.get(known["name"], dict)()) for known in entries)
-
-
-def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
-    """Compute Tables 2-4 by a way to compute a stop."""
-    speeds, loads, trucks = (
-        solve(*base_case(**{down: _column(name, down)[:, None], across: _column(name, across)}))
-        for name, down, across in (
-            ("table_2", "friction", "speed"),
-            ("table_3", "slope", "load_mass"),
-            ("table_4", "empty_mass", "front_wheel_radius"),
-        )
-    )
-    return {
-        ("table_2", "distance"): speeds.distance,
-        ("table_3", "distance"): loads.distance,
-        ("table_3", "acceleration"): loads.acceleration,
-        ("table_4", "distance"): trucks.distance,
-        ("table_4", "torque"): trucks.torque_per_brake,
-    }
-
-
-def _forces(varied: str, values: np.ndarray) -> InternalForces:
-    base = {name: load("yoo_1997")["input"][name]["value"] for name in _BRAKE}
-    return internal_forces(BENDIX_12_5, **(base | {varied: values}))
-
-
-def _column(name: str, key: str) -> np.ndarray:
-    return np.array(load("yoo_1997")[name][key]["value"])
-
-
-# Consequences ---------------------------------------------------------------------------------------
-
-
-def _entry(quantity: str, unit: str, printed: Numbers, right: Numbers) -> dict[str, Any]:
-    return {"quantity": quantity, "unit": unit, "printed_value": float(printed), "right_value": float(right)}
-
-
-def _torque_without_reaction() -> dict[str, Any]:
-    """With moments about the axle that leave out the brake torque: the arm is then y_cg."""
-    right = stop(*base_case())
-    t, mu = right.truck, right.conditions.friction
-    y, r1 = t.cg[1], t.front_wheel_radius
-    ratio = (t.wheelbase + mu * (y + r1)) / (t.wheelbase + mu * y)
-    return _entry("torque of one brake", "N m", right.torque_per_brake * ratio, right.torque_per_brake)
-
-
-def _twice() -> dict[str, Any]:
+    paper = load("yoo_1997")
     printed, right = stop_as_printed(*base_case()), stop(*base_case())
-    return _entry("torque of one brake", "N m", printed.torque_per_brake, right.torque_per_brake)
-
-
-def _factor() -> dict[str, Any]:
-    right = stop(*base_case())
-    missing = 1 - load("yoo_1997")["reproduction"]["factor"]["value"]
-    pull = right.conditions.gravity * np.sin(right.conditions.slope)
-    return _entry("acceleration", "m/s2", right.acceleration - missing * pull, right.acceleration)
-
-
-def _unladen() -> dict[str, Any]:
-    printed, right = (solve(*base_case(load_mass=0.0)) for solve in (stop_as_printed, stop))
-    return _entry("acceleration unladen", "m/s2", printed.acceleration, right.acceleration)
-
-
-def _speed_lost() -> dict[str, Any]:
-    right = stop(*base_case())
-    longer = printed_distance(right.acceleration, right.conditions)
-    return _entry("distance by the corrected acceleration", "m", longer, right.distance)
-
-
-def _axle() -> dict[str, Any]:
-    torque = stop(*base_case()).torque_per_brake
-    return _entry("torque of one brake", "N m", 2 * torque, torque)
-
-
-_CONSEQUENCES: dict[str, Callable[[], dict[str, Any]]] = {
-    "body_moment": _torque_without_reaction,
-    "twice": _twice,
-    "factor": _factor,
-    "unladen": _unladen,
-    "speed_lost": _speed_lost,
-    "axle": _axle,
-}
+    unladen = [solve(*base_case(load_mass=0.0)).acceleration for solve in (stop_as_printed, stop)]
+    truck, conditions, torque = right.truck, right.conditions, right.torque_per_brake
+    mu, y, r1 = conditions.friction, truck.cg[1], truck.front_wheel_radius
+    # With moments about the axle that leave out the brake torque the arm is y_cg.
+    ratio = (truck.wheelbase + mu * (y + r1)) / (truck.wheelbase + mu * y)
+    missing = 1 - paper["reproduction"]["factor"]["value"]
+    slower = right.acceleration - missing * (conditions.gravity * np.sin(conditions.slope))
+    longer = printed_distance(right.acceleration, conditions)
+    one = "torque of one brake", "N m"
+    costs = {
+        "body_moment": (*one, torque * ratio, torque),
+        "twice": (*one, printed.torque_per_brake, torque),
+        "factor": ("acceleration", "m/s2", slower, right.acceleration),
+        "unladen": ("acceleration unladen", "m/s2", *unladen),
+        "speed_lost": ("distance by the corrected acceleration", "m", longer, right.distance),
+        "axle": (*one, 2 * torque, torque),
+    }
+    return errata_of(paper, costs)

@@ -53,7 +53,7 @@ class NewtonResult(Result):
     condition_number: float
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Number of steps with the residual, and how it ended; see `Result.headline`."""
         yield f"{counted(self.iterations, 'step')}, residual {number(self.residual)}"
         yield self.message
 
@@ -62,11 +62,8 @@ class NewtonResult(Result):
         """How it ended, in one sentence."""
         if not self.converged:
             return f"no convergence within {self.iterations} steps: try another start, or the reduction"
-        return (
-            "converged"
-            if self.physical
-            else "converged to a mirror image: friction against the drum's motion"
-        )
+        mirrored = "" if self.physical else " to a mirror image: friction against the drum's motion"
+        return f"converged{mirrored}"
 
 
 def _jacobian(levers: Levers, x: np.ndarray) -> np.ndarray:
@@ -142,35 +139,25 @@ def newton_raphson(
     k, size = 0, residual(x)
     with np.errstate(all="ignore"):
         while k < steps and _TOLERANCE < size < _DIVERGED:
-            step = _newton_step(_jacobian(used, x), equations(x))
-            if step is None:
+            try:
+                step = np.linalg.solve(_jacobian(used, x), -equations(x))
+            except np.linalg.LinAlgError:
+                break
+            if not np.isfinite(step).all():
                 break
             cut = 1.0
             while damped and cut > 1e-6 and not residual(x + cut * step) < size:
                 cut /= 2
             x, k = x + cut * step, k + 1
             size = residual(x)
-        return _ended(x * force, _jacobian(used, x), k, size)
-
-
-def _newton_step(jacobian: np.ndarray, equations: np.ndarray) -> np.ndarray | None:
-    """Solve for the next step; None where the Jacobian is singular."""
-    try:
-        step = np.linalg.solve(jacobian, -equations)
-    except np.linalg.LinAlgError:
-        return None
-    return step if np.isfinite(step).all() else None
-
-
-def _ended(unknowns: np.ndarray, jacobian: np.ndarray, iterations: int, residual: float) -> NewtonResult:
-    Ax, Ay, Bx, By, Cx, Cy, Dx, Dy = unknowns[:8]
-    along = Ax * By - Ay * Bx < 0 and Cx * Dy - Cy * Dx < 0
-    converged = residual <= _TOLERANCE
+        jacobian, forces = _jacobian(used, x), x * force
+    Ax, Ay, Bx, By, Cx, Cy, Dx, Dy = forces[:8]
+    converged = bool(size <= _TOLERANCE)
     return NewtonResult(
-        unknowns=unknowns,
-        converged=bool(converged),
-        physical=bool(converged and along),
-        iterations=iterations,
-        residual=residual,
+        unknowns=forces,
+        converged=converged,
+        physical=bool(converged and Ax * By - Ay * Bx < 0 and Cx * Dy - Cy * Dx < 0),
+        iterations=k,
+        residual=size,
         condition_number=float(np.linalg.cond(jacobian)) if np.isfinite(jacobian).all() else np.inf,
     )

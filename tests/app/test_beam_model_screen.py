@@ -10,12 +10,12 @@ from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.common.screens.document_report import report_of
-from beamdyn.common.screens.drag_slider import DragSlider
+from beamdyn.common.screens.computations import SOON
+from beamdyn.common.screens.controls import DragSlider
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screens import Program
-from beamdyn.common.screens.under_way import SOON
+from beamdyn.common.screens.tasks import report_of
 from beamdyn.scene.physics import AUTO
 from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE

@@ -7,19 +7,18 @@ import pytest
 
 from beamdyn import critical_speed, natural_modes, resonance_speeds, simulate
 from beamdyn.app.frequencies import FREQUENCIES
-from beamdyn.app.left_out import bar, left_out_table
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.program import SCENE
 from beamdyn.app.rotor import ROTOR
+from beamdyn.app.scene_screen import bar, left_out_table
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.drawing.shapes import Outline
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.screens.chart_options import options_of, thinned
-from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.form_entries import as_on_form, tables_of
 from beamdyn.common.screens.handles import draw_sheet
-from beamdyn.common.screens.input_words import as_on_form
 from beamdyn.common.screens.open_document import OpenDocument
 
 pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
@@ -344,7 +343,7 @@ def test_a_deflection_past_linear_theory_does_not_stand_first_without_saying_so(
         work = OpenDocument(SCENE)
         work.put("options.top_speed", top)
         assert work.solve(STEADY_STATE), work.mistakes
-        words.append(STEADY_STATE.headline(work.answered[STEADY_STATE.name].answer)[0].words)
+        words.append(next(STEADY_STATE.headline(work.answered[STEADY_STATE.name].answer)).words)
     assert words == ["largest deflection of the tip", "largest deflection of the tip, past linear theory"]
 
 

@@ -9,9 +9,9 @@ from beamdyn import frequency_locus, load_scene
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.common.screens.document_report import drawn
-from beamdyn.common.screens.drag_slider import DragSlider
+from beamdyn.common.screens.controls import DragSlider
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.tasks import drawn
 from beamdyn.scene.physics import Physics
 
 FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20}  # of an outline, of modes, ..

@@ -12,13 +12,11 @@ from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.rendering import csv_text, html, png, svg
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.screens.document_report import drawn, report_of
 from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, tables_of, toml_of
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.tasks import drawn, report_of
 from brakes.app.bases import base
-from brakes.app.caliper import CALIPER
-from brakes.app.forklift import FORCES, FORKLIFT, KINEMATICS, VEHICLE
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER, FORCES, FORKLIFT, KINEMATICS, VEHICLE
 from brakes.calipers import NAMED
 from brakes.config.forklift import parse_forklift
 

@@ -9,8 +9,7 @@ import pytest
 
 from beamdyn.common.drawing.shapes import Symbol
 from beamdyn.common.screens.open_document import OpenDocument
-from brakes.app.caliper import MECHANISM
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, MECHANISM
 
 BLOCK_BRAKE = (Path(__file__).parents[2] / "examples" / "block_brake.toml").read_text(encoding="utf-8")
 SCREEN = MECHANISM.screens[0]

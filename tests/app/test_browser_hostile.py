@@ -63,7 +63,7 @@ def test_script_or_path_as_the_name_of_a_part_stays_text(page, name):
 
 
 def test_link_to_another_kind_of_file_is_refused(opened, address):
-    from beamdyn.common.screens.design_link import LinkedDesign
+    from beamdyn.common.screens.browser_memory import LinkedDesign
 
     for kind, text in ((PATH, ""), (SCRIPT, SCRIPT), ("forklift", SCRIPT)):
         fragment = LinkedDesign(kind, text, {}).as_fragment()

@@ -12,27 +12,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.app.bent_beam import bent_beam
+from beamdyn.app.drawings import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.browser_memory import named_designs, read_typed, refused_name
+from beamdyn.common.screens.browser_memory import LinkedDesign, named_designs, read_typed, refused_name
 from beamdyn.common.screens.comparison import (
     Difference,
-    OtherDesign,
     differences_html,
     headline_html,
     input_differences,
     result_differences,
     with_ghost,
 )
-from beamdyn.common.screens.comparison_panel import headline_of
-from beamdyn.common.screens.design_link import LinkedDesign
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.handles import draw_sheet
-from beamdyn.common.screens.history import History
-from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.open_document import History, OpenDocument, OtherDesign
+from beamdyn.common.screens.panels import headline_of
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]
@@ -182,7 +179,7 @@ def compared():
     changed = work.entries | {"stop.speed": "30 km/h", "stop.gravity": "9.81 m/s2"}
     work.compare(OtherDesign("fast", changed))
     assert work.solve(SCREEN)
-    work.keep_other(SCREEN, tasks.solve(VEHICLE, SCREEN, work.other.entries))
+    work.compared[SCREEN.name] = tasks.solve(VEHICLE, SCREEN, work.other.entries)
     return work
 
 
@@ -255,8 +252,9 @@ def test_other_design_is_solved_once_and_again_for_another(compared):
     assert not compared.wants_other(SCREEN)
     work = OpenDocument(VEHICLE)
     work.compare(OtherDesign("broken", work.entries | {"stop.speed": "fast"}))
-    work.keep_other(SCREEN, tasks.solve(VEHICLE, SCREEN, work.other.entries))
-    assert "stop.speed" in work.not_compared[SCREEN.name]
+    work.compared[SCREEN.name] = tasks.solve(VEHICLE, SCREEN, work.other.entries)
+    assert work.other_answer(SCREEN) is None
+    assert "stop.speed" in work.compared[SCREEN.name]
     work.compare(None)
     assert not work.wants_other(SCREEN)
 
@@ -296,7 +294,7 @@ def test_each_screen_has_a_headline(document):
     work = OpenDocument(document)
     for screen in document.screens:
         assert work.solve(screen), work.mistakes
-        found = screen.headline(work.answered[screen.name].answer)
+        found = [*screen.headline(work.answered[screen.name].answer)]
         assert len(found) <= 4 and (found or screen.name == "Rotor")  # which draws the inputs
         assert all(result.words and result.value for result in found)
 
@@ -309,7 +307,7 @@ def test_the_page_shows_the_headline_that_comes_with_the_answer():
 
     work = OpenDocument(SCENE)
     (screen,) = (screen for screen in SCENE.screens if screen.name == "Mode shapes")
-    held, full = (task(SCENE, screen, work.entries) for task in (tasks.glance, tasks.solve))
+    held, full = (task(SCENE, screen, work.entries) for task in (tasks.solve_for_drawing, tasks.solve))
     shown = replace(screen, headline=fail, quick_headline=fail)
     assert "model error at most" in headline_of(work, shown, full)
     assert "first frequency" in (quick := headline_of(work, shown, held)) and "model error" not in quick

@@ -14,7 +14,7 @@ from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
 from tests.app.serving import PATIENCE
 
-DRAWN = {tasks.folded, tasks.drawing_file, tasks.sweep_picture, tasks.sweep_file, tasks.report}
+DRAWN = {tasks.folded, tasks.drawing_file, tasks.sweep_file, tasks.report}
 
 
 class Holding:

@@ -14,9 +14,7 @@ from beamdyn.common.screens.handles import Sheet, changed_texts, describe_place,
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Screen
-from brakes.app.caliper import CALIPER
-from brakes.app.forklift import FORKLIFT, KINEMATICS, VEHICLE
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, CALIPER, FORKLIFT, KINEMATICS, VEHICLE
 from brakes.calipers import NAMED
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -353,7 +351,7 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
     async def body(page, handles):
         label = "pin of the shoe"
         x, y = handles.place(label)
-        for way in ("glance", "solve"):  # while it is held, and when it is let go
+        for way in ("solve_for_drawing", "solve"):  # while it is held, and when it is let go
             kept = getattr(tasks, way)
             monkeypatch.setattr(
                 tasks, way, lambda *given, kept=kept, way=way: solved.append(way) or kept(*given)
@@ -367,7 +365,10 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
             await asyncio.sleep(0.1)
         await asyncio.sleep(0.1)
         assert handles.place(label)[0] == pytest.approx(x + 0.03, abs=5e-3)  # the picture is fitted anew
-        assert solved == ["glance", "solve"]  # the first place and the last, each once for two fields
+        assert solved == [
+            "solve_for_drawing",
+            "solve",
+        ]  # the first place and the last, each once for two fields
 
     on_page(simulate, fields, "Drum brake", body)
 

@@ -18,7 +18,7 @@ def test_each_class_of_an_element_has_a_rule():
     static = Path(nicegui.__file__).parent / "static"
     sheets = [STYLE, *((static / name).read_text(encoding="utf-8") for name in TOOLKIT)]
     ruled = set(re.findall(r"\.([a-zA-Z][\w-]*)", "".join(sheets)))
-    sources = [file for package in ("beamdyn", "brakes") for file in (ROOT / package).rglob("app/*.py")]
+    sources = [file for package in ("beamdyn", "brakes") for file in (ROOT / package).rglob("screens/*.py")]
     used = re.findall(r'\.classes\(\s*(?:add=)?f?"([^"]*)"', "".join(f.read_text("utf-8") for f in sources))
     assert len(used) > 50
     assert {name for names in used for name in names.split()} - ruled == NAMES

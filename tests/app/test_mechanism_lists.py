@@ -8,10 +8,9 @@ import pytest
 
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.lists import gone_with
-from beamdyn.common.screens.open_document import OpenDocument, OpenEntries
-from brakes.app.caliper import MECHANISM
+from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.mechanism_lists import add, advice, covers, empty, groups, put, remove
-from brakes.app.program import BRAKES
+from brakes.app.program import BRAKES, MECHANISM
 
 SCREEN = MECHANISM.screens[0]
 CLAMP = (Path(__file__).parents[2] / "examples" / "calipers" / "toggle-clamp.toml").read_text("utf-8")
@@ -287,8 +286,8 @@ def test_a_change_of_a_list_is_solved_once(simulate, fields, monkeypatch):
         page = fields(await another())
         page.go("Mechanism")
         solved = []
-        of_screen = OpenEntries.solve
-        monkeypatch.setattr(OpenEntries, "solve", lambda self: solved.append(1) or of_screen(self))
+        of_screen = OpenDocument.attempt
+        monkeypatch.setattr(OpenDocument, "attempt", lambda *given: solved.append(1) or of_screen(*given))
         page.leave("points.C.x", "21")
         assert solved == [1]
 

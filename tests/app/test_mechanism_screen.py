@@ -7,11 +7,10 @@ import pytest
 
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.rendering import html, svg
-from beamdyn.common.screens.document_report import drawn, inputs_html
 from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of
 from beamdyn.common.screens.open_document import OpenDocument
-from brakes.app.caliper import CALIPER, MECHANISM
-from brakes.app.program import BRAKES
+from beamdyn.common.screens.tasks import drawn, inputs_html
+from brakes.app.program import BRAKES, CALIPER, MECHANISM
 from brakes.cli import main
 from brakes.config.mechanism import parse_mechanism
 

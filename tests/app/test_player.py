@@ -8,8 +8,8 @@ import pytest
 pytest.importorskip("nicegui")
 
 from beamdyn.app.transient import TRANSIENT
-from beamdyn.common.screens.courses import BackAndForth, Onward
 from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.screens import Slider
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER
@@ -19,28 +19,32 @@ PAINTED = re.compile(r".*requestAnimationFrame", re.DOTALL)
 
 def test_time_goes_on_and_strokes_go_back():
     """A transient that ran backwards would show a motion that there is not."""
-    assert isinstance(TRANSIENT.slider.course(1.0, 20.0), Onward)
+    assert TRANSIENT.slider.onward
     for screen in (screen for document in BRAKES.documents for screen in document.screens if screen.slider):
-        assert isinstance(screen.slider.course(1.0, 2.5), BackAndForth)
+        assert not screen.slider.onward
 
 
-@pytest.mark.parametrize("course", [BackAndForth(2.0, 3.0), Onward(7.0, 4.0)])
+def slider(last, seconds, onward):
+    return Slider("", ("",) * (last + 1), seconds=seconds, onward=onward)
+
+
+@pytest.mark.parametrize("course", [slider(2, 3.0, False), slider(7, 4.0, True)])
 def test_a_course_starts_at_zero_stays_within_its_ends_and_returns(course):
     places = [course.place(0.01 * i) for i in range(1300)]
     assert places[0] == 0 and min(places) >= 0 and max(places) <= course.last
     assert max(places) > 0.99 * course.last
-    back = 2 * course.seconds if isinstance(course, BackAndForth) else course.seconds
+    back = 2 * course.seconds if not course.onward else course.seconds
     assert course.place(back + 0.7) == pytest.approx(course.place(0.7), rel=1e-12)
 
 
-@pytest.mark.parametrize("course", [BackAndForth(2.0), Onward(2.0)])
+@pytest.mark.parametrize("course", [slider(2, 2.5, False), slider(2, 10.0, True)])
 @pytest.mark.parametrize("place", [0.0, 0.3, 1.0, 1.9])
 def test_playing_goes_on_from_the_place_of_the_slider(course, place):
     assert course.place(course.elapsed(place)) == pytest.approx(place, abs=1e-12)
 
 
 def test_back_and_forth_starts_backwards_at_its_end():
-    course = BackAndForth(1.0)
+    course = slider(1, 2.5, False)
     assert course.place(course.elapsed(1.0) + 0.3) < 1.0
 
 

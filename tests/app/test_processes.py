@@ -11,11 +11,11 @@ from concurrent.futures import BrokenExecutor
 import pytest
 
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.open_document import Answered, OpenDocument
+from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.processes import Processes, Share, TakesTooLong
-from beamdyn.common.screens.refusals import outcome_of
+from beamdyn.common.screens.tasks import outcome_of
 from brakes.app.program import BRAKES
-from brakes.cli.interactive import make_program
+from brakes.cli.commands import make_program
 from tests.app.serving import PATIENCE, ROOT
 
 FORKLIFT = BRAKES.documents[0]
@@ -83,7 +83,7 @@ def test_answers_of_all_screens_are_those_made_here():
         for document, screen in ALL:
             work = OpenDocument(document)
             made = await processes.submit(tasks.solve, document, screen, work.entries)
-            assert isinstance(made, Answered), made
+            assert isinstance(made, ShownAnswer), made
             assert work.solve(screen)
             here = work.answered[screen.name]
             assert made.entries == here.entries and made.notes == here.notes

@@ -7,8 +7,7 @@ import pytest
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.varied_inputs import numbers
-from beamdyn.common.screens.form_entries import in_unit, units_of
-from beamdyn.common.screens.reading import is_bare, read_entry, unit_of, usual_unit
+from beamdyn.common.screens.form_entries import in_unit, is_bare, read_entry, unit_of, units_of, usual_unit
 from brakes.app.program import BRAKES
 
 DOCUMENTS = {d.name: d for d in (*BRAKES.documents, *BEAMDYN.documents)}
@@ -77,9 +76,9 @@ def test_words_and_choices_are_left_alone():
 def test_reading_is_stable_for_every_number(document):
     for one in numbers(document.inputs(document.base_entries)):
         if one.path in document.base_entries:
-            text = read_entry("0,5", one, usual_unit(one)).text
+            text = read_entry("0,5", one, usual_unit(one.quantity.unit)).text
             assert read_entry(text, one, "another").text == text
-            assert unit_of(text, one) == usual_unit(one)
+            assert unit_of(text, one) == usual_unit(one.quantity.unit)
 
 
 def test_bare_numbers():

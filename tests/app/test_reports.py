@@ -12,12 +12,10 @@ from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.screens import tasks
-from beamdyn.common.screens.document_report import report_of
-from beamdyn.common.screens.folded_parts import FoldedDrawings
-from beamdyn.common.screens.input_words import NOT_GIVEN, default_words, label
+from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import OpenDocument
-from brakes.app.caliper import CALIPER
-from brakes.app.program import BRAKES
+from beamdyn.common.screens.tasks import report_of
+from brakes.app.program import BRAKES, CALIPER
 
 DRUM = next(document for document in BRAKES.documents if document.name == "drum")
 DOCUMENTS = [*BRAKES.documents, *BEAMDYN.documents]
@@ -41,7 +39,7 @@ def test_report_has_inputs_results_drawings_and_version(document):
     page = report_of(work, "Mine")
     more = [part for screen in document.screens for part in screen.more]
     assert all(f"<h3>{part.title}</h3>" in page for part in more)
-    drawings = len(document.screens) + sum(isinstance(part, FoldedDrawings) for part in more)
+    drawings = len(document.screens) + sum(part.title == "Free bodies" for part in more)
     assert page.count("data:image/svg+xml;base64,") == drawings
     assert inputs(page) == tomllib.loads(work.text()) == tomllib.loads(document.base)
     assert f"beamdyn {__version__}" in page

@@ -19,10 +19,8 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screens import Program
-from beamdyn.common.screens.sweep_charts import sweep_charts
-from beamdyn.common.screens.sweep_panel import around
-from brakes.app.caliper import CALIPER, MECHANISM
-from brakes.app.program import BRAKES
+from beamdyn.common.screens.sweep_panel import around, sweep_charts
+from brakes.app.program import BRAKES, CALIPER, MECHANISM
 from brakes.cli import main
 from tests.app.serving import PATIENCE
 

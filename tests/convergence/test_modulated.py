@@ -12,8 +12,8 @@ from beamdyn.equations.fields.field import Term
 from beamdyn.modes.modal.model import Model
 from beamdyn.transient import weakly_modulated
 from beamdyn.transient.gauss import propagate
+from beamdyn.transient.integration import integrate
 from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
-from beamdyn.transient.step_size import integrate
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 from benchmarks.cases.scenes import ROLLING

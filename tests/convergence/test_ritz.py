@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from benchmarks.cases.uniform_blade import UNIFORM_BLADE, computed_eigenvalues, exact_eigenvalues
 
 

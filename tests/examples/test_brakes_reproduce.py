@@ -11,7 +11,7 @@ from beamdyn.common.edge.program import DONE, NO_ANSWER
 from brakes import reproduce
 from brakes.cli import main
 from brakes.published import load
-from brakes.reproduce import caliper, drum, drum_as_printed, forklift
+from brakes.reproduce import drum_as_printed, eebrake, forklift_tables
 from brakes.reproduce import forklift_as_printed as as_printed
 from brakes.reproduce.common import Cell, step
 
@@ -30,18 +30,19 @@ def printed(name: str) -> list[str]:
 
 
 def test_every_printed_number_is_compared() -> None:
-    rows = [row for table in forklift.rows().values() for row in table]
-    assert sorted(c.printed for row in rows for c in row.cells) == printed("yoo_1997")
-    assert sorted(c.printed for row in drum.rows() for c in row.cells) == printed("vardanyan_2019")
+    found = [cell for table in forklift_tables.tables().values() for cell in table.cells]
+    assert sorted(cell.printed for cell in found) == printed("yoo_1997")
+    found = [cell for table in drum_as_printed.tables().values() for cell in table.cells]
+    assert sorted(cell.printed for cell in found) == printed("vardanyan_2019")
 
 
 def test_counts_of_verdicts() -> None:
     """Drum: 3 columns of 8 and a difference. Tables 2-4: 44 of 45. Tables 5-7: 3 x 3 rows, 4 forces."""
-    found = forklift.rows()
+    found = forklift_tables.tables()
     groups = {
-        "drum": [c for row in drum.rows() for c in row.cells],
-        "2-4": [c for name in ("table_2", "table_3", "table_4") for row in found[name] for c in row.cells],
-        "5-7": [c for name in ("table_5", "table_6", "table_7") for row in found[name] for c in row.cells],
+        "drum": [c for table in drum_as_printed.tables().values() for c in table.cells],
+        "2-4": [c for name in ("table_2", "table_3", "table_4") for c in found[name].cells],
+        "5-7": [c for name in ("table_5", "table_6", "table_7") for c in found[name].cells],
     }
     counts = {name: (len(cells), sum(c.agrees for c in cells)) for name, cells in groups.items()}
     assert counts == {"drum": (25, 25), "2-4": (45, 44), "5-7": (36, 36)}
@@ -124,7 +125,7 @@ def test_reproduce_prints_and_draws(capsys, tmp_path) -> None:
         "drawn:",
     ):
         assert words in told, words
-    total = len(reproduce.cells()) + sum(len(rows) for rows in caliper.sections().values())
+    total = len(reproduce.cells()) + sum(len(rows) for rows in eebrake.sections().values())
     assert f"All {total} verdicts are as expected" in told
     drawn = {path.name for path in (tmp_path / "new").iterdir()}
     names = ("truck", "distance", "stages", "shoes", "forces")
@@ -136,7 +137,7 @@ def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch) -> Non
     true = as_printed.tables()
     wrong = true | {("table_4", "torque"): 1.01 * true["table_4", "torque"]}
     monkeypatch.setattr(as_printed, "tables", lambda: wrong)
-    monkeypatch.setattr(reproduce, "draw", lambda folder: [])
+    monkeypatch.setattr(reproduce, "pictures", dict)
     assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
     out, err = capsys.readouterr()
     assert out.count("differs: unexpected") >= 8 and "9 of" in err

@@ -7,23 +7,22 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn import reproduce
 from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.edge.tables import comparison_table, console
 from beamdyn.common.results.comparison import Comparison
 from beamdyn.published import load
-from beamdyn.reproduce import frequencies, large_deflection, motion, others, printed_tables
+from beamdyn.reproduce import inward_beam, inward_beam_figures, printed_tables
 from beamdyn.reproduce.entries import PrintedValue, summarize_entries
 
 
 @pytest.fixture(scope="module")
 def swept():
-    return motion.run_sweep(speeds=np.arange(45.0, 81.0))
+    return inward_beam.run_sweep(speeds=np.arange(45.0, 81.0))
 
 
 @pytest.fixture(scope="module")
 def sections(swept):
-    return reproduce.sections(swept)
+    return inward_beam.sections(swept)
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +31,9 @@ def rows(sections):
 
 
 def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept, sections):
-    monkeypatch.setattr(motion, "run_sweep", lambda progress: swept)
+    monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: swept)
     monkeypatch.setattr(
-        reproduce, "sections", lambda of: {id(swept): sections}[id(of)]
+        inward_beam, "sections", lambda of: {id(swept): sections}[id(of)]
     )  # once, of that sweep
     assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
     out, err = capsys.readouterr()
@@ -77,10 +76,12 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept, sectio
 
 
 def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch):
-    row = [*frequencies.first_frequencies()][1]
-    monkeypatch.setattr(motion, "run_sweep", lambda progress: None)
-    monkeypatch.setattr(reproduce, "sections", lambda swept: {"title": [replace(row, ours=row.ours + 0.01)]})
-    monkeypatch.setattr(reproduce, "draw", lambda folder, swept: [])
+    row = [*inward_beam.first_frequencies()][1]
+    monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: None)
+    monkeypatch.setattr(
+        inward_beam, "sections", lambda swept: {"title": [replace(row, ours=row.ours + 0.01)]}
+    )
+    monkeypatch.setattr(inward_beam_figures, "pictures", lambda swept: {})
     assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
     out, err = capsys.readouterr()
     assert "differs: unexpected" in out
@@ -127,7 +128,7 @@ def test_a_beam_that_bends_has_other_limits(rows):
     known = [r for r in rows if r.what.endswith("rad/s") and "deg" in r.what and "independent" in r.source]
     assert len(known) == 4 and all(r.agrees for r in known)
     second = next(r for r in rows if r.what.startswith("second limit, to 150") and "(9)" in r.reason)
-    at_limit = large_deflection.bending_scene(second.ours)
+    at_limit = inward_beam.inward_scene(second.ours, large_deflection=True)
     speeds = np.array([149.0, 150.0, 151.0])
     before, at, after = bd.frequency_locus(at_limit, speeds, 1, bd.Ritz(12)).frequency[:, 0]
     assert at < min(before, after)
@@ -137,7 +138,7 @@ def test_a_beam_that_bends_has_other_limits(rows):
 def test_at_no_angle_does_it_rise_first_and_then_fall(angle):
     """What note (9) says: its changes from one speed to the next change sign once at most, upwards."""
     speeds = np.linspace(0, 150.0, 16)
-    locus = bd.frequency_locus(large_deflection.bending_scene(angle), speeds, 1, bd.Ritz(12))
+    locus = bd.frequency_locus(inward_beam.inward_scene(angle, large_deflection=True), speeds, 1, bd.Ritz(12))
     assert (np.diff(np.sign(np.diff(locus.frequency[:, 0]))) >= 0).all()
 
 
@@ -171,7 +172,7 @@ def test_an_interval_must_hold_the_value():
 
 @pytest.mark.slow
 def test_all_of_figure_6_has_no_other_peak():
-    assert all(row.as_expected for row in motion.sweep_peak_comparisons(motion.run_sweep()))
+    assert all(row.as_expected for row in inward_beam.sweep_peak_comparisons(inward_beam.run_sweep()))
 
 
 @pytest.fixture(scope="module")
@@ -198,11 +199,10 @@ def test_tables_of_papers(papers):
 
 
 def test_reproduce_prints_tables(capsys, tmp_path, monkeypatch, papers):
-    monkeypatch.setattr(motion, "run_sweep", lambda progress: None)
-    monkeypatch.setattr(reproduce, "sections", lambda swept: {})
-    monkeypatch.setattr(reproduce, "draw", lambda folder, swept: [])
-    monkeypatch.setattr(others, "summarize_sources", lambda: iter(()))
-    monkeypatch.setattr(others, "summarize_twisted", lambda: iter(()))
+    monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: None)
+    monkeypatch.setattr(inward_beam, "sections", lambda swept: {})
+    monkeypatch.setattr(inward_beam_figures, "pictures", lambda swept: {})
+    monkeypatch.setattr(printed_tables, "reference_entries", lambda discretization: {})
     monkeypatch.setattr(printed_tables, "compare_papers", lambda: papers)
     assert main(["reproduce", "--tables", "--output", str(tmp_path)]) == DONE
     lines = capsys.readouterr().out.splitlines()
@@ -258,7 +258,9 @@ def test_verdicts_of_tables():
 
 @pytest.mark.slow
 def test_tables_of_other_sources():
-    summaries = list(others.summarize_sources())
+    twisted = {case["source"] for case in load("twisted_beams")["case"]}
+    found = printed_tables.summarize(printed_tables.reference_entries)
+    summaries = [s for s in found if s.source not in twisted]
     assert sum(s.values for s in summaries if s.discretization == "Ritz") == 62
     for s in summaries:
         assert s.as_expected, s
@@ -267,7 +269,7 @@ def test_tables_of_other_sources():
 
 def test_a_wrong_value_in_the_tables_is_seen():
     case = load("rotating_beams")["case"][0]
-    good = others.solve_case(case, "ritz")
-    assert others.summarize("x", "Ritz", [good]).as_expected
-    printed, ours, error = good
-    assert not others.summarize("x", "Ritz", [(printed, ours * (1 + 1e-9), error)]).as_expected
+    good = printed_tables.entries_of_reference(case, "ritz")
+    assert summarize_entries("x", "Ritz", good).as_expected
+    wrong = [replace(entry, ours=entry.ours * (1 + 1e-9)) for entry in good]
+    assert not summarize_entries("x", "Ritz", wrong).as_expected

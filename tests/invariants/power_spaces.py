@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.equations.quadrature import Cells
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
@@ -51,7 +51,8 @@ class PowerSpaces:
 
     def functions(self, conditions):
         return Powers(
-            {CLAMPED: BENDING, HINGED: (1, *BENDING), FIXED: STRETCH}[conditions.at_root], self.length
+            {CLAMPED: BENDING, HINGED: (1, *BENDING), FIXED: STRETCH}[RootConditions(*conditions[:2])],
+            self.length,
         )
 
     def product(self, weight, rows, columns, orders=(0, 0)):

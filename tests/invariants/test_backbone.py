@@ -14,7 +14,7 @@ import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.elastica import DeflectedState
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.modes.modal.deflected import DeflectedSolver
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
 
 CANTILEVER = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0))

@@ -12,8 +12,8 @@ from numpy.polynomial import Polynomial
 import beamdyn as bd
 from beamdyn.modes.bounds import _lowest, _nondimensional, frequency_bounds
 from beamdyn.modes.flexibility import bound_flexibility, bound_traces
-from beamdyn.modes.head import Head
-from beamdyn.modes.split import Split
+from beamdyn.modes.residual_bound import PlaneEnclosure
+from beamdyn.modes.ritz_part import PlaneRitzPart
 from benchmarks.cases.blades import blade_scene
 from benchmarks.cases.random_stations import random_station_scene
 from benchmarks.cases.reference.resolved import known_frequencies
@@ -76,7 +76,7 @@ def test_bounds_of_few_moments_are_wide_but_hold(seed: int, functions: int) -> N
     scene, speed = _without_twist(seed)
     scaled, time = _nondimensional(scene)
     flexibility = bound_flexibility(scaled.beam.bending_stiffness)
-    lower, upper = Split(scaled, functions, speed * time, flexibility).bounds(3)
+    lower, upper = PlaneEnclosure(scaled, functions, speed * time, flexibility).bounds(3)
     exact = (2 * np.pi * time * bd.natural_modes(scene, speed, 3).frequency) ** 2
     assert (upper > exact * (1 - _ROUNDING)).all()
     assert (np.isnan(lower) | (lower < exact * (1 + _ROUNDING))).all()
@@ -88,7 +88,7 @@ def test_traces_of_growing_heads_approach_those_in_closed_form_from_below(seed: 
     flexibility = bound_flexibility(beam.bending_stiffness)
     assert flexibility is not None
     total = bound_traces(beam, flexibility)
-    few, many = (total - np.trace(Head(beam, n).forms, axis1=1, axis2=2) for n in (20, 80))
+    few, many = (total - np.trace(PlaneRitzPart(beam, n).forms, axis1=1, axis2=2) for n in (20, 80))
     assert (many > -1e-12 * total).all()
     assert (many[:2] < few[:2] / 2).all()  # slopes: as 1/n
     assert many[2] < few[2] / 16  # deflections: as n^-3
@@ -99,7 +99,7 @@ def test_traces_of_growing_heads_approach_those_in_closed_form_from_below(seed: 
 def test_functions_are_orthonormal_whatever_the_stiffness(stations: int) -> None:
     x = np.linspace(0, 1, stations)
     beam = bd.Beam.from_stiffness(1.0, 1.0, bd.Table(x.tolist(), (1 - (1 - 1e-6) * x).tolist()))
-    stiffness = Head(beam, 60).stiffness
+    stiffness = PlaneRitzPart(beam, 60).stiffness
     np.testing.assert_allclose(stiffness, np.eye(len(stiffness)), rtol=0, atol=1e-10)
 
 
@@ -109,7 +109,7 @@ def test_no_speed_is_critical_below_the_bound_of_an_inward_blade() -> None:
     critical = bd.critical_speed(inward)
     assert np.isfinite(critical)
     scaled, time = _nondimensional(inward)
-    split = Split(scaled, 30, 0.0, bound_flexibility(scaled.beam.bending_stiffness))
+    split = PlaneEnclosure(scaled, 30, 0.0, bound_flexibility(scaled.beam.bending_stiffness))
     below, above = (split.stiffness_form((c * critical * time) ** 2) for c in (1 - 1e-6, 1 + 1e-6))
     assert below is not None and np.linalg.eigvalsh(below)[0] > 0
     assert above is not None and np.linalg.eigvalsh(above)[0] < 0

@@ -13,9 +13,9 @@ from scipy.linalg import eigh
 
 import beamdyn as bd
 from beamdyn.modes.bounds import _nondimensional, frequency_bounds
-from beamdyn.modes.coupled_head import twist_degree
-from beamdyn.modes.coupled_split import CoupledSplit
 from beamdyn.modes.flexibility import bound_flexibility
+from beamdyn.modes.residual_bound import CoupledEnclosure
+from beamdyn.modes.ritz_part import twist_degree
 from benchmarks.cases.blades import blade_scene
 from benchmarks.cases.random_stations import random_station_scene
 from benchmarks.cases.reference.resolved import Known, known_frequencies
@@ -65,13 +65,13 @@ def _assert_between(lower: np.ndarray, upper: np.ndarray, known: Known) -> None:
     assert (squares <= upper + slack).all()
 
 
-def _split(scene: bd.Scene, speed: float, moments: int) -> tuple[CoupledSplit, float]:
+def _split(scene: bd.Scene, speed: float, moments: int) -> tuple[CoupledEnclosure, float]:
     scaled, time = _nondimensional(scene)
     assert scaled.beam.second_bending_stiffness is not None
     first = bound_flexibility(scaled.beam.bending_stiffness)
     second = bound_flexibility(scaled.beam.second_bending_stiffness)
     assert first is not None and second is not None
-    return CoupledSplit(scaled, moments, speed * time, (first, second)), time
+    return CoupledEnclosure(scaled, moments, speed * time, (first, second)), time
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -130,7 +130,7 @@ def test_forms_on_the_neglected_functions_stay_below_their_bounds(seed: int, mom
     small, large = (_split(replace(scene, beam=beam), speed, n)[0] for n in (moments, 30))
     K = large.stiffness
     tail = _complement(small, large)
-    forms = [*large.forms[:3], large._head.tip_slope @ large._head.tip_slope.T]
+    forms = [*large.forms[:3], large.part.slope[..., -1] @ large.part.slope[..., -1].T]
     traces = [np.trace(np.linalg.solve(tail.T @ K @ tail, tail.T @ form @ tail)) for form in forms]
     assert (traces <= small.tails).all()
     assert traces[2] > 0.9 * small.tails[2]  # deflections: the large head has nearly all of it
@@ -138,13 +138,13 @@ def test_forms_on_the_neglected_functions_stay_below_their_bounds(seed: int, mom
     assert np.abs(twisting).max() <= small._twisting_tail
 
 
-def _complement(small: CoupledSplit, large: CoupledSplit) -> np.ndarray:
+def _complement(small: CoupledEnclosure, large: CoupledEnclosure) -> np.ndarray:
     """Combinations of the large head's functions that are orthogonal in energy to the small head."""
-    rule, stiffnesses = large._head.quadrature, large._head._both_at(large._head.quadrature)
+    rule, stiffnesses = large.part.quadrature, large.part._both_at(large.part.quadrature)
     there = np.array(
-        [[small._head.quadrature.interpolate_to(rule.xi) @ row for row in c] for c in small._head.curvature]
+        [[small.part.quadrature.interpolate_to(rule.xi) @ row for row in c] for c in small.part.curvature]
     )
-    products = np.einsum("ikx,kx,jkx->ij", large._head.curvature, rule.weights * stiffnesses, there)
+    products = np.einsum("ikx,kx,jkx->ij", large.part.curvature, rule.weights * stiffnesses, there)
     return np.linalg.qr(products, mode="complete")[0][:, products.shape[1] :]
 
 

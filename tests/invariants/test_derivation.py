@@ -20,7 +20,7 @@ from numpy.polynomial import Polynomial
 from sympy import QQ
 from sympy.polys.rings import ring
 
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.scene.beam import Beam, PointMass, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount

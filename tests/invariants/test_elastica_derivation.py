@@ -20,8 +20,8 @@ import sympy as sp
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.elastica import Elastica, assemble_elastica
-from beamdyn.equations.equations_of_motion import assemble_equations
 from beamdyn.equations.root_motion import root_motion
 from tests.invariants.power_spaces import BENDING, PowerSeries
 

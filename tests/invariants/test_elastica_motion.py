@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 import beamdyn as bd
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.modal.model import Model
-from beamdyn.transient.elastica_gauss import propagate_elastica
+from beamdyn.transient.elastica_steps import propagate_elastica
 from beamdyn.transient.elastica_system import ElasticaSystem
 from benchmarks.cases.scenes import HARVESTER
 

@@ -16,7 +16,7 @@ import beamdyn as bd
 from beamdyn.modes.bounds import _nondimensional
 from beamdyn.modes.buckling import decide_buckling
 from beamdyn.modes.flexibility import bound_flexibility, bound_traces
-from beamdyn.modes.split import Split
+from beamdyn.modes.residual_bound import PlaneEnclosure
 
 RITZ, FEM = 1e-9, 1e-6  # promised relative errors
 NODES = 14  # Gauss points on a third of a part between masses
@@ -276,7 +276,7 @@ def test_bounds(beam: bd.Beam, setting: float) -> None:
     scaled, time = _nondimensional(scene)
     flexibility = bound_flexibility(scaled.beam.bending_stiffness)
     for functions in (2, 3, 5, 8):
-        lower, upper = Split(scaled, functions, speed * time, flexibility).bounds(1)
+        lower, upper = PlaneEnclosure(scaled, functions, speed * time, flexibility).bounds(1)
         exact = (2 * np.pi * known.frequency[:1] * time) ** 2
         assert (np.isnan(lower) | (lower <= exact * (1 + 1e-11))).all()
         assert (upper >= exact * (1 - 1e-11)).all()
@@ -306,7 +306,7 @@ def test_traces_are_those_of_all_functions() -> None:
     scaled, _ = _nondimensional(bd.Scene(MANY["few segments"], OUTWARD))
     flexibility = bound_flexibility(scaled.beam.bending_stiffness)
     assert flexibility is not None
-    head = Split(scaled, 40, 1.0, flexibility)
+    head = PlaneEnclosure(scaled, 40, 1.0, flexibility)
     parts = np.array([np.trace(np.linalg.solve(head.stiffness, form)) for form in head.forms])
     bounds = bound_traces(scaled.beam, flexibility)
     assert (parts <= bounds * (1 + 1e-12)).all()  # rounding

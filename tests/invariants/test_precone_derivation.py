@@ -13,7 +13,7 @@ import pytest
 from sympy import QQ
 
 import beamdyn as bd
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.scene.motion import MotionSample
 from tests.invariants import test_two_planes_derivation as flat

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import FIXED
-from beamdyn.equations.equations_of_motion import Equations, assemble_equations
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.loads.load_rows import span_rows

@@ -17,7 +17,7 @@ from sympy import QQ
 from sympy.polys.rings import ring
 
 import beamdyn as bd
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from tests.invariants.power_spaces import BENDING, STRETCH, PowerSeries
 
 RTOL = 1e-12  # rounding of sums of products of numbers of order 1

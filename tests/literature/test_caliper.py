@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from brakes import calipers
-from brakes.reproduce import caliper as reproduction
+from brakes.reproduce import eebrake as reproduction
 
 # tension, X, F_L of the table of the reconstruction at F_R = 1; ten printed digits and more
 TABLE = {

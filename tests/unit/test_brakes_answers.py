@@ -1,7 +1,6 @@
 """The pattern of brakes' answers: what a command, a screen and a report take from it holds for every type."""
 
 import tomllib
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.answers.forklift import FORKLIFT, TYPES
 from brakes.app.bases import base
 
-MODULES = {name: import_module(f"brakes.answers.{name}").BRAKE for name in STANDARD}
+MODULES = {name: load() for name, (_, load) in STANDARD.items()}
 BRAKES: list[BrakeType] = [*MODULES.values(), FORKLIFT, *TYPES.values(), CALIPER, MECHANISM]
 by_type = pytest.mark.parametrize("brake", BRAKES, ids=lambda brake: brake.title)
 

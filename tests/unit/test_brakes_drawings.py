@@ -16,7 +16,7 @@ from beamdyn.common.drawing.shapes import Outline, Symbol
 from beamdyn.common.plots.curves import curves, sweep_figure
 from brakes import drum, forklift
 from brakes.drawings import mechanism_parts
-from brakes.drawings.drum import brake_figure, drawing_of, factors, free_body, pressures
+from brakes.drawings.drum import brake_figure, drawing_of, factors, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_drawings, answer_figure, distances, forces_over, truck
 
@@ -45,7 +45,7 @@ def stopped(**changes) -> forklift.Stop:
 def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
     """Pressure, friction, pin and actuating force of each shoe sum to nothing."""
     found = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
-    drawn = free_body(found).arrows
+    drawn = drawing_of(found).arrows
     for shoe in "12":
         four = [drawn[f"{name}_{shoe}"] for name in "PNTR"]
         assert np.hypot(*sum(four)) < 1e-12
@@ -55,7 +55,7 @@ def test_forces_on_a_drum_shoe_balance_as_drawn() -> None:
 
 def test_both_shoes_of_a_duplex_brake_rub_the_same_way_round() -> None:
     found = drum.brake_torque(drum.duplex(SHOE), friction=0.35, force=1000.0)
-    drawn = free_body(found).arrows
+    drawn = drawing_of(found).arrows
     np.testing.assert_allclose(drawn["T_1"], -drawn["T_2"], rtol=1e-12)
 
 

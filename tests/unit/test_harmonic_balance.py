@@ -10,11 +10,9 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.modes.modal.discretization_choice import choose_model
-from beamdyn.steady.excitation_phases import periodic_system
-from beamdyn.steady.harmonic_balance import solve_at_once, solve_harmonic_balance
-from beamdyn.steady.interaction_series import sum_interactions
+from beamdyn.steady.harmonic_balance import solve_at_once, solve_harmonic_balance, sum_interactions
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics
+from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics, periodic_system
 from beamdyn.steady.stability import _FreeMotion, growth_rate
 from benchmarks.cases.scenes import HARVESTER, STEADY_ROLLING, STEADY_ROLLING_IN_GRAVITY
 

@@ -17,7 +17,8 @@ from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.results.cautions import critical_label, labels_of, notes_of, warnings_of
 from beamdyn.results.of_modes import modes_csv
 from beamdyn.scene.validity import warn_of_static_deflection
-from beamdyn.studies.tradeoffs import Diagram, tradeoff
+from beamdyn.studies.tradeoffs.measurements import Diagram
+from beamdyn.studies.tradeoffs.tradeoff import tradeoff
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "harvester_45deg.toml")
 BENT = replace(SCENE, physics=bd.Physics(large_deflection=True))
@@ -57,8 +58,8 @@ def test_analyses_of_the_plain_beam_warn_without_the_remedy_that_is_none_there()
 
 
 def test_trade_off_says_how_far_the_model_is_off(monkeypatch):
-    monkeypatch.setattr("beamdyn.studies.tradeoffs.study.physics_diagram", _nothing)
-    monkeypatch.setattr("beamdyn.studies.tradeoffs.study.frequency_diagram", _nothing)
+    monkeypatch.setattr("beamdyn.studies.tradeoffs.tradeoff.physics_diagram", _nothing)
+    monkeypatch.setattr("beamdyn.studies.tradeoffs.tradeoff.frequency_diagram", _nothing)
     with pytest.warns(bd.OutsideLinearTheory):
         result = tradeoff(SCENE, 100.0, 1, budget=1.0)
     assert any("the model error, 9.1 %, exceeds 1 %" in said for said in result.warnings)

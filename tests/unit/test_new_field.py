@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.equations import equations_of_motion
+from beamdyn.equations import assembly
 from beamdyn.equations.discretization import CLAMPED, Spaces
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
@@ -45,7 +45,7 @@ STEADY = bd.steady_response(ROLLING, [55.0], modes=3).amplitude
 
 @pytest.fixture(autouse=True, params=[(*FIELDS, Sway()), (Sway(), *FIELDS)], ids=["last", "first"])
 def fields(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setattr(equations_of_motion, "FIELDS", request.param)
+    monkeypatch.setattr(assembly, "FIELDS", request.param)
     yield
 
 

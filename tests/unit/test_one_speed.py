@@ -10,10 +10,10 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modes.modal.eigen import LEAST_STIFFNESS, Solver
+from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.error_estimate import error_of_assumed_modes, solve_with_error
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.one_speed import factor_stiffness
 
 BEAM = bd.Beam.from_stiffness(
     1.0, 1.0, Polynomial([1.0, -0.5]), second_bending_stiffness=9.0, twist=Polynomial([0.0, 0.6])
@@ -50,12 +50,12 @@ def test_modes_are_those_of_a_batch(scene: bd.Scene, speed: float) -> None:
 
 
 def test_only_a_stiffness_that_is_safely_positive_is_factored() -> None:
-    pencil = solver_of(SCENES["softened"][0]).pencil
-    critical = Solver(pencil).critical_speed
+    solver = solver_of(SCENES["softened"][0])
+    critical = solver.critical_speed
     least_at = critical * math.sqrt(1 - LEAST_STIFFNESS)  # K0 + speed^2 K2 has a share 1 - (speed/critical)^2
-    assert factor_stiffness(pencil, 0.999 * least_at, LEAST_STIFFNESS) is not None
-    assert factor_stiffness(pencil, 1.001 * least_at, LEAST_STIFFNESS) is None
-    assert factor_stiffness(pencil, 1.1 * critical, LEAST_STIFFNESS) is None
+    assert solver.factor(np.array([0.999 * least_at])) is not None
+    assert solver.factor(np.array([1.001 * least_at])) is None
+    assert solver.factor(np.array([1.1 * critical])) is None
 
 
 @pytest.mark.parametrize("functions", [7, 11])  # far from convergence, and near it

@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modes.modal import over_speeds
-from beamdyn.modes.modal.eigensolver import Eigen
+from beamdyn.modes.modal.eigenproblem import Eigen
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.over_speeds import solve_over_speeds
 

@@ -17,10 +17,10 @@ from beamdyn.common.plots.plots import (
     plot_loci_by_angle,
     plot_locus,
     plot_response,
-    plot_shapes,
     plot_transient,
     save_figure,
 )
+from beamdyn.common.plots.plots_of_shapes import plot_shapes
 
 SPEEDS = np.linspace(0, 200, 21)
 with np.errstate(invalid="ignore"):

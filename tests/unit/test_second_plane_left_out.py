@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from benchmarks.cases.scenes import ROLLING
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, bd.TipMass(0.001, 0.0, 1e-6), twist=0.3)

@@ -13,8 +13,7 @@ import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.loads.load_path import largest_per_coordinate
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.mode_error import mode_error
-from beamdyn.loads.stations import sections_at, stations_at
+from beamdyn.loads.stations import mode_error, sections_at, stations_at
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from benchmarks import loads as loads_measured
 

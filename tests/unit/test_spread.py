@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import main
-from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.one_by_one import one_by_one
+from beamdyn.common.edge.input_sweep import Output, one_by_one
 from beamdyn.common.edge.spread_tables import headline
 from beamdyn.common.edge.varied_inputs import parse_axis
 from beamdyn.common.inputs.checks import InvalidValue

@@ -13,7 +13,7 @@ import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import MotionSample
-from beamdyn.steady.excitation_phases import periodic_system
+from beamdyn.steady.periodic_system import periodic_system
 from beamdyn.steady.stability import growth_rate
 from benchmarks.cases.scenes import HARVESTER
 

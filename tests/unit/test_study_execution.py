@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modes.modal.eigen import solve_diagonal
+from beamdyn.modes.modal.diagonal_stiffness import solve_diagonal
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))

@@ -109,7 +109,7 @@ def test_a_case_too_large_for_memory_is_refused(monkeypatch):
     def check(steps, size, t_end):
         raise TooManySteps("t_end", t_end, "too many")
 
-    monkeypatch.setattr("beamdyn.transient.step_size.check_number_of_steps", check)
+    monkeypatch.setattr("beamdyn.transient.integration.check_number_of_steps", check)
     with pytest.raises(ValueError, match="too many"):
         bd.sweep(SCENE, SPEEDS, WINDOW, modes=5)
 

@@ -12,7 +12,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import DONE, main
-from beamdyn.equations.equations_of_motion import assemble_equations
+from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.explanations import SampledScene
 from beamdyn.equations.fields import FIELDS
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING

@@ -12,20 +12,16 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, main
-from beamdyn.studies.tradeoffs import (
-    frequencies,
-    frequency_diagram,
+from beamdyn.studies.tradeoffs import frequencies, measurements, responses
+from beamdyn.studies.tradeoffs.frequencies import ALL, AS_GIVEN, frequency_diagram, physics_diagram, pick
+from beamdyn.studies.tradeoffs.responses import (
+    AT_ENDS,
+    AT_REST,
     harmonics_diagram,
     integrators_diagram,
-    physics,
-    physics_diagram,
-    timing,
     transient_modes_diagram,
-    transients,
 )
-from beamdyn.studies.tradeoffs.frequencies import ALL, AS_GIVEN, pick
-from beamdyn.studies.tradeoffs.responses import AT_ENDS, AT_REST
-from beamdyn.studies.tradeoffs.study import MOST_MODES
+from beamdyn.studies.tradeoffs.tradeoff import MOST_MODES
 from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.tradeoff_physics import make_scenes
 
@@ -38,16 +34,16 @@ MOVING = str(ROOT / "examples" / "rolling_harvester.toml")
 def once():
     """Each case runs once, and there are few, so that budgets do not decide what is measured."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(timing, "RUNS", 1)
+        patch.setattr(measurements, "RUNS", 1)
         patch.setattr(frequencies, "_LEGENDRE", (1, 2, 3, 4, 6, 8, 10, 12, 14))
         patch.setattr(frequencies, "_EIGENFUNCTIONS", (1, 2, 3, 4, 8, 16, 40))
         patch.setattr(frequencies, "_ELEMENTS", (2, 4, 10, 20))
         patch.setattr(frequencies, "_TOLERANCES", (1e-1, 1e-3, 1e-6, 1e-10))
-        patch.setattr(physics, "_FUNCTIONS", (3, 4, 6, 8, 10, 14))
-        patch.setattr(transients, "STOCK", ("Radau", "DOP853"))
-        patch.setattr(transients, "_STOCK_TOLERANCES", (1e-3, 1e-6))
-        patch.setattr(transients, "_MODES", (1, 2, 4))
-        patch.setattr(transients, "_ALL_MODES", 8)
+        patch.setattr(frequencies, "_FUNCTIONS", (3, 4, 6, 8, 10, 14))
+        patch.setattr(responses, "STOCK", ("Radau", "DOP853"))
+        patch.setattr(responses, "_STOCK_TOLERANCES", (1e-3, 1e-6))
+        patch.setattr(responses, "_MODES", (1, 2, 4))
+        patch.setattr(responses, "_ALL_MODES", 8)
         yield
 
 
@@ -299,7 +295,7 @@ def test_a_transient_needs_a_motion():
 
 
 def test_the_length_of_the_run_follows_from_the_scene():
-    from beamdyn.studies.tradeoffs.study import _end
+    from beamdyn.studies.tradeoffs.tradeoff import _end
 
     assert 11 < _end(ROLLING) < 12.1  # settled after 10 s; a hundred periods of 1/65 s
     slow = bd.Scene(HARVESTER.beam, HARVESTER.mount, bd.SpinUp(55.0, duration=3600.0))
@@ -363,11 +359,11 @@ def test_bad_input_is_refused_with_a_sentence(command, arguments, sentence):
 
 
 def test_no_answer_if_the_reference_fails(command, monkeypatch):
-    from beamdyn.studies.tradeoffs import study
+    from beamdyn.studies.tradeoffs import tradeoff
 
     def fails(*arguments):
         raise ArithmeticError("not within the guaranteed bounds")
 
-    monkeypatch.setattr(study, "frequency_diagram", fails)
+    monkeypatch.setattr(tradeoff, "frequency_diagram", fails)
     code, _, err = command(STILL, "--budget", "1 s")
     assert (code, "guaranteed" in err) == (NO_ANSWER, True)

@@ -6,14 +6,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from beamdyn.studies.tradeoffs import (
+from beamdyn.studies.tradeoffs import measurements as timing
+from beamdyn.studies.tradeoffs.measurements import (
     Diagram,
+    Family,
     Measurement,
+    Setting,
     cost_per_digit,
+    measure_families,
     pareto_front,
-    timing,
 )
-from beamdyn.studies.tradeoffs.measurements import Family, Setting, measure_families
 from benchmarks.tradeoff import LEGENDRE, compare_sizes
 
 coarse = st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 2.0])  # few values, so that ties are drawn

@@ -296,7 +296,7 @@ def test_modes_that_cannot_meet_the_tolerance_are_named_after_seconds() -> None:
 
 
 def test_a_run_that_does_not_fit_into_memory_is_refused(monkeypatch) -> None:
-    monkeypatch.setattr("beamdyn.transient.step_size._propagate", None)  # not to be called
+    monkeypatch.setattr("beamdyn.transient.integration._propagate", None)  # not to be called
     with pytest.raises(
         ValueError, match=r"t_end = 100000 s: it takes about [\d.]+e\+06 steps.*50 coordinates"
     ):

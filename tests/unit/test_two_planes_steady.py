@@ -31,8 +31,8 @@ from beamdyn.results.of_motion import (
     transient_csv,
 )
 from beamdyn.scene.motion import Motion
-from beamdyn.steady.excitation_phases import periodic_system
 from beamdyn.steady.largest_over_phases import largest_over_phases
+from beamdyn.steady.periodic_system import periodic_system
 from beamdyn.steady.stability import growth_rate
 
 TWO = bd.Physics(planes=2)

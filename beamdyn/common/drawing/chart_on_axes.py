@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartMark
+from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.style import ink
 from beamdyn.common.results.pictures import COLOURS
 
@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
-_PALE, _GRID, _CURSOR = "0.6", "0.9", "0.4"
+_PALE, _CURSOR = "0.6", "0.4"
 _GAP = 0.01  # between the foot of the axes and a text, over the height of the axes
+_ALONG: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90}
 _BEHIND_LEGEND = 0.92  # height of texts at the top of marks, over that of the axes
 
 
@@ -34,16 +35,33 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
     Axes
         The same.
     """
-    for curve, colour in zip(chart.curves, _colours(chart), strict=True):
+    colours = [_PALE if n is None else COLOURS[n % len(COLOURS)] for n in chart.colour_numbers]
+    for curve, colour in zip(chart.curves, colours, strict=True):
         style, width = "--" if curve.dashed else "-", 1.0 if curve.pale else 1.8
         ax.plot(curve.x, curve.y, style, color=colour, linewidth=width, label=curve.name)
     for points in chart.points:
         x, y = ([at[k] for at in points.at] for k in (0, 1))
         ax.plot(x, y, "o", color=ink(points.role).line, markerfacecolor="white", label=points.name)
-    _plot_marks(ax, chart)
+    colour_of = {curve.name: colour for curve, colour in zip(chart.curves, colours, strict=True)}
+    across = ax.get_xaxis_transform()
+    for mark in chart.marks:  # a vertical line, with its text beside it at the foot or along it at the top
+        colour = colour_of.get(mark.curve, _CURSOR)
+        ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
+        height, place = (_GAP, {"va": "bottom"}) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
+        ax.text(mark.at, height, f" {mark.text} ", color=colour, fontsize=_LETTERS, transform=across, **place)
+    if chart.cursor is not None:
+        ax.axvline(chart.cursor, color=_CURSOR, linewidth=1, linestyle=":")
     for band in chart.bands:
         ax.axvspan(band.low, band.high, color=_PALE, alpha=0.16, linewidth=0, label=band.text)
-    _label(ax, chart)
+    for axis, direction in ((chart.x, "x"), (chart.y, "y")):
+        scale = {"scale": "log"} if axis.logarithmic else {}
+        ends = {"lim": (axis.low, axis.high)} if (axis.low, axis.high) != (None, None) else {}
+        given = {"label": axis.title} | scale | ends
+        ax.set(**{f"{direction}{name}": value for name, value in given.items()})
+    ax.set_title(chart.title, fontsize=_TITLE)
+    ax.grid(color="0.9", linewidth=0.8)
+    ax.set_axisbelow(True)
+    ax.legend(fontsize=_LETTERS)
     return ax
 
 
@@ -72,45 +90,3 @@ def plot_charts_of_one_x(
         if row < len(charts) - 1:
             ax.set_xlabel("")
             ax.tick_params(labelbottom=False)
-
-
-def _colours(chart: Chart) -> list[str]:
-    return [_PALE if n is None else COLOURS[n % len(COLOURS)] for n in chart.colour_numbers]
-
-
-def _plot_marks(ax: Axes, chart: Chart) -> None:
-    """Plot vertical lines with their texts, and the cursor."""
-    colour_of = {curve.name: colour for curve, colour in zip(chart.curves, _colours(chart), strict=True)}
-    for mark in chart.marks:
-        _plot_mark(ax, mark, colour_of.get(mark.curve, _CURSOR))
-    if chart.cursor is not None:
-        ax.axvline(chart.cursor, color=_CURSOR, linewidth=1, linestyle=":")
-
-
-def _plot_mark(ax: Axes, mark: ChartMark, colour: str) -> None:
-    """Plot a vertical line; its text along it at the top, or beside it at the foot."""
-    ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
-    text = f" {mark.text} "
-    across = ax.get_xaxis_transform()
-    if mark.at_foot:
-        ax.text(mark.at, _GAP, text, color=colour, fontsize=_LETTERS, va="bottom", transform=across)
-    else:
-        ax.text(mark.at, _BEHIND_LEGEND, text, color=colour, fontsize=_LETTERS, ha="right", va="top",
-                rotation=90, transform=across)  # fmt: skip
-
-
-def _label(ax: Axes, chart: Chart) -> None:
-    """Set titles, ends and scales of the axes, and the legend."""
-    for axis, direction in ((chart.x, "x"), (chart.y, "y")):
-        _set_axis(ax, axis, direction)
-    ax.set_title(chart.title, fontsize=_TITLE)
-    ax.grid(color=_GRID, linewidth=0.8)
-    ax.set_axisbelow(True)
-    ax.legend(fontsize=_LETTERS)
-
-
-def _set_axis(ax: Axes, axis: ChartAxis, direction: str) -> None:
-    scale = {"scale": "log"} if axis.logarithmic else {}
-    ends = {"lim": (axis.low, axis.high)} if (axis.low, axis.high) != (None, None) else {}
-    given = {"label": axis.title} | scale | ends
-    ax.set(**{f"{direction}{name}": value for name, value in given.items()})

@@ -83,7 +83,12 @@ class Obstacles:
     @cached_property
     def _covered(self) -> np.ndarray:
         """Sums from the upper left corner over cells with lines, shape (rows + 1, columns + 1)."""
-        return self._summed(_along(self.lines), 1)
+        start, way = self.lines[:, :2], self.lines[:, 2:] - self.lines[:, :2]
+        counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1  # points along each, at most a cell apart
+        which = np.repeat(np.arange(len(way)), counts)
+        step = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+        part = step / np.maximum(counts[which] - 1, 1)
+        return self._summed(start[which] + part[:, None] * way[which])
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
@@ -91,63 +96,38 @@ class Obstacles:
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
         around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]
-        return self._summed(around.reshape(-1, 2), 1)
+        return self._summed(around.reshape(-1, 2))
 
-    def _summed(self, points: np.ndarray, weight: int) -> np.ndarray:
+    @cached_property
+    def _cells(self) -> np.ndarray:
+        """Numbers of columns and of rows of the grid."""
         left, top, right, bottom = self.frame
-        shape = (int((bottom - top) / _CELL) + 2, int((right - left) / _CELL) + 2)
-        cells = np.zeros((shape[0] + 1, shape[1] + 1), dtype=np.int32)
-        column, row = np.floor((points - (left, top)) / _CELL).astype(int).T
-        inside = (column >= 0) & (row >= 0) & (column < shape[1]) & (row < shape[0])
-        cells[row[inside] + 1, column[inside] + 1] = weight
+        return np.array([int((right - left) / _CELL) + 2, int((bottom - top) / _CELL) + 2])
+
+    def _summed(self, points: np.ndarray) -> np.ndarray:
+        cells = np.zeros(self._cells[::-1] + 1, dtype=np.int32)
+        places = np.floor((points - self.frame[:2]) / _CELL).astype(int)
+        column, row = places[((places >= 0) & (places < self._cells)).all(axis=1)].T
+        cells[row + 1, column + 1] = 1
         return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
 
     def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Share of boxes (k, 4) that lines cover; whether they lie in the frame and cover no symbol."""
         x0, y0, x1, y1 = boxes.T
-        corners = self._corners(boxes)
-        lines = _difference(self._covered, corners)
-        return lines * _CELL**2 / ((x1 - x0) * (y1 - y0)), self._is_free(boxes, corners)
+        return self._over(self._covered, boxes) * _CELL**2 / ((x1 - x0) * (y1 - y0)), self.is_free(boxes)
 
     def is_free(self, boxes: np.ndarray) -> np.ndarray:
         """Whether boxes (k, 4) lie within the frame and cover no symbol."""
-        return self._is_free(boxes, self._corners(boxes))
-
-    def _is_free(self, boxes: np.ndarray, corners: tuple[np.ndarray, ...]) -> np.ndarray:
-        left, top, right, bottom = self.frame
-        x0, y0, x1, y1 = boxes.T
+        (left, top, right, bottom), (x0, y0, x1, y1) = self.frame, boxes.T
         inside = (x0 >= left) & (y0 >= top) & (x1 <= right) & (y1 <= bottom)
-        return inside & (_difference(self._forbidden, corners) == 0)
+        return inside & (self._over(self._forbidden, boxes) == 0)
 
-    def _corners(self, boxes: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Indices of the sums at the corners of boxes."""
-        left, top, right, bottom = self.frame
-        x0, y0, x1, y1 = boxes.T
-        columns, rows = (int((size) / _CELL) + 3 for size in (right - left, bottom - top))
-        c0, c1 = (_cells(x - left, columns - 1, add) for x, add in ((x0, 0), (x1, 1)))
-        r0, r1 = (_cells(y - top, rows - 1, add) * columns for y, add in ((y0, 0), (y1, 1)))
-        return r1 + c1, r0 + c1, r1 + c0, r0 + c0
-
-
-def _cells(lengths: np.ndarray, last: int, add: int) -> np.ndarray:
-    """Indices of cells at lengths from the edge of a grid."""
-    return np.clip((lengths / _CELL).astype(np.intp) + add, 0, last)
-
-
-def _difference(sums: np.ndarray, corners: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Sums over rectangles, from the sums at their corners."""
-    all_of, above, beside, both = (sums.ravel().take(corner) for corner in corners)
-    return all_of - above - beside + both
-
-
-def _along(lines: np.ndarray) -> np.ndarray:
-    """Points along segments, no farther apart than a cell."""
-    start, way = lines[:, :2], lines[:, 2:] - lines[:, :2]
-    counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1
-    which = np.repeat(np.arange(len(lines)), counts)
-    step = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
-    part = step / np.maximum(counts[which] - 1, 1)
-    return start[which] + part[:, None] * way[which]
+    def _over(self, sums: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+        """Sums over boxes (k, 4), from those at their corners."""
+        low = np.clip(((boxes[:, :2] - self.frame[:2]) / _CELL).astype(np.intp), 0, self._cells)
+        high = np.clip(((boxes[:, 2:] - self.frame[:2]) / _CELL).astype(np.intp) + 1, 0, self._cells)
+        (c0, r0), (c1, r1) = low.T, high.T
+        return sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]
 
 
 @dataclass(eq=False)
@@ -189,12 +169,15 @@ def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[
     anchors = np.concatenate([request.anchors for request in requests])
     half = np.repeat([request.size for request in requests], counts, axis=0) / 2
     towards = np.repeat(np.array([request.towards for request in requests], dtype=float), counts, axis=0)
-    offsets, distances = _around(half, np.hypot(*towards.T) == 0)
+    on_it: np.ndarray = np.hypot(*towards.T) == 0
+    offsets, distances = _around(half, on_it)
     centres = (anchors[:, None, None] + offsets).reshape(len(anchors), -1, 2)
     boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2)
     covered, free = obstacles.judge(boxes.reshape(-1, 4))
     nth = np.concatenate([np.arange(count) for count in counts])
-    costs = (_STEPS[:, None] + _turned(towards)[:, None] + _NEXT * nth[:, None, None]).reshape(len(nth), -1)
+    ways = towards / np.where(on_it, 1.0, np.hypot(*towards.T))[:, None]
+    turned = np.where(on_it[:, None], _BESIDE, _TURNED * (1 - ways @ _AWAY.T))
+    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).reshape(len(nth), -1)
     costs = costs + _COVERED * covered.reshape(costs.shape)
     every = _Candidates(boxes, anchors, distances.reshape(costs.shape), costs)
     ends = np.cumsum(counts)
@@ -227,13 +210,6 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
     corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
     offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
     return offsets, np.concatenate([distances, aside], axis=2)
-
-
-def _turned(towards: np.ndarray) -> np.ndarray:
-    """Costs (n, t) of the t directions from each anchor, by where the label should stand (n, 2)."""
-    on_it: np.ndarray = np.hypot(*towards.T) == 0
-    length = np.where(on_it, 1.0, np.hypot(*towards.T))
-    return np.where(on_it[:, None], _BESIDE, _TURNED * (1 - (towards / length[:, None]) @ _AWAY.T))
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
@@ -363,7 +339,11 @@ def keep_places(
         None if all places have to be found anew: a label had none, or its place is not free any more.
     """
     pairs = zip(before, requests, strict=True)
-    places = [_beside(place, request) for place, request in pairs if place is not None]
+    places = []  # each with the offset from the anchor that is now nearest to its earlier one
+    for place, request in pairs:
+        if place is not None:
+            anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]
+            places.append(place._replace(centre=anchor + place.centre - place.anchor, anchor=anchor))
     if not places or len(places) < len(requests):
         return None if requests else []
     half = np.array([request.size for request in requests]) / 2
@@ -376,12 +356,6 @@ def keep_places(
     meets[far] |= _crossing(leaders, apart)
     np.fill_diagonal(meets, False)
     return [*places] if obstacles.is_free(boxes).all() and not meets.any() else None
-
-
-def _beside(place: Place, request: LabelRequest) -> Place:
-    """The place with the same offset from the anchor that is now nearest to its earlier one."""
-    anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]
-    return place._replace(centre=anchor + place.centre - place.anchor, anchor=anchor)
 
 
 def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:

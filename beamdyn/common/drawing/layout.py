@@ -23,6 +23,8 @@ _BAR = 0.22  # longest scale bar over the width of the frame
 _SMALL_DISC = 30.0  # radius up to which labels should not stand on it
 # Points that cover the handle of a point that can be moved, relative to it: 16 px of the page across.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
+# Points that cover the symbol of the ground below its point, over half its width and its height.
+_MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
 _PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
 
 
@@ -155,10 +157,11 @@ def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
 
 
 def _inner(drawing: Drawing, frame: Frame) -> Frame:
-    """The part of a frame that title and key leave free."""
+    """The part of a frame that title and key leave free: colours, and a line more for scales."""
     left, top, right, bottom = frame
     below = top + heading(drawing.title, right - left, bottom - top).height
-    return (left, below, right, bottom - _key_height(drawing, frame))
+    rows = bool(drawing.unit or drawing.newton) + len(_lines_of_key(drawing, frame, 0.0))
+    return (left, below, right, bottom - (3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * rows))
 
 
 def _composed(
@@ -168,7 +171,13 @@ def _composed(
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
-    above = _heading(drawing, frame)
+    left, top, right, bottom = frame
+    lines, letters, _ = heading(drawing.title, right - left, bottom - top)
+    above = []
+    for i, line in enumerate(lines):
+        width, height = text_size(line, letters)
+        at = np.array([(left + right) / 2, top + _EDGE + height * (i + 0.5)])
+        above.append(Text(at, (width, height), (line,), "", "text", letters))
     shown = (*above, *texts, *key_texts), (*rules, *key_rules)
     return Layout(drawing, frame, fit, *shown, numbered, tuple(places))
 
@@ -203,10 +212,15 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
     for shape in drawing.shapes:
         along = fit.to_paper(points_of_shape(shape))
         if isinstance(shape, Symbol):
-            points.append(along + _marks(shape))
+            w, h = (shape.size / 2, 0.85 * shape.size) if shape.kind == "ground" else (0.0, 0.0)
+            points.append(along + _MARKS[: 1 if not h else None] * (w, h))
             continue
         if isinstance(shape, Disc) and shape.filled:
-            segments.append(_chords(shape, fit))
+            (x, y), r = fit.to_paper(shape.centre), shape.radius * fit.scale
+            heights = np.linspace(-0.8, 0.8, 9) * r
+            half = np.sqrt(r**2 - heights**2)
+            chords = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
+            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels stand beside a small one
         closed = isinstance(shape, Outline) and shape.closed
         pairs = np.vstack([along, along[:1]]) if closed else along
         lines = np.concatenate([pairs[:-1], pairs[1:]], axis=1)
@@ -217,43 +231,10 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
     points += [fit.to_paper(at) + _HANDLE for at in drawing.points.values()]
     left, top, right, bottom = inner
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
-    return Obstacles(within, _clipped(np.vstack(segments), inner), np.vstack(points))
-
-
-def _marks(symbol: Symbol) -> np.ndarray:
-    """Points (k, 2) that cover a symbol, relative to it [pt]."""
-    if symbol.kind != "ground":
-        return np.zeros((1, 2))
-    w, h = symbol.size / 2, 0.85 * symbol.size
-    return np.array(
-        [(0.0, -0.2 * w), (0.0, 0.0), (0.0, 0.5 * h), (-0.7 * w, 0.9 * h), (0.0, 0.9 * h), (0.7 * w, 0.9 * h)]
-    )
-
-
-def _chords(disc: Disc, fit: Fit) -> np.ndarray:
-    """Lines (k, 4) across a small disc that is filled: labels stand beside it, where there is room."""
-    (x, y), r = fit.to_paper(disc.centre), disc.radius * fit.scale
-    heights = np.linspace(-0.8, 0.8, 9) * r
-    half = np.sqrt(r**2 - heights**2)
-    lines = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
-    return lines if r < _SMALL_DISC else lines[:0]
-
-
-def _clipped(lines: np.ndarray, frame: Frame) -> np.ndarray:
-    """Segments without those far outside the frame, where a point may have been moved."""
-    left, top, right, bottom = frame
-    reach = 3 * max(right - left, bottom - top)
-    return lines[(np.abs(lines - np.tile([(left + right) / 2, (top + bottom) / 2], 2)) < reach).all(axis=1)]
-
-
-def _text(label: Label, place: Place) -> Text:
-    size = text_size(label.text, label.size, label.symbol)
-    return Text(place.centre, size, tuple(label.text.split("\n")), label.symbol, label.role, label.size)
-
-
-def _leader(place: Place, text: Text) -> Rule:
-    nearest = np.clip(place.anchor, text.box[:2], text.box[2:])
-    return Rule(np.array([nearest, place.anchor]), "axis", 0.7)
+    lines, reach = np.vstack(segments), 3 * max(right - left, bottom - top)
+    middle = np.tile([(left + right) / 2, (top + bottom) / 2], 2)
+    near = (np.abs(lines - middle) < reach).all(axis=1)  # not where a point has been moved far outside
+    return Obstacles(within, lines[near], np.vstack(points))
 
 
 # Labels without a place ---------------------------------------------------------------------------
@@ -279,9 +260,11 @@ def _with_list(
         if place is None:  # a number for which there is no room either stands in the list alone
             continue
         shown = Label(numbers[i], label.anchors, label.role, size=_SMALL) if i in numbers else label
-        texts.append(_text(shown, place))
+        size, lines = text_size(shown.text, shown.size, shown.symbol), tuple(shown.text.split("\n"))
+        texts.append(Text(place.centre, size, lines, shown.symbol, shown.role, shown.size))
         if place.distance > FAR:
-            rules.append(_leader(place, texts[-1]))
+            nearest = np.clip(place.anchor, texts[-1].box[:2], texts[-1].box[2:])
+            rules.append(Rule(np.array([nearest, place.anchor]), "axis", 0.7))
     said = tuple(drawing.labels[i].said.replace("\n", ", ") for i in listed)
     if listed:
         texts += _rows(_list_lines(said, inner, _SMALL), inner[0] + _EDGE, bottom, _SMALL, "text")
@@ -353,18 +336,6 @@ def heading(title: str, width: float, height: float) -> Heading:
     return Heading(tuple(lines), letters, _EDGE + letters * LINE_HEIGHT * len(lines))
 
 
-def _heading(drawing: Drawing, frame: Frame) -> list[Text]:
-    """Lines of the title with their places."""
-    left, top, right, bottom = frame
-    lines, letters, _ = heading(drawing.title, right - left, bottom - top)
-    boxes = [text_size(line, letters) for line in lines]
-    places = [((left + right) / 2, top + _EDGE + box[1] * (i + 0.5)) for i, box in enumerate(boxes)]
-    return [
-        Text(np.array(at), box, (line,), "", "text", letters)
-        for at, box, line in zip(places, boxes, lines, strict=True)
-    ]
-
-
 class _KeyItem(NamedTuple):
     """An entry of the key: length of its line, words, role, and whether it is a scale."""
 
@@ -383,7 +354,8 @@ def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
         known.append(_KeyItem(size / metres * scale, length_text(size), "dimension", True))
     if scale * drawing.newton > 0:
         size = round_below(longest / (scale * drawing.newton))
-        known.append(_KeyItem(size * scale * drawing.newton, _force(size), "force", True))
+        force = f"{size / 1e3:g} kN" if size >= 1e3 else f"{size:g} N"
+        known.append(_KeyItem(size * scale * drawing.newton, force, "force", True))
     return known
 
 
@@ -396,10 +368,6 @@ def round_below(value: float) -> float:
 def length_text(size: float) -> str:
     """A length [m] with its unit, in metres or millimetres."""
     return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
-
-
-def _force(size: float) -> str:
-    return f"{size / 1e3:g} kN" if size >= 1e3 else f"{size:g} N"
 
 
 def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tuple[float, _KeyItem]]]:
@@ -415,12 +383,6 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
         lines[-1].append((at, entry))
         at += width + _SPACE
     return lines
-
-
-def _key_height(drawing: Drawing, frame: Frame) -> float:
-    """Room for the key: its colours, and a line more for scales where there are some."""
-    scales = bool(drawing.unit or drawing.newton)
-    return 3 * _EDGE + (_SMALL * LINE_HEIGHT + 3) * (scales + len(_lines_of_key(drawing, frame, 0.0)))
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:

@@ -79,22 +79,17 @@ def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layo
     for number, row in enumerate(rows):
         frames = frames_of(row, paper, number)
         held = [before if not layouts and i == 0 else None for i in range(len(row))]
-        made = [_arranged(*given) for given in zip(row, frames, held, strict=True)]
-        layouts += made if held[0] is not None else _to_one_scale(made)
+        made = [
+            arrange(drawing, frame) if kept is None else follow(drawing, frame, kept)
+            for drawing, frame, kept in zip(row, frames, held, strict=True)
+        ]
+        scale = min((each.fit.scale for each in made if not each.drawing.own_scale), default=0.0)
+        free = [held[0] is not None or each.drawing.own_scale for each in made]
+        layouts += [
+            each if is_free or each.fit.scale == scale else _at_scale(each, scale)
+            for each, is_free in zip(made, free, strict=True)
+        ]
     return layouts
-
-
-def _arranged(drawing: Drawing, frame: Frame, before: Layout | None) -> Layout:
-    return arrange(drawing, frame) if before is None else follow(drawing, frame, before)
-
-
-def _to_one_scale(layouts: Sequence[Layout]) -> list[Layout]:
-    """The layouts at the least of their scales, except for details."""
-    scale = min((layout.fit.scale for layout in layouts if not layout.drawing.own_scale), default=0.0)
-    return [
-        layout if layout.drawing.own_scale or layout.fit.scale == scale else _at_scale(layout, scale)
-        for layout in layouts
-    ]
 
 
 def _at_scale(layout: Layout, scale: float) -> Layout:

@@ -109,12 +109,9 @@ def _arrow(shape: Arrow, fit: Fit) -> Iterator[Stroke]:
     start = foot + head * along if shape.both else foot
     ends = [(tip, along), (foot, -along)] if shape.both else [(tip, along)]
     yield Polylines([np.array([start, tip - 0.8 * head * along])], Pen(shape.role, shape.width))
-    yield Polylines([_arrowhead(end, to, head) for end, to in ends], Pen(fill=shape.role), closed=True)
-
-
-def _arrowhead(tip: np.ndarray, along: np.ndarray, head: float) -> np.ndarray:
     across = _HALF * head / _HEAD * np.array([-along[1], along[0]])
-    return np.array([tip, tip - head * along + across, tip - head * along - across])
+    heads = [np.array([end, end - head * to + across, end - head * to - across]) for end, to in ends]
+    yield Polylines(heads, Pen(fill=shape.role), closed=True)
 
 
 def _symbol(shape: Symbol, fit: Fit) -> Iterator[Stroke]:

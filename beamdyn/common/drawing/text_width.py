@@ -2,103 +2,38 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import accumulate, takewhile
+from typing import Any
 
 FAMILY = "'DejaVu Sans', Verdana, sans-serif"
 LINE_HEIGHT = 1.22  # over the size of the letters
 SUBSCRIPT = 0.7  # size of a subscript over that of the letters
-_EM = 2048  # units of the table in the size of the letters
-_OTHER = 2048  # width of letters that the table lacks
-_WIDTHS = {
-    465: "′",
-    563: "'",
-    569: "ijlìíîï",
-    604: "IJÌÍÎÏΙΪ",
-    651: " ,.\xa0·‘’",
-    690: "/:;\\|¦",
-    693: "ίι",
-    721: "f",
-    739: "-\xad",
-    765: "″",
-    799: "()[]",
-    803: "t",
-    821: "!¡²³¹",
-    842: "r",
-    942: '"',
-    965: "ªº",
-    1024: "*_`§¨¯°´¸–∥",
-    1059: "∂",
-    1061: "“”",
-    1067: "s∫",
-    1075: "z",
-    1087: "?¿",
-    1107: "έε",
-    1114: "ζ",
-    1126: "cç",
-    1141: "LΓ",
-    1142: "ξ",
-    1144: "ν",
-    1178: "F",
-    1183: "χ",
-    1185: "ΰυ",
-    1186: "k",
-    1202: "ς",
-    1207: "κ",
-    1208: "•",
-    1212: "vxyýÿγλ",
-    1233: "πτ",
-    1235: "PΡ",
-    1239: "Þ",
-    1251: "TYÝΤΥΫ",
-    1253: "o«»ðòóôõöøδθο",
-    1255: "aàáâãäå",
-    1260: "eèéêë",
-    1290: "ß",
-    1294: "EÈÉÊËΕΞΣ",
-    1298: "hnuñùúûüήησ",
-    1300: "Sbdgpqþρ",
-    1303: "$0123456789{}¢£¤¥µ¶μ",
-    1305: "√",
-    1307: "β",
-    1343: "KΚ",
-    1350: "άα",
-    1351: "φψ",
-    1380: "∑",
-    1401: "AVÀÁÂÃÄÅΑΔΛ",
-    1403: "XZΖΧ",
-    1405: "BΒ",
-    1423: "R",
-    1430: "CÇ",
-    1499: "UÙÚÛÜ",
-    1532: "NÑΝ",
-    1540: "HΗΠ",
-    1565: "Ω",
-    1577: "D",
-    1587: "GÐ",
-    1597: "&",
-    1612: "OQÒÓÔÕÖØΘΟΦΨ",
-    1675: "w",
-    1706: "∞",
-    1715: "ω",
-    1716: "#+<=>^~¬±×÷−→←↑↓≤≥≈≠",
-    1767: "MΜ",
-    1784: "⊥",
-    1836: "∠",
-    1946: "%",
-    1985: "¼½¾",
-    1995: "mÆ",
-    2011: "æ",
-    2025: "W",
-    2048: "@©®—…",
-}
-_OF_LETTER = {letter: width / _EM for width, letters in _WIDTHS.items() for letter in letters}
+_EM = 2048  # units of the font in the size of its letters
+
+
+@cache
+def _font() -> Any:
+    """The font, as large as its own units."""
+    from matplotlib import get_data_path  # here, because it is slow to import
+    from matplotlib.ft2font import FT2Font
+
+    font = FT2Font(f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf")
+    font.set_size(_EM, 72)
+    return font
+
+
+@cache
+def _letter_width(letter: str) -> float:
+    """Width of a letter over its size; one that the font lacks is as wide as high."""
+    known = _font().get_char_index(ord(letter))
+    return _font().load_char(ord(letter)).linearHoriAdvance / 65536 / _EM if known else 1.0
 
 
 @lru_cache(maxsize=4096)
 def line_width(text: str) -> float:
     """Width of a line over the size of its letters, without kerning."""
-    return sum(_OF_LETTER.get(letter, _OTHER / _EM) for letter in text)
+    return sum(map(_letter_width, text))
 
 
 def symbol_width(symbol: str) -> float:

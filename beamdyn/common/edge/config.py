@@ -159,30 +159,34 @@ _WORDS = {
 
 def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
     """One mistake as a sentence, and the path of the input that it is about."""
-    place, path = _path(error["loc"]), _path(error["loc"], indices=False)
-    context = error.get("ctx", {})
+    loc, context, given = error["loc"], error.get("ctx", {}), error["input"]
+    place, path = _path(loc), _path(loc, indices=False)
     match error["type"]:
         case "missing":
-            return str(MissingValue(place, None, _how_to_give(model, path))), path
+            known = describe(model)
+            how = next(
+                (f"give the {i.help}" for i in known if i.path == path), "give as many values as stations"
+            )
+            how = f"give a table [{path}]" if any(i.path.startswith(f"{path}.") for i in known) else how
+            return str(MissingValue(place, None, how)), path
         case "extra_forbidden":
-            return _unknown(model, error["loc"]), path
+            return _unknown(model, loc), path
         case "value_error":
-            return _refusal(model, place, path, context.get("error"), error["input"])
+            return _refusal(model, place, path, context.get("error"), given)
         case "kind":
-            return str(InvalidInput(f"{place}.kind", error["input"]["kind"], error["msg"])), f"{path}.kind"
+            return str(InvalidInput(f"{place}.kind", given["kind"], error["msg"])), f"{path}.kind"
         case "literal_error":
-            return str(InvalidInput(place, error["input"], f"give {context.get('expected')}")), path
+            bound = f"give {context.get('expected')}"
         case "too_long":
             bound = f"give at most {context['max_length']} values"
-            return str(InvalidInput(place, error["input"], bound)), path
         case "string_too_long":
             bound = f"give at most {context['max_length']} characters"
-            return str(InvalidInput(place, error["input"], bound)), path
         case "too_short":
             least = context["min_length"]
             bound = f"give at least {'one value' if least == 1 else f'{least} values'}"
-            return str(InvalidInput(place, error["input"], bound)), path
-    return str(InvalidInput(place, error["input"], _WORDS.get(error["type"], error["msg"]))), path
+        case _:
+            bound = _WORDS.get(error["type"], error["msg"])
+    return str(InvalidInput(place, given, bound)), path
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
@@ -300,41 +304,21 @@ def _path(loc: Iterable[int | str], indices: bool = True) -> str:
     return "".join(parts).removeprefix(".")
 
 
-def _how_to_give(model: type[BaseModel], path: str) -> str:
-    inputs = describe(model)
-    if any(i.path.startswith(f"{path}.") for i in inputs):
-        return f"give a table [{path}]"
-    return next((f"give the {i.help}" for i in inputs if i.path == path), "give as many values as stations")
-
-
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Sentence on an unknown key, with the nearest known key, or all known ones."""
-    table, key = _path(loc[:-1], indices=False), str(loc[-1])  # whatever the key begins with
-    prefix = table and f"{table}."
-    inside = [i.path.removeprefix(prefix) for i in describe(model) if i.path.startswith(prefix)]
-    known = list(dict.fromkeys(path.partition(".")[0] for path in inside))
+    """Sentence on an unknown key: where it belongs, or the nearest known key, or all known ones."""
+    table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
+    prefix = table and f"{table}."  # whatever the key begins with
+    inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]
+    names = [*dict.fromkeys(inside)] or ["polynomial", "stations", "values"]
+    kinds = [show(i.choices[0]) for i in known if i.path == f"{table}.kind" and key in i.section.model_fields]
+    tables = {i.path.rpartition(".")[0] for i in known if i.name == key} - {""}
+    if key in names and kinds:
+        remedy = f"it goes with kind = {' or '.join(kinds)}"
+    elif len(tables) == 1:
+        remedy = f"it belongs in the table [{tables.pop()}]"
+    elif near := difflib.get_close_matches(key, names, n=1):
+        remedy = f"did you mean {near[0]}?"
+    else:
+        remedy = f"known are {', '.join(names)}"
     shown = key if key.isprintable() and len(key) <= _LONGEST_KEY else show(key)
-    place = f"{_path(loc[:-1])}.{shown}".removeprefix(".")
-    return (
-        f"{place}: unknown key; {_nearest(model, table, key, known or ['polynomial', 'stations', 'values'])}"
-    )
-
-
-def _nearest(model: type[BaseModel], table: str, key: str, known: list[str]) -> str:
-    if key in known and (kinds := _kinds_with(model, table, key)):
-        return f"it goes with kind = {' or '.join(kinds)}"
-    if len(tables := _tables_with(model, key)) == 1:
-        return f"it belongs in the table [{tables.pop()}]"
-    near = difflib.get_close_matches(key, known, n=1)
-    return f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
-
-
-def _tables_with(model: type[BaseModel], key: str) -> set[str]:
-    """The tables that know a key."""
-    return {i.path.rpartition(".")[0] for i in describe(model) if i.name == key} - {""}
-
-
-def _kinds_with(model: type[BaseModel], table: str, key: str) -> list[str]:
-    """The kinds of a table that has alternatives, in quotes, of those that know a key."""
-    kinds = (i for i in describe(model) if i.path == f"{table}.kind")
-    return [show(i.choices[0]) for i in kinds if key in i.section.model_fields]
+    return f"{f'{_path(loc[:-1])}.{shown}'.removeprefix('.')}: unknown key; {remedy}"

@@ -7,6 +7,7 @@ import difflib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from beamdyn.common.edge.data_text import DataText, as_decimal, number_at, plain_name, quote, to_number
 from beamdyn.common.edge.inputs import Quantity
@@ -89,23 +90,20 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
     if not lines:
         raise text.lacking("expected a line of heads with units, such as 'x [m], mass [kg/m]'")
     head_line, *rest = lines
-    delimiter = _delimiter(text.lines[head_line - 1])
-    heads = [
-        _ColumnHead.read(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)
-    ]
-    _check_heads(text, head_line, heads)
+    outside = re.sub(r"[\[(][^\])]*[\])]", "", text.lines[head_line - 1])  # of the brackets of units
+    delimiter = max(_DELIMITERS, key=outside.count)
+    heads = [_read_head(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)]
+    plain = [head.name or plain_name(head.head) for head in heads]
+    for k, name in enumerate(plain):
+        if name in plain[:k]:
+            same, first = quote(heads[k].head), quote(heads[plain.index(name)].head)
+            raise text.refusal(head_line, f"{same} is the same column as {first}; give one")
     if len(rest) < 2:
         raise text.lacking("expected two rows of numbers at least below the heads")
     rows = [_read_row(text, line, _cells(text, line, delimiter), heads) for line in rest]
     columns = zip(heads, zip(*rows, strict=True), strict=True)
     made = tuple(CsvColumn(head.head, head.name, head.unit, tuple(values)) for head, values in columns)
     return CsvTable(text, head_line, tuple(rest), made)
-
-
-def _delimiter(heads: str) -> str:
-    """The delimiter of the columns: the one that occurs most often outside the brackets of units."""
-    outside = re.sub(r"[\[(][^\])]*[\])]", "", heads)
-    return max(_DELIMITERS, key=outside.count)
 
 
 def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
@@ -117,80 +115,59 @@ def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
-@dataclass(frozen=True)
-class _ColumnHead:
+class _ColumnHead(NamedTuple):
+    """A head as it is written, the name of its quantity (empty if not known), its unit, and the quantity."""
+
     head: str
     name: str
     unit: str
     quantity: Quantity
 
-    @classmethod
-    def read(
-        cls, text: DataText, line: int, cell: str, known: Mapping[str, Quantity], names: Mapping[str, str]
-    ) -> _ColumnHead:
-        match = _HEAD.fullmatch(cell)
-        if match is None or not match[1] or to_number(cell) is not None:
-            raise text.refusal(line, f"expected a head such as 'mass [kg/m]', found {quote(cell)}")
-        head, unit = match[1], _usual_spelling((match[2] or "").strip())
-        plain = plain_name(head)
-        name = names.get(plain, "")
-        if not name:
-            if near := difflib.get_close_matches(plain, names, n=1, cutoff=0.8):
-                meant = names[near[0]]
-                raise text.refusal(line, f"unknown column {quote(head)}; did you mean {meant}?")
-            return cls(head, "", unit, Quantity())
-        _check_unit(text, line, head, unit, known[name])
-        return cls(head, name, "" if unit in ("-", "1") else unit, known[name])
 
-
-def _usual_spelling(unit: str) -> str:
-    """A unit in the spelling read elsewhere: N m2 for Nm^2 and N-m^2, as in files on wind turbines."""
-    return re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", unit))
-
-
-def _check_unit(text: DataText, line: int, head: str, unit: str, quantity: Quantity) -> None:
-    """Refuse a unit that is missing, unknown or of another kind."""
-    wanted = quantity.unit
-    if not wanted:
-        if unit not in ("", "-", "1"):
-            raise text.refusal(line, f"expected {head} without a unit, found [{unit}]")
-        return
-    expected = f"expected a unit like [{usual_unit(wanted)}] for {head}"
-    if not unit:
-        raise text.refusal(line, f"{expected}, found none")
-    try:
-        quantity.convert(f"1 {unit}")
-    except InvalidInput as error:
-        said = error.bound.partition(";")[0]
-        raise text.refusal(line, f"{expected}, found [{unit}]: {said}") from None
-
-
-def _check_heads(text: DataText, line: int, heads: list[_ColumnHead]) -> None:
-    names = [head.name or plain_name(head.head) for head in heads]
-    for k, name in enumerate(names):
-        if name in names[:k]:
-            first = heads[names.index(name)].head
-            raise text.refusal(line, f"{quote(heads[k].head)} is the same column as {quote(first)}; give one")
+def _read_head(
+    text: DataText, line: int, cell: str, known: Mapping[str, Quantity], names: Mapping[str, str]
+) -> _ColumnHead:
+    """Read a head, and refuse a unit that is missing, unknown or of another kind."""
+    match = _HEAD.fullmatch(cell)
+    if match is None or not match[1] or to_number(cell) is not None:
+        raise text.refusal(line, f"expected a head such as 'mass [kg/m]', found {quote(cell)}")
+    # Units in the spelling read elsewhere: N m2 for Nm^2 and N-m^2, as in files on wind turbines.
+    head, unit = match[1], re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", (match[2] or "").strip())
+    unit, plain = re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", unit), plain_name(head)
+    if not (name := names.get(plain, "")):
+        if near := difflib.get_close_matches(plain, names, n=1, cutoff=0.8):
+            raise text.refusal(line, f"unknown column {quote(head)}; did you mean {names[near[0]]}?")
+        return _ColumnHead(head, "", unit, Quantity())
+    quantity, no_unit = known[name], unit in ("", "-", "1")
+    if not quantity.unit and not no_unit:
+        raise text.refusal(line, f"expected {head} without a unit, found [{unit}]")
+    if quantity.unit:
+        expected = f"expected a unit like [{usual_unit(quantity.unit)}] for {head}"
+        if not unit:
+            raise text.refusal(line, f"{expected}, found none")
+        try:
+            quantity.convert(f"1 {unit}")
+        except InvalidInput as error:
+            said = error.bound.partition(";")[0]
+            raise text.refusal(line, f"{expected}, found [{unit}]: {said}") from None
+    return _ColumnHead(head, name, "" if unit in ("-", "1") else unit, quantity)
 
 
 def _read_row(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[float]:
+    """Numbers of a line: in SI where the column is known."""
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
         raise text.refusal(line, f"expected {len(heads)} cells under the heads, found {len(cells)}")
-    return [_read_cell(text, line, cell, head) for cell, head in zip(cells, heads, strict=True)]
-
-
-def _read_cell(text: DataText, line: int, cell: str, head: _ColumnHead) -> float:
-    """A number: in SI where the column is known."""
-    number = number_at(text, line, cell, f"{head.head} [{head.unit}]" if head.unit else head.head)
-    if not head.name:
-        return number
-    try:
-        written = as_decimal(cell)
-        return head.quantity.parse(f"{written} {head.unit}" if head.quantity.unit else number)
-    except InvalidInput as error:
-        raise text.refusal(line, f"{head.head} = {cell} {head.unit}".rstrip() + f": {error.bound}") from None
+    row = []
+    for cell, (head, name, unit, quantity) in zip(cells, heads, strict=True):
+        number = number_at(text, line, cell, f"{head} [{unit}]" if unit else head)
+        try:
+            given = f"{as_decimal(cell)} {unit}" if quantity.unit else number
+            row.append(quantity.parse(given) if name else number)
+        except InvalidInput as error:
+            raise text.refusal(line, f"{head} = {cell} {unit}".rstrip() + f": {error.bound}") from None
+    return row
 
 
 def check_places(table: CsvTable, name: str) -> None:

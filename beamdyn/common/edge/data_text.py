@@ -76,7 +76,22 @@ def read_data(path: str | PathLike[str]) -> DataText:
         If it cannot be read, is no text or is empty.
     """
     file = as_path("path", path, "a file")
-    text = _decoded(file, _bytes_of(file))
+    try:
+        with file.open("rb") as opened:
+            content = opened.read(_MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise ConfigError(str(file), ["there is no such file; check the name and the folder"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ConfigError(str(file), [f"it cannot be read ({reason}); give a text file"]) from None
+    if len(content) > _MOST_BYTES:
+        raise ConfigError(str(file), ["it is longer than 20 MB; give a deck or a table"])
+    try:
+        text = content.decode(_ENCODINGS.get(content[:2], "utf-8-sig"))
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    if "\0" in text:
+        raise ConfigError(str(file), ["it is no text; give a deck or a table saved as text"])
     if not text.strip():
         raise ConfigError(str(file), ["the file is empty; give a deck or a table"])
     return DataText(file, tuple(text.splitlines()))
@@ -95,31 +110,6 @@ def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
         said = f"{key} = {show(name)}: there is no such file in the folder {folder.resolve()}"
         raise ConfigError(str(path), [f"{said}; check the name, which is relative to this file"], [key])
     return folder / name
-
-
-def _bytes_of(file: Path) -> bytes:
-    try:
-        with file.open("rb") as opened:
-            content = opened.read(_MOST_BYTES + 1)
-    except FileNotFoundError:
-        raise ConfigError(str(file), ["there is no such file; check the name and the folder"]) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ConfigError(str(file), [f"it cannot be read ({reason}); give a text file"]) from None
-    if len(content) > _MOST_BYTES:
-        raise ConfigError(str(file), ["it is longer than 20 MB; give a deck or a table"])
-    return content
-
-
-def _decoded(file: Path, content: bytes) -> str:
-    encoding = _ENCODINGS.get(content[:2], "utf-8-sig")
-    try:
-        text = content.decode(encoding)
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")
-    if "\0" in text:
-        raise ConfigError(str(file), ["it is no text; give a deck or a table saved as text"])
-    return text
 
 
 # Numbers ------------------------------------------------------------------------------------------
@@ -143,27 +133,24 @@ def as_decimal(word: str) -> str:
 
 def number_at(text: DataText, line: int, word: str, name: str) -> float:
     """The number in a word, or an error that says what was expected."""
-    number = to_number(word)
-    if number is None:
-        raise text.refusal(line, f"expected a number for {name}, found {quote(word)}{_advice(word)}")
-    if abs(number) > MOST:
+    number, advice = to_number(word), ""
+    if number is not None and abs(number) <= MOST:
+        return number
+    if number is not None:
         raise text.refusal(line, f"expected a number up to {MOST:g} for {name}, found {quote(word)}")
-    return number
+    if strange := next((c for c in word if not c.isascii()), ""):
+        known = unicodedata.name(strange, "no name").lower()
+        advice = f" with the character U+{ord(strange):04X} ({known}); write it in plain characters"
+    elif to_number(word.replace(",", ".", 1)) is not None:
+        advice = "; write a decimal point"
+    elif word.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        advice = "; give a finite one"
+    raise text.refusal(line, f"expected a number for {name}, found {quote(word)}{advice}")
 
 
 def quote(word: str) -> str:
     """A word in a message, shortened where it is long."""
     return f"'{word if len(word) <= 40 else word[:37] + '...'}'"
-
-
-def _advice(word: str) -> str:
-    """What is wrong with a word that is not a number."""
-    if strange := next((c for c in word if not c.isascii()), ""):
-        name = unicodedata.name(strange, "no name").lower()
-        return f" with the character U+{ord(strange):04X} ({name}); write it in plain characters"
-    if to_number(word.replace(",", ".", 1)) is not None:
-        return "; write a decimal point"
-    return "" if word.lower().lstrip("+-") not in ("nan", "inf", "infinity") else "; give a finite one"
 
 
 # Values followed by their names -------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -41,8 +41,14 @@ class Question:
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
         """Make one from the text of the file; options that are None, False or empty are left out."""
-        words = [*command.split(), str(file), *_options(options)]
-        return cls(f"{command}: {file}", f"# {_line(shlex.join(words))}\n\n{text}")
+        words = [*command.split(), str(file)]
+        for name, value in options.items():
+            option = f"--{name.replace('_', '-')}"
+            for given in value if isinstance(value, tuple) else (value,):
+                if given is not None and given is not False:
+                    words += [option] if given is True else [option, str(given)]
+        line = "".join(c if c.isprintable() else " " for c in shlex.join(words))  # as a comment
+        return cls(f"{command}: {file}", f"# {line}\n\n{text}")
 
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
@@ -50,19 +56,6 @@ class Question:
         from beamdyn.common.edge.config import read
 
         return cls.of(command, file, read(file), **options)
-
-
-def _options(options: dict[str, object]) -> Iterator[str]:
-    for name, value in options.items():
-        option = f"--{name.replace('_', '-')}"
-        for given in value if isinstance(value, tuple) else (value,):
-            if given is not None and given is not False:
-                yield from (option,) if given is True else (option, str(given))
-
-
-def _line(text: str) -> str:
-    """Text that fits into a comment: on one line, and printable."""
-    return "".join(c if c.isprintable() else " " for c in text)
 
 
 @dataclass(frozen=True)
@@ -112,8 +105,10 @@ def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str
     parts : iterable of (name, warnings, tables, drawing)
         Content for each screen; tables are HTML, drawings are elements as `picture` makes them.
     """
+    warning = '<p class="warning"><strong>Warning:</strong> {}</p>'
     body = "".join(
-        f"<h2>{escape(name)}</h2>{''.join(_warning(said) for said in dict.fromkeys(warnings))}{made}{tables}"
+        f"<h2>{escape(name)}</h2>"
+        f"{''.join(warning.format(escape(said)) for said in dict.fromkeys(warnings))}{made}{tables}"
         for name, warnings, tables, made in parts
     )
     return (
@@ -122,7 +117,3 @@ def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str
         f'<body class="shown"><h1>{escape(title)}</h1>{body}<h2>Inputs</h2><pre>{escape(inputs)}</pre>'
         f"<p>beamdyn {escape(__version__)}</p></body></html>\n"
     )
-
-
-def _warning(sentence: str) -> str:
-    return f'<p class="warning"><strong>Warning:</strong> {escape(sentence)}</p>'

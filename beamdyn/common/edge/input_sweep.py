@@ -1,20 +1,27 @@
-"""Results over inputs of a file that are varied: as an object, and as the rows of a CSV file."""
+"""Results over inputs of a file that are varied, as an object and as columns; designs solved one by one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from beamdyn.common.edge.inputs import Section
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.edge.varied_inputs import unknown
+from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of, unknown
+from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.inputs.paths import part_at, with_parts
+from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results.columns import Column, Columns, column_named
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
 
+MOST_ONE_BY_ONE = 2000  # designs, which take minutes
+_CHUNK = 16  # designs of a task
 _MOST_NAMED = 4  # results in a line
 
 
@@ -156,7 +163,15 @@ def swept(
     NoAnswer
         If all are refused; the message says why the first is.
     """
-    refused = dict(sorted((refused or {}).items()))
+    refused, said = dict(sorted((refused or {}).items())), []
+    if refused:
+        first, count = min(refused), len(refused)
+        where = designs.at(*map(int, np.unravel_index(first, designs.shape)))
+        at = (f"{each.name} = {where[each.name]:.6g} {each.unit}".strip() for each in designs.inputs)
+        reason = f"{', '.join(at)}: {refused[first]}"
+        if count == designs.count:
+            raise NoAnswer(f"at none of {count} values is there an answer; {reason}")
+        said = [f"at {count} of {designs.count} values there is no answer; {reason}"]
     of_all = (np.broadcast_to(values, (designs.count,)).reshape(designs.shape) for values in found)
     return InputSweep(
         inputs=tuple(each.name for each in designs.inputs),
@@ -165,23 +180,10 @@ def swept(
         results=tuple(output.name for output in outputs),
         result_units=tuple(output.unit for output in outputs),
         found=tuple(of_all),
-        warnings=(*_warn_of_refused(designs, refused), *warnings),
+        warnings=(*said, *warnings),
         combine=designs.combine,
         refused=tuple(refused.items()),
     )
-
-
-def _warn_of_refused(designs: Designs, refused: Mapping[int, str]) -> Iterator[str]:
-    """Yield a sentence on the refused designs, with the reason of the first; raise NoAnswer if all are."""
-    if not refused:
-        return
-    first = min(refused)
-    where = designs.at(*map(int, np.unravel_index(first, designs.shape)))
-    at = (f"{each.name} = {where[each.name]:.6g} {each.unit}".strip() for each in designs.inputs)
-    said = f"{', '.join(at)}: {refused[first]}"
-    if len(refused) == designs.count:
-        raise NoAnswer(f"at none of {len(refused)} values is there an answer; {said}")
-    yield f"at {len(refused)} of {designs.count} values there is no answer; {said}"
 
 
 # Rows of files and tables --------------------------------------------------------------------------------
@@ -208,3 +210,148 @@ def columns(swept: InputSweep) -> list[tuple[str, str]]:
     """Names and units of the columns: inputs, then results."""
     inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in swept.inputs)
     return [*zip(inputs, swept.units, strict=True), *zip(swept.results, swept.result_units, strict=True)]
+
+
+# Designs that are solved one by one, where the model takes no arrays of inputs -----------------------
+
+
+@dataclass(frozen=True)
+class SolvedCases:
+    """Results of the designs of a task.
+
+    Parameters
+    ----------
+    values : ndarray, shape (r, n)
+        The r results of each of the n designs, in the units shown; nan where there is none.
+    refused : tuple of int
+        Designs without an answer, counted within the task.
+    why : tuple of str
+        Why each of these has none.
+    """
+
+    values: np.ndarray
+    refused: tuple[int, ...]
+    why: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CaseTask:
+    """Some designs of a sweep, which a worker solves one by one.
+
+    Parameters
+    ----------
+    tables : mapping
+        The design whose inputs are varied, as the parser of files gives it.
+    axes : sequence of Axis
+        The d inputs that are varied.
+    given : ndarray, shape (n, d)
+        Their values in each of the n designs [the axes' units].
+    outputs : tuple of str
+        Names of the results that are wanted.
+    """
+
+    tables: Mapping[str, Any]
+    axes: Sequence[Axis]
+    given: np.ndarray
+    outputs: tuple[str, ...]
+
+
+Solve = Callable[[Mapping[str, Any]], Any]
+
+
+def one_by_one(
+    tables: Mapping[str, Any],
+    axes: Sequence[Axis],
+    outputs: Sequence[Output],
+    solve: Callable[[CaseTask], SolvedCases],
+    combine: str = "product",
+    run: TaskRunner | None = None,
+) -> InputSweep:
+    """Solve the designs of varied inputs one by one.
+
+    Parameters
+    ----------
+    tables : mapping
+        The design whose inputs are varied, as the parser of files gives it.
+    axes : sequence of Axis
+        The inputs that are varied.
+    outputs : sequence of Output
+        The outputs that are wanted.
+    solve : callable
+        Solves the designs of a task, as `solve_cases` does.
+    combine : {"product", "zip"}
+        Whether the inputs are combined each with each, or taken together.
+    run : TaskRunner, optional
+        Runs the tasks; by default in this process.
+
+    Returns
+    -------
+    InputSweep
+
+    Raises
+    ------
+    NoAnswer
+        If no design has an answer; the message says why the first has none.
+    """
+    designs, run = designs_of(axes, combine), run or TaskRunner()
+    results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
+    names = tuple(output.name for output in outputs)
+    sent = []  # without classes of tables: one that was made while a file was read does not unpickle
+    for axis in axes:
+        entry = replace(axis.input, section=Section)
+        if isinstance(entry, Coordinate):
+            entry = replace(entry, of=replace(entry.of, section=Section))
+        sent.append(replace(axis, input=entry))
+
+    def make(rows: slice) -> CaseTask:
+        return CaseTask(tables, sent, np.stack([*designs.columns(rows).values()], axis=1), names)
+
+    def keep(rows: slice, found: SolvedCases) -> None:
+        results[:, rows] = found.values
+        refusals.update(zip((rows.start + i for i in found.refused), found.why, strict=True))
+
+    tasks = [Task(partial(make, rows), rows.stop - rows.start, rows) for rows in designs.chunks(_CHUNK)]
+    run.run(solve, tasks, keep)
+    return swept(designs, outputs, [*results], run.warnings, refusals)
+
+
+def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> SolvedCases:
+    """Solve the designs of a task.
+
+    Parameters
+    ----------
+    task : CaseTask
+        The designs.
+    outputs : sequence of Output
+        The outputs that there are.
+    solve : callable
+        Returns the answer of a design, given as tables.
+    """
+    wanted = {output.name: output for output in outputs}
+    values, refused = np.full((len(task.outputs), len(task.given)), np.nan), dict[int, str]()
+    for case, given in enumerate(task.given.tolist()):
+        design = placed(task.tables, task.axes, given)
+        try:
+            answer = solve(design)
+            values[:, case] = [float(wanted[name].shown(answer)) for name in task.outputs]
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            refused[case] = reason_of(error)
+    return SolvedCases(values, tuple(refused), tuple(refused.values()))
+
+
+def placed(tables: Mapping[str, Any], axes: Sequence[Axis], values: Sequence[float]) -> dict[str, Any]:
+    """The tables of a design with other values [the axes' units] of some inputs."""
+    given = {
+        axis.input.path: f"{value:.15g} {axis.unit}" if axis.unit else float(value)
+        for axis, value in zip(axes, values, strict=True)
+    }
+    missing: dict[str, Any] = {}  # points of which one coordinate is given, with their defaults
+    for axis in axes:
+        if isinstance(axis.input, Coordinate):
+            of, there = axis.input.of, part_at(tables, axis.input.of.path)
+            if not isinstance(there, list) or len(there) != 2:
+                default: Any = of.default
+                missing[of.path] = [
+                    f"{number!r} {of.quantity.unit}".strip() for number in map(float, default)
+                ]
+    return with_parts(with_parts(tables, missing), given)

@@ -68,16 +68,23 @@ class Files:
             If a file cannot be written, is an input or lies in one, or is named twice.
         """
         own = {"plot": self.plot, "json": self.json, "csv": self.csv, "report": self.report}
-        paths = {**own, **more}
-        given = {option: path for option, path in paths.items() if path is not None}
+        given = {option: path for option, path in (own | more).items() if path is not None}
         read = [place for i in inputs if i is not None and given for place in (i, *_named_by(Path(i)))]
         for option, path in given.items():
-            _check_is_no_input(option, path, read)
+            above = (path, *Path(os.path.realpath(path)).parents)
+            for needed in read:
+                if any(same_file(place, needed) for place in above):
+                    said = f"the command itself needs {needed}; give another file"
+                    raise ValueError(f"--{option} = {path}: {said}")
         for (one, path), (other, same) in combinations(given.items(), 2):
             if same_file(path, same):
                 raise ValueError(f"--{one} and --{other} = {same}: give each its own file")
         for option, path in given.items():
-            _check_output(option, path, self.force)
+            try:
+                remedy = "add --force to overwrite it, or give another name"
+                check_writable(path, _SUFFIXES.get(option, ()), self.force, remedy)
+            except (OSError, ValueError) as error:
+                raise ValueError(f"--{option} = {error}") from None
 
 
 @Parameter(name="*")
@@ -206,17 +213,3 @@ def _named_by(scene: Path) -> list[Path]:
             table = table.get(name) if isinstance(table, dict) else None
         named.append(table.get(key) if isinstance(table, dict) else None)
     return [scene.parent / name for name in named if isinstance(name, str)]
-
-
-def _check_is_no_input(option: str, path: Path, inputs: Iterable[str | Path]) -> None:
-    for read in inputs:
-        if any(same_file(place, read) for place in (path, *Path(os.path.realpath(path)).parents)):
-            raise ValueError(f"--{option} = {path}: the command itself needs {read}; give another file")
-
-
-def _check_output(option: str, path: Path, force: bool) -> None:
-    remedy = "add --force to overwrite it, or give another name"
-    try:
-        check_writable(path, _SUFFIXES.get(option, ()), force, remedy)
-    except (OSError, ValueError) as error:
-        raise ValueError(f"--{option} = {error}") from None

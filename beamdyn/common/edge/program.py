@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from typing import Any
+from typing import Any, Literal
 
 from cyclopts import App, CycloptsError
 
@@ -27,6 +27,7 @@ EXIT_CODES = (
 
 
 _EXAMPLES = "{}, in the folder of the source:"
+Shell = Literal["bash", "zsh", "fish"]
 
 
 def examples(*lines: str) -> str:
@@ -41,6 +42,31 @@ class NoAnswer(Exception):
 
 class Interrupted(Exception):
     """Ctrl-C or SIGTERM; the message says what is done and how to go on."""
+
+
+def add_completion(app: App) -> None:
+    """Give a program's command line the command `completion`.
+
+    Parameters
+    ----------
+    app : App
+        The command line.
+    """
+    name = app.name[0]
+
+    @app.command(help_epilogue=examples(f"{name} completion bash"))
+    def completion(shell: Shell, /) -> None:
+        """Print the script by which a shell completes commands and options at the Tab key.
+
+        Where it goes: ~/.local/share/bash-completion/completions (bash), a folder of fpath (zsh) or
+        ~/.config/fish/completions (fish).
+
+        Parameters
+        ----------
+        shell
+            The shell.
+        """
+        print(app.generate_completion(shell=shell), end="")
 
 
 def run(app: App, arguments: Sequence[str] | None = None) -> int:

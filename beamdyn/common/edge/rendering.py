@@ -24,15 +24,11 @@ if TYPE_CHECKING:
 
 def svg(figure: Figure) -> str:
     """A figure as the text of an SVG file; the same figure gives the same text."""
-    return _saved(figure, "svg").decode()
+    return png(figure, "svg").decode()
 
 
-def png(figure: Figure) -> bytes:
-    """A figure as a PNG file."""
-    return _saved(figure, "png")
-
-
-def _saved(figure: Figure, kind: str) -> bytes:
+def png(figure: Figure, kind: str = "png") -> bytes:
+    """A figure as a PNG file, or as one of another kind."""
     from matplotlib import rc_context
 
     file = io.BytesIO()
@@ -78,43 +74,38 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
 
     If a table has more than `most` rows, the first and last ones are shown, and how many are not.
     """
-    return "\n".join(_html(part, most) for part in parts)
-
-
-def _html(part: RenderableType, most: int | None) -> str:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
-    if isinstance(part, Group):
-        return html(part.renderables, most)
-    if isinstance(part, Table):
-        return _table(part, most)
-    if isinstance(part, Text) and part.style == "bold":
-        return f"<h3>{escape(part.plain)}</h3>"
-    return f"<p>{escape(str(part))}</p>" if str(part) else ""
+    made = []
+    for part in parts:
+        if isinstance(part, Group):
+            made.append(html(part.renderables, most))
+        elif isinstance(part, Table):
+            made.append(_table(part, most))
+        elif isinstance(part, Text) and part.style == "bold":
+            made.append(f"<h3>{escape(part.plain)}</h3>")
+        else:
+            made.append(f"<p>{escape(str(part))}</p>" if str(part) else "")
+    return "\n".join(made)
 
 
 def _table(made: Table, most: int | None) -> str:
+    """A table; of one with too many rows the first and last ones, and how many are not shown."""
     words = [column.justify == "left" for column in made.columns]
-    heads = [str(column.header) for column in made.columns]
     cells = zip(*(column.cells for column in made.columns), strict=True)
     rows = [_row([_cell(cell) for cell in row], words, "td") for row in cells]
-    head = _row([escape(head) for head in heads], words, "th")
-    body = "".join(_ends(rows, most, len(heads)))
+    head = _row([escape(str(column.header)) for column in made.columns], words, "th")
+    if most is not None and len(rows) > most:
+        said = f"... {len(rows) - most} of {len(rows)} rows are not shown"
+        between = f'<tr><td class="words" colspan="{len(words)}">{said}</td></tr>'
+        tail = most // 2
+        rows = [*rows[: most - tail], between, *rows[-tail:]]
     return (
-        f'<div class="scrolls" tabindex="0"><table><thead>{head}</thead><tbody>{body}</tbody></table></div>'
+        f'<div class="scrolls" tabindex="0"><table><thead>{head}</thead>'
+        f"<tbody>{''.join(rows)}</tbody></table></div>"
     )
-
-
-def _ends(rows: list[str], most: int | None, columns: int) -> list[str]:
-    """The rows; if they are too many the first and last ones, with a row between that counts the others."""
-    if most is None or len(rows) <= most:
-        return rows
-    tail = most // 2
-    said = f"... {len(rows) - most} of {len(rows)} rows are not shown"
-    between = f'<tr><td class="words" colspan="{columns}">{said}</td></tr>'
-    return [*rows[: most - tail], between, *rows[-tail:]]
 
 
 def _cell(cell: object) -> str:
@@ -128,14 +119,13 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    kinds = (_kind(cell) if w else "number" for cell, w in zip(cells, words, strict=True))
+    """A row; words of a sentence are not set one below the other."""
+    kinds = (
+        ("words sentence" if len(cell) > _SENTENCE else "words") if w else "number"
+        for cell, w in zip(cells, words, strict=True)
+    )
     made = (f'<{tag} class="{kind}">{cell}</{tag}>' for cell, kind in zip(cells, kinds, strict=True))
     return f"<tr>{''.join(made)}</tr>"
-
-
-def _kind(cell: str) -> str:
-    """Classes of a cell with words: a sentence is not set one word below the other."""
-    return "words sentence" if len(cell) > _SENTENCE else "words"
 
 
 def csv_text(rows: Iterable[Sequence[object]], delimiter: str = ",") -> str:

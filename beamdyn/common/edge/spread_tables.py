@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,7 +42,6 @@ def headline(result: Spread, answer: int) -> str:
     """An answer in a sentence: nominal value, worst cases, standard deviation, what matters most."""
     k, unit = answer, f" {result.units[answer]}".rstrip()
     (low, high), scatter, nominal = _worst(result, k), result.scatter, result.nominal[k]
-    deviation = _number(*_deviation(result, k))
     parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
     worst = f"{low} to {high}{unit}"
     if scatter.no_answer[k]:
@@ -50,22 +49,17 @@ def headline(result: Spread, answer: int) -> str:
         parts.append(f"{none}, of the others {worst}")
     else:
         parts.append(f"{worst} at worst")
-    parts.append(f"standard deviation {deviation}{unit}")
-    return "; ".join([*parts, *_most(result, k)]) + "."
-
-
-def _most(result: Spread, answer: int) -> list[str]:
-    """The inputs that matter most, in words; none if there is only one input."""
-    names = result.matters_most(answer)
-    if not names or len(result.inputs) == 1:
-        return []
+    parts.append(f"standard deviation {_number(*_deviation(result, k))}{unit}")
+    names = result.matters_most(k) if len(result.inputs) > 1 else ()
     if len(names) > 1:
-        return [f"{' and '.join(names)} matter most, and are not told apart by {result.samples} samples"]
-    row = int(result.indices.total[:, answer].argmax())
-    total, error = result.indices.total[row, answer], result.indices.total_error[row, answer]
-    share = _share(total, error)
-    words = "" if "±" in share else f", with {share} of the variance"
-    return [f"{result.inputs[row].name} matters most{words}"]
+        alike = f"are not told apart by {result.samples} samples"
+        parts.append(f"{' and '.join(names)} matter most, and {alike}")
+    elif names:
+        row = int(result.indices.total[:, k].argmax())
+        share = _share(result.indices.total[row, k], result.indices.total_error[row, k])
+        words = "" if "±" in share else f", with {share} of the variance"
+        parts.append(f"{result.inputs[row].name} matters most{words}")
+    return "; ".join(parts) + "."
 
 
 def _numerical(result: Spread, answer: int) -> Callable[[float], float]:
@@ -88,24 +82,6 @@ def _worst(result: Spread, answer: int) -> tuple[str, str]:
     return _number(found.smallest[k], errors[0]), _number(found.largest[k], errors[1])
 
 
-def _worst_at(result: Spread, answer: int) -> str:
-    """Where the worst cases were found."""
-    found, k = result.worst, answer
-    if np.isinf([found.smallest_error[k], found.largest_error[k]]).any():
-        return "unresolved"
-    where = "search" if found.searched[k] else "corner"
-    return f"{where}, or no answer" if result.scatter.no_answer[k] else where
-
-
-def _largest_error(result: Spread, answer: int) -> str:
-    """The largest relative error of an answer, those of its worst cases among them."""
-    found, k = result.worst, answer
-    values, errors = (found.smallest[k], found.largest[k]), (found.smallest_error[k], found.largest_error[k])
-    each = [result.error[k], *(e / abs(v) for v, e in zip(values, errors, strict=True) if v)]
-    known = [error for error in each if not np.isnan(error)]
-    return f"{max(known):.0e}" if known else "-"
-
-
 def _number(value: float, error: float) -> str:
     return supported(value, error, _DIGITS).replace("none", "-")
 
@@ -124,17 +100,25 @@ def _heads(result: Spread) -> list[str]:
 
 
 def _ranges(result: Spread) -> Group:
-    """Nominal values, ranges to first order, and worst cases."""
-    first, rows = result.first_order, []
+    """Nominal values, ranges to first order, and worst cases with where they were found and errors."""
+    first, found, rows = result.first_order, result.worst, []
     for k, head in enumerate(_heads(result)):
         wrong = _numerical(result, k)
         nominal = _number(result.nominal[k], wrong(result.nominal[k]))
         ends = (
             _number(value, first.error[k] + wrong(value)) for value in (first.smallest[k], first.largest[k])
         )
-        rows.append(
-            (head, nominal, *ends, *_worst(result, k), _worst_at(result, k), _largest_error(result, k))
+        values, errors = (
+            (found.smallest[k], found.largest[k]),
+            (found.smallest_error[k], found.largest_error[k]),
         )
+        at = "search" if found.searched[k] else "corner"
+        at = f"{at}, or no answer" if result.scatter.no_answer[k] else at
+        at = "unresolved" if np.isinf(errors).any() else at
+        relative = [result.error[k], *(e / abs(v) for v, e in zip(values, errors, strict=True) if v)]
+        known = [error for error in relative if not np.isnan(error)]
+        largest = f"{max(known):.0e}" if known else "-"
+        rows.append((head, nominal, *ends, *_worst(result, k), at, largest))
     heads = ("answer", "nominal", "first order from", "to", "worst from", "to", "worst at", "error")
     return table(f"Ranges, by {result.provenance.method}", heads, rows, (0, 6))
 
@@ -158,69 +142,54 @@ def _scatter(result: Spread) -> Group:
 
 def _inputs(result: Spread) -> Iterator[Group]:
     """Inputs with their tolerances and shares of the variance of some answers, a table after the other."""
-    told = _told(result)
+    told, found = _told(result), result.indices
     firsts = [(each.name, f"{each.nominal:.6g} {each.unit}".rstrip(), each.text) for each in result.inputs]
-    beside = _fitting(firsts, [result.answers[k] for k in told])
+    names = [result.answers[k] for k in told]
+    left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
+    beside = max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, names), 0) + _GAP))  # as many as fit
     for start in range(0, len(told), beside):
-        shown = told[start : start + beside]
-        rows = ((*first, *(_both_shares(result, i, k) for k in shown)) for i, first in enumerate(firsts))
-        heads = ("input", "value", "tolerance", *(result.answers[k] for k in shown))
+        rows: list[list[str]] = [[*first] for first in firsts]
+        for i, row in enumerate(rows):
+            for k in told[start : start + beside]:
+                total = _share(found.total[i, k], found.total_error[i, k])
+                row.append(f"{total} ({_share(found.first[i, k], found.first_error[i, k])})")
+        heads = ("input", "value", "tolerance", *names[start : start + beside])
         yield table("Share of the variance: with other inputs (alone)", heads, rows, (0, 2))
 
 
-def _fitting(firsts: Sequence[Sequence[str]], answers: Sequence[str]) -> int:
-    """Number of answers that fit into a table beside the first columns of the inputs."""
-    left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
-    return max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, answers), 0) + _GAP))
-
-
-def _both_shares(result: Spread, row: int, answer: int) -> str:
-    found = result.indices
-    total = _share(found.total[row, answer], found.total_error[row, answer])
-    return f"{total} ({_share(found.first[row, answer], found.first_error[row, answer])})"
-
-
 def _note(result: Spread) -> str:
+    """Designs, digits, and where slopes and worst cases come from, naming inputs that have no derivatives."""
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
     normal = ", of normal ones three standard deviations either way" if is_normal else ""
+    first, told = result.first_order, _told(result)
+    exact = np.all((first.exact | ~np.isfinite(first.slope))[:, told], axis=1).tolist()
+    others = [each.name for each, known in zip(result.inputs, exact, strict=True) if not known]
+    slopes = f"derivatives, but by {', '.join(others)} from designs about it" if others else "derivatives"
+    if others and not first.exact[:, told].any():
+        slopes = "designs about it"
     said = (
         f"{result.designs} random designs, {result.worst.designs} for worst cases.",
         "Digits are as far as errors stand behind them.",
-        f"First order: slopes at the nominal design, from {_source_of_slopes(result)}.",
+        f"First order: slopes at the nominal design, from {slopes}.",
         f"Worst: within the ends of all tolerances{normal};",
         f"at corners as far as {result.samples} pairs of designs show.",
     )
     return " ".join(said)
 
 
-def _source_of_slopes(result: Spread) -> str:
-    """Where the slopes of the answers come from, naming the inputs that have no derivatives."""
-    first, told = result.first_order, _told(result)
-    exact = np.all((first.exact | ~np.isfinite(first.slope))[:, told], axis=1).tolist()
-    if all(exact):
-        return "derivatives"
-    others = [each.name for each, known in zip(result.inputs, exact, strict=True) if not known]
-    if not first.exact[:, told].any():
-        return "designs about it"
-    return f"derivatives, but by {', '.join(others)} from designs about it"
-
-
 def spread_csv(result: Spread) -> Columns:
-    """Inputs in SI and answers of the random designs, a row each."""
-    inputs = (
+    """Inputs in SI and answers of the random designs, a row each; frequencies of modes as in all tables."""
+    columns = [
         column_named(name_in_heads(each.name.replace(".", "_"), _SIGNS), values, each.unit)
         for each, values in zip(result.inputs, result.sampled_inputs.T, strict=True)
-    )
-    named = zip(result.answers, result.sampled_answers.T, result.units, strict=True)
-    return Columns(*inputs, *(_answer(*each) for each in named))
-
-
-def _answer(name: str, values: np.ndarray, unit: str) -> Column:
-    """Column of an answer; for the frequency of a mode "frequency_Hz_1", as in all tables."""
-    word, _, number = name.partition(" ")
-    if word == "mode" and number.isdecimal():
-        return Column("frequency", values, unit, number)
-    return column_named(name_in_heads(name, _SIGNS), values, unit)
+    ]
+    for name, values, unit in zip(result.answers, result.sampled_answers.T, result.units, strict=True):
+        word, _, number = name.partition(" ")
+        if word == "mode" and number.isdecimal():
+            columns.append(Column("frequency", values, unit, number))
+        else:
+            columns.append(column_named(name_in_heads(name, _SIGNS), values, unit))
+    return Columns(*columns)
 
 
 def _sweep_figure(result: Any) -> Figure:

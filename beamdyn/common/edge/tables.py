@@ -1,68 +1,63 @@
-"""Tables on the console."""
+"""Tables on the console, which are never cut: columns that do not fit on the screen follow below."""
 
 from __future__ import annotations
 
 import codecs
 import os
 import sys
+import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from io import TextIOWrapper
 from typing import Any
 from unicodedata import normalize
 
-from rich.console import Console, Group, RenderableType
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.table import Table
 from rich.text import Text
 
-from beamdyn.common.edge.fitted_table import FittedTable
 from beamdyn.common.edge.progress import quiet
 from beamdyn.common.results.comparison import Comparison
 from beamdyn.common.results.digits import count_sure
 
+_BETWEEN, _EDGES = 3, 1  # characters that a column, and a table, have beside their text
+_WORDS = 16  # least width of a column of words, in characters
 _PIPE_WIDTH = 120  # width of tables that go to a file or another program
 
 
 # ASCII for characters of our tables that a console without Unicode may lack.
 _SPELLED = {
-    **{
-        "ω": "omega",
-        "ζ": "zeta",
-        "η": "eta",
-        "Λ": "Lambda",
-        "Ω": "ohm",
-        "µ": "u",
-        "μ": "u",
-        "ᵀ": "^T",
-        "²": "^2",
-    },
-    **{"³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-"},
-}
+    "ω": "omega", "ζ": "zeta", "η": "eta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T",
+    "²": "^2", "³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-",
+}  # fmt: skip
 
 
 def spell(text: str, encoding: str) -> str:
     """Replace the characters that an encoding lacks: "omega^2" where it has no Greek letters."""
+
+    def spelled(character: str) -> str:
+        if character.encode(encoding, "ignore"):
+            return character
+        plain = normalize("NFKD", character).encode("ascii", "ignore").decode()
+        return _SPELLED.get(character) or plain or "?"
+
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
-        return "".join(_spell_character(c, encoding) for c in text)
+        return "".join(map(spelled, text))
     return text
-
-
-def _spell_character(character: str, encoding: str) -> str:
-    if character.encode(encoding, "ignore"):
-        return character
-    plain = normalize("NFKD", character).encode("ascii", "ignore").decode()
-    return _SPELLED.get(character) or plain or "?"
 
 
 def spell_output(stream: TextIOWrapper) -> None:
     """Let a stream replace the characters that its encoding lacks."""
-    codecs.register_error("beamdyn.spell", _spell_error)
+
+    def replaced(error: UnicodeError) -> tuple[str, int]:
+        assert isinstance(error, UnicodeEncodeError)
+        return spell(error.object[error.start : error.end], "ascii"), error.end
+
+    codecs.register_error("beamdyn.spell", replaced)
     stream.reconfigure(errors="beamdyn.spell")
-
-
-def _spell_error(error: UnicodeError) -> tuple[str, int]:
-    assert isinstance(error, UnicodeEncodeError)
-    return spell(error.object[error.start : error.end], "ascii"), error.end
 
 
 class Terminal(Console):
@@ -102,6 +97,80 @@ def show(parts: Iterable[RenderableType]) -> None:
     screen = console()
     for part in parts:
         screen.print(part)
+
+
+class FittedTable(Table):
+    """A table whose numbers are never cut.
+
+    Where it is wider than the screen its headings are broken between words; where that does not suffice its
+    columns stand in several tables below each other, each with the key columns, or with the number of the row
+    where there is no room for these.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Headings.
+    left : sequence of int
+        Columns of words, which are flush left and may be wrapped; numbers are flush right.
+    keys : int
+        Number of first columns that identify a row.
+    """
+
+    def __init__(self, columns: Sequence[str], left: Sequence[int], keys: int = 1) -> None:
+        super().__init__(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0))
+        self._keys = keys
+        for i, heading in enumerate(columns):
+            self.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the table, or its parts."""
+        room, places = options.max_width, [*range(len(self.columns))]
+        if _total([self._width(i) for i in places]) <= room:
+            yield from super().__rich_console__(console, options)
+            return
+        needed = [self._width(i, broken=True) for i in places]
+        keys, others = places[: self._keys], places[self._keys :]
+        widest = max((needed[i] for i in others), default=0)
+        numbered = _total([*(needed[i] for i in keys), widest]) > room
+        if numbered:
+            keys, others = [], places
+        first = [cell_len(str(self.row_count))] if numbered else [needed[i] for i in keys]
+        groups: list[list[int]] = [[]]
+        for i in others:
+            if groups[-1] and _total([*first, *(needed[k] for k in (*groups[-1], i))]) > room:
+                groups.append([])
+            groups[-1].append(i)
+        for group in groups:
+            yield from self._part([*keys, *group], needed, numbered).__rich_console__(console, options)
+
+    def _width(self, i: int, broken: bool = False) -> int:
+        """Least width of a column, in characters; its heading may be broken between words if `broken`."""
+        texts = [cell.plain if isinstance(cell, Text) else str(cell) for cell in self.columns[i].cells]
+        heading = str(self.columns[i].header)
+        lines = [line for text in texts for line in text.split("\n")]
+        whole = max(map(cell_len, (*lines, *(heading.split() if broken else [heading]))), default=0)
+        return whole if self.columns[i].no_wrap else min(whole, _WORDS)
+
+    def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
+        """A table of some columns, with the numbers of the rows in front if `numbered`."""
+        made = Table(box=self.box, padding=self.padding)
+        if numbered:
+            made.add_column("", justify="right", no_wrap=True)
+        for i in places:
+            column = self.columns[i]
+            heading = "\n".join(textwrap.wrap(str(column.header), needed[i]))
+            overflow = "fold" if column.no_wrap else "ellipsis"  # where not even one column has room
+            made.add_column(heading, justify=column.justify, no_wrap=column.no_wrap, overflow=overflow)
+        cells = [[*self.columns[i].cells] for i in places]
+        for k, row in enumerate(self.rows):
+            first = [f"{k + 1}"] if numbered else []
+            made.add_row(*first, *(column[k] for column in cells), end_section=row.end_section)
+        return made
+
+
+def _total(widths: Sequence[int]) -> int:
+    """Width of a table with columns of these widths."""
+    return sum(widths) + _BETWEEN * len(widths) + _EDGES
 
 
 BEYOND = "dim"  # style of the digits of a number that its error does not support
@@ -158,17 +227,11 @@ def table_of(title: str, columns: Mapping[str, Sequence[str | Text]], words: Col
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
     """The table of comparisons, with a line where the first two words of `what` change."""
     cells: list[list[str]] = []
+    topics: list[list[str]] = []
     for row in rows:
-        if cells and _topic(cells[-1][0]) != _topic(row.what):
-            cells.append([])
+        topic = row.what.replace(",", "").split()[:2]
+        cells += [[]] if topics and topics[-1] != topic else []
         cells.append(row.cells())
-    return table(
-        title,
-        ("what", "published by", "published", "ours", "deviation", "verdict"),
-        cells,
-        (0, 1, 5),
-    )
-
-
-def _topic(what: str) -> list[str]:
-    return what.replace(",", "").split()[:2]
+        topics.append(topic)
+    heads = ("what", "published by", "published", "ours", "deviation", "verdict")
+    return table(title, heads, cells, (0, 1, 5))

@@ -28,7 +28,21 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
         The words after the program's name.
     """
     command = [word for word in given[:1] if word in set(app.resolved_commands())]
-    said = _QUOTED_OPTION.sub(r"\1", _say(error, given))
+    if "-" in given:
+        said = "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
+    elif isinstance(error, UnknownOptionError):
+        said = _with_meant_option(error, given)
+    elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
+        said = _say_too_many(error.unused_tokens, given)
+    elif isinstance(error, CoercionError):  # the oldest cyclopts that we admit omits what a switch is given
+        start = f"{error.token.keyword}=" if error.token else "="
+        joined = next((text.removeprefix(start) for text in given if text.startswith(start)), "")
+        said = _CONVERSION.sub(
+            lambda found: f'"{found[1] or joined}" {_KINDS.get(found[2], "is none")}', f"{error}"
+        )
+    else:
+        said = f"{error}"
+    said = _QUOTED_OPTION.sub(r"\1", said)
     return f"{said} See {' '.join([app.name[0], *command])} --help."
 
 
@@ -36,27 +50,6 @@ def check_names(given: Sequence[str]) -> None:
     """Refuse an empty word in place of a file's name, which would be the current folder."""
     if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
         raise ValueError('one of the names is empty (""); give the name of a file')
-
-
-def _say(error: CycloptsError, given: Sequence[str]) -> str:
-    if "-" in given:
-        return "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
-    if isinstance(error, UnknownOptionError):
-        return _with_meant_option(error, given)
-    if isinstance(error, UnusedCliTokensError) and error.unused_tokens:
-        return _say_too_many(error.unused_tokens, given)
-    if isinstance(error, CoercionError):
-        return _say_kind(error, given)
-    return f"{error}"
-
-
-def _say_kind(error: CoercionError, given: Sequence[str]) -> str:
-    """Say what kind of value is wanted; the oldest cyclopts that we admit omits what a switch is given."""
-    start = f"{error.token.keyword}=" if error.token else "="
-    joined = next((text.removeprefix(start) for text in given if text.startswith(start)), "")
-    return _CONVERSION.sub(
-        lambda found: f'"{found[1] or joined}" {_KINDS.get(found[2], "is none")}', f"{error}"
-    )
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, RenderableType
 
 from beamdyn.common.edge.rendering import html, png
 from beamdyn.common.edge.tables import table
@@ -74,7 +74,12 @@ def tables_of(result: Result) -> RenderableType:
     view = view_of(result)
     if view.tables is not None:
         return view.tables(result)
-    return _fields_table(result) if view.rows is None else _rows_table(result)
+    title = (type(result).__doc__ or type(result).__name__).partition("\n")[0].rstrip(".:;")
+    if view.rows is None:
+        fields = [(name.replace("_", " "), _cell(each), unit) for name, each, unit in _named_fields(result)]
+        return table(title, ("", "value", "unit"), fields, (0, 1, 2))
+    heads, *rows = rows_of(result)
+    return table(title, [*map(str, heads)], [[_cell(value) for value in row] for row in rows], ())
 
 
 def rows_of(result: Result) -> Rows:
@@ -155,45 +160,21 @@ def html_of(result: Result) -> str:
 
     The picture is an image of its own: it shares no names with others on the page, and runs no scripts.
     """
-    said = [_warning(str(each)) for each in getattr(result, "warnings", ())]
-    shown = _in_python(html([tables_of(result)], _MOST_ROWS))
-    title = f"<p><strong>{escape(repr(result))}</strong></p>"
+    said = "".join(f'<p class="warning">{escape(str(each))}</p>' for each in getattr(result, "warnings", ()))
+    shown, name = _in_python(html([tables_of(result)], _MOST_ROWS)), escape(repr(result))
+    try:
+        draw = picture_of(result)
+        content = "" if draw is None else base64.b64encode(png(draw())).decode()
+        image = content and f'<img alt="{name}" src="data:image/png;base64,{content}">'
+    except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
+        image = f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return (
         f'<div class="beamdyn-result"><style>{_STYLE}</style>\n'
-        f"{title}{''.join(said)}\n{shown}\n{_picture(result)}</div>"
+        f"<p><strong>{name}</strong></p>{said}\n{shown}\n{image}</div>"
     )
 
 
-def _warning(sentence: str) -> str:
-    return f'<p class="warning">{escape(sentence)}</p>'
-
-
-def _picture(result: Result) -> str:
-    """The picture as an image in the page, or why it cannot be drawn; nothing where there is none."""
-    try:
-        draw = picture_of(result)
-        if draw is None:
-            return ""
-        content = base64.b64encode(png(draw())).decode()
-    except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
-        return f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
-    return f'<img alt="{escape(repr(result))}" src="data:image/png;base64,{content}">'
-
-
 # Results without a table of their own ---------------------------------------------------------------
-
-
-def _rows_table(result: Result) -> Group:
-    """The columns of the CSV file."""
-    heads, *rows = rows_of(result)
-    cells = [[_cell(value) for value in row] for row in rows]
-    return table(_first_sentence(result), [str(head) for head in heads], cells, ())
-
-
-def _fields_table(result: Result) -> Group:
-    """The public fields of a result, with their units."""
-    rows = [(name.replace("_", " "), _cell(value), unit) for name, value, unit in _named_fields(result)]
-    return table(_first_sentence(result), ("", "value", "unit"), rows, (0, 1, 2))
 
 
 def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
@@ -214,7 +195,8 @@ def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]
 
     Those of results and other objects within it follow; inputs, which are `Described`, are left out.
     """
-    units = _units_of(type(result))
+    stated = (vars(base).get("field_units", {}) for base in reversed(type(result).__mro__))
+    units = {name: unit for each in stated for unit, names in each.items() for name in names.split()}
     for each in dataclasses.fields(result):
         if each.repr and each.name not in _NOT_SHOWN:
             for name, value in _parts(each.name, getattr(result, each.name)):
@@ -235,12 +217,6 @@ def _parts(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield name, value
 
 
-def _units_of(kind: type) -> dict[str, str]:
-    """Units of the fields of a class by their names, as the class and its bases state them."""
-    stated = (vars(base).get("field_units", {}) for base in reversed(kind.__mro__))
-    return {name: unit for units in stated for unit, names in units.items() for name in names.split()}
-
-
 def _cell(value: Any) -> str:
     if isinstance(value, np.ndarray) and 1 < value.size <= 6 and value.dtype.kind in "iuf":
         return ", ".join(f"{number:.6g}" for number in value.ravel().tolist())
@@ -249,7 +225,3 @@ def _cell(value: Any) -> str:
     if isinstance(value, bool | np.bool_):
         return "yes" if value else "no"
     return value if isinstance(value, str) else brief(value)
-
-
-def _first_sentence(result: Result) -> str:
-    return (type(result).__doc__ or type(result).__name__).partition("\n")[0].rstrip(".:;")

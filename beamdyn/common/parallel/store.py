@@ -44,22 +44,19 @@ class Store:
     def __init__(self, path: str | Path, kind: str) -> None:
         self.path, self.kind = Path(path), kind
         try:
-            self._open()
+            if self.path.exists() and not self.path.is_dir():
+                raise ValueError(f"store = {str(self.path)!r} is a file; {_REMEDY}")
+            self.path.mkdir(exist_ok=True)
+            content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
+            if content and self._marked(content) != self.kind:
+                raise ValueError(
+                    f"store = {str(self.path)!r} holds something else than a {self.kind} "
+                    f"({min(content)!r}, for instance); {_REMEDY}"
+                )
+            write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))
         except OSError as error:
             reason = error.strerror or str(error)
             raise ValueError(f"store = {str(path)!r}: it cannot be written ({reason}); {_REMEDY}") from None
-
-    def _open(self) -> None:
-        if self.path.exists() and not self.path.is_dir():
-            raise ValueError(f"store = {str(self.path)!r} is a file; {_REMEDY}")
-        self.path.mkdir(exist_ok=True)
-        content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
-        if content and self._marked(content) != self.kind:
-            raise ValueError(
-                f"store = {str(self.path)!r} holds something else than a {self.kind} "
-                f"({min(content)!r}, for instance); {_REMEDY}"
-            )
-        write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))  # also shows that it can be written
 
     def _marked(self, content: Sequence[str]) -> object:
         """The kind by the marker; by the names of the records, where the marker is damaged or missing."""

@@ -12,8 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
-from beamdyn.common.plots.plots import set_up_axes
-from beamdyn.common.plots.plots_by_plane import draw_by_plane, style_by_plane
+from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS
 
@@ -109,15 +108,30 @@ def plot_campbell(
     first, last = scenes[0].speeds[[0, -1]]
     top = _top(scenes, lines, last)
     ax.set(xlim=(factor * first, factor * last), ylim=(0, top))
-    at_right, above = _draw_lines(ax, factor, lines, first, last, top)
-    rows = _name_at_top(ax, factor, above, last - first)
+    at_right, rows = _draw_lines(ax, factor, lines, np.array([first, last]), top)
     _name_at_right(ax, [*at_right, *_draw_modes(ax, factor, scenes, top)], top)
-    _mark_operation(ax, factor, unit, rated, operating)
-    _mark_crossings(ax, factor, crossings, _MARKS if operating is None else _INSIDE, top)
+    if operating is not None:
+        low, high = (factor * speed for speed in operating)
+        text = f"operating range {low:.4g} to {high:.4g} {unit}"
+        ax.axvspan(low, high, color="0.93", zorder=0, label=text)
+    if rated is not None:
+        text = f"rated speed {factor * rated:.4g} {unit}"
+        ax.axvline(factor * rated, color="0.2", linewidth=1.1, linestyle=(0, (6, 3)), zorder=1.6, label=text)
+    for mark, (kind, points) in zip(
+        _MARKS if operating is None else _INSIDE, crossings.items(), strict=False
+    ):
+        if shown := [(factor * speed, frequency) for speed, frequency in points if frequency <= top]:
+            ax.plot(*zip(*shown, strict=True), linestyle="none", label=kind, zorder=3, **mark)
     _name_hidden(ax, scenes, top)
     if len(scenes) == 1 and scenes[0].label:
         ax.set_title(scenes[0].label, fontsize=12, pad=6 + 12 * rows)
-    return _add_legend(ax)
+    handles, labels = ax.get_legend_handles_labels()
+    if labels:  # below the axes, where it covers nothing
+        columns = 3 if max(map(len, labels)) <= _LONGEST else 2
+        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
+        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+        ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
+    return ax
 
 
 def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
@@ -132,15 +146,11 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
     return _HEADROOM * max(within, default=min(highest))
 
 
-# What is drawn ------------------------------------------------------------------------------------
-
-
 def _draw_lines(
-    ax: Axes, factor: float, lines: Mapping[str, float], first: float, last: float, top: float
-) -> tuple[list[_CurveName], list[tuple[str, str, float]]]:
-    """Draw the lines; labels of those that end at the right, and name, colour, speed where others leave."""
+    ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
+) -> tuple[list[_CurveName], int]:
+    """Draw the lines, and name those that leave at the top there: labels of the others, rows of names."""
     at_right, above = [], []
-    ends = np.array([first, last])
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
         colour, dashes = (_GREY, "-") if per_rev else (_DARK, "-.")
@@ -150,55 +160,40 @@ def _draw_lines(
             at_right.append(_CurveName(name, y[1], colour))
         else:
             above.append((name, colour, 2 * np.pi * top / multiple))
-    return at_right, above
-
-
-def _name_at_top(ax: Axes, factor: float, above: Sequence[tuple[str, str, float]], width: float) -> int:
-    """Name lines where they leave through the top, in as many rows as needed: the number of rows."""
-    ends: list[float] = []
+    right: list[float] = []  # ends of the rows of names
     for name, colour, speed in sorted(above, key=lambda line: line[2]):
-        half = 0.006 * (len(name) + 1) * width
-        row = next((r for r, end in enumerate(ends) if speed - half > end), len(ends))
-        ends[row : row + 1] = [speed + half]
+        half = 0.006 * (len(name) + 1) * (ends[1] - ends[0])
+        row = next((r for r, end in enumerate(right) if speed - half > end), len(right))
+        right[row : row + 1] = [speed + half]
         place = {"xytext": (0, 3 + 11 * row), "textcoords": "offset points", "ha": "center", "va": "bottom"}
         at = factor * speed, 1.0
         ax.annotate(name, at, xycoords=("data", "axes fraction"), fontsize=9, color=colour, **place)
-    return len(ends)
+    return at_right, len(right)
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
-    """Draw the modes, and yield their labels."""
+    """Draw the modes, and yield their labels; one that does not reach the right end is named at its start."""
     for k, curves in enumerate(scenes):
         solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
+        x = factor * curves.speeds
         for i, (y, dashes, name) in enumerate(zip(curves.frequency.T, solid.T, curves.names, strict=True)):
             style = style_by_plane(i if len(scenes) == 1 else k)
-            draw_by_plane(ax, factor * curves.speeds, y, dashes, style)
+            draw_by_plane(ax, x, y, dashes, style)
             if np.isfinite(y[-1]) and y[-1] <= top:
-                yield _CurveName(name + _changed(curves, i), float(y[-1]), style["color"])
-            else:
-                _name_inside(ax, factor * curves.speeds, y, name, style["color"], top)
+                changed = curves.directions if dashes[0] != dashes[-1] else None
+                more = (
+                    f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
+                )  # what it mostly is in the end
+                yield _CurveName(name + more, float(y[-1]), style["color"])
+            elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
+                place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}
+                halo = [withStroke(linewidth=3, foreground="white")]
+                ax.annotate(name, (x[shown[0]], y[shown[0]]), fontsize=9, path_effects=halo, **place)
         if len(scenes) > 1:
             ax.plot([], [], color=COLOURS[k % len(COLOURS)], linewidth=3, label=curves.label)
     directions = next((curves.directions for curves in scenes if curves.directions), ())
     for dashes, direction in zip(("-", "--"), directions, strict=False):
         ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=f"mostly {direction}")
-
-
-def _changed(curves: Curves, mode: int) -> str:
-    """What a mode mostly is at the last speed, in brackets, if that is not what it was named after."""
-    if curves.solid is None or curves.directions is None or curves.solid[0, mode] == curves.solid[-1, mode]:
-        return ""
-    return f" ({curves.directions[0 if curves.solid[-1, mode] else 1]})"
-
-
-def _name_inside(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str, top: float) -> None:
-    """Name a mode that does not reach the right end at its first point, if that is shown."""
-    shown = np.flatnonzero(np.isfinite(y) & (y <= top))
-    if shown.size:
-        where = shown[0]
-        place = {"xytext": (4, 3), "textcoords": "offset points"}
-        halo = [withStroke(linewidth=3, foreground="white")]
-        ax.annotate(name, (x[where], y[where]), color=colour, fontsize=9, path_effects=halo, **place)
 
 
 def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
@@ -216,28 +211,10 @@ def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
 
 
 def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
-    """Name curves beside their right ends, the labels apart, each with a leader to its curve."""
-    labels = sorted(_merged(labels, top), key=lambda label: label.y)
-    heights = _spread([label.y / top for label in labels])
-    for label, height in zip(labels, heights, strict=True):
-        moved = abs(height - label.y / top) > 0.004
-        leader = {"arrowstyle": "-", "color": label.colour, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
-        ax.annotate(
-            label.text,
-            (1.0, label.y / top),
-            xytext=(1.025, height),
-            xycoords="axes fraction",
-            textcoords="axes fraction",
-            fontsize=9,
-            color=label.colour,
-            va="center",
-            arrowprops=leader if moved else None,
-            annotation_clip=False,
-        )
+    """Name curves beside their right ends, the labels apart, each with a leader to its curve.
 
-
-def _merged(labels: Sequence[_CurveName], top: float) -> list[_CurveName]:
-    """The labels, with one in grey for those of one name whose curves end close to one another."""
+    One label in grey stands for those of one name whose curves end close to one another.
+    """
     merged: list[_CurveName] = []
     for label in labels:
         same = [i for i, m in enumerate(merged) if m.text == label.text and abs(m.y - label.y) < _SAME * top]
@@ -245,7 +222,15 @@ def _merged(labels: Sequence[_CurveName], top: float) -> list[_CurveName]:
             merged[same[0]] = _CurveName(label.text, (merged[same[0]].y + label.y) / 2, "0.2")
         else:
             merged.append(label)
-    return merged
+    merged.sort(key=lambda label: label.y)
+    for label, height in zip(merged, _spread([label.y / top for label in merged]), strict=True):
+        moved = abs(height - label.y / top) > 0.004
+        leader = {"arrowstyle": "-", "color": label.colour, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate(
+            label.text, (1.0, label.y / top), xytext=(1.025, height), xycoords="axes fraction",
+            textcoords="axes fraction", fontsize=9, color=label.colour, va="center",
+            arrowprops=leader if moved else None, annotation_clip=False,
+        )  # fmt: skip
 
 
 def _spread(heights: Sequence[float]) -> list[float]:
@@ -262,41 +247,3 @@ def _spread(heights: Sequence[float]) -> list[float]:
             blocks[-2:] = [((m * a + n * b) / (m + n), m + n)]
     means = [mean for mean, size in blocks for _ in range(size)]
     return [mean + i * _APART for i, mean in enumerate(means)]
-
-
-def _mark_operation(
-    ax: Axes, factor: float, unit: str, rated: float | None, operating: tuple[float, float] | None
-) -> None:
-    """Shade the operating range and draw the rated speed."""
-    if operating is not None:
-        low, high = (factor * speed for speed in operating)
-        text = f"operating range {low:.4g} to {high:.4g} {unit}"
-        ax.axvspan(low, high, color="0.93", zorder=0, label=text)
-    if rated is not None:
-        text = f"rated speed {factor * rated:.4g} {unit}"
-        ax.axvline(factor * rated, color="0.2", linewidth=1.1, linestyle=(0, (6, 3)), zorder=1.6, label=text)
-
-
-def _mark_crossings(
-    ax: Axes,
-    factor: float,
-    crossings: Mapping[str, Sequence[tuple[float, float]]],
-    marks: Sequence[dict[str, Any]],
-    top: float,
-) -> None:
-    for mark, (kind, points) in zip(marks, crossings.items(), strict=False):
-        shown = [(factor * speed, frequency) for speed, frequency in points if frequency <= top]
-        if shown:
-            x, y = zip(*shown, strict=True)
-            ax.plot(x, y, linestyle="none", label=kind, zorder=3, **mark)
-
-
-def _add_legend(ax: Axes) -> Axes:
-    """Add a legend below the axes, where it covers nothing."""
-    handles, labels = ax.get_legend_handles_labels()
-    if labels:
-        columns = 3 if max(map(len, labels)) <= _LONGEST else 2
-        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
-        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
-        ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
-    return ax

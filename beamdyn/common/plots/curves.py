@@ -1,20 +1,29 @@
-"""Figures of sweeps: curves of results over inputs."""
+"""Plots of answers over inputs of a scene or design, of loads along the span, and of errors over time."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import textwrap
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation
 
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.plots.axes_and_lines import line_style, position_label, set_up_axes
+from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.pictures import COLOURS, add_legend
 
-_STYLES = ("-", "--", "-.", ":")
 _MOST_CURVES = 8
 _LOWEST, _ROW = 0.02, 0.03  # heights of crosses on the axes, and between those of two curves
 _GREY = "0.5"
+_TITLE = 80  # characters of a line of the title
+_FEW = 4  # cases that are drawn as lines along the span; of more, their range is
+_MARKERS = "osD^vXP"
+
+
+# Sweeps over inputs ----------------------------------------------------------------------------------
 
 
 def sweep_figure(swept: Any) -> Figure:
@@ -29,15 +38,17 @@ def sweep_figure(swept: Any) -> Figure:
     -------
     Figure
     """
-    groups = panels_of(swept)
+    groups, two = panels_of(swept), _has_curves(swept)
     figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
+    further = [f"{input_words(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
+    second = "\n".join([input_words(swept, 1), *further]) if two else None
     for ax, (heading, labels, values) in zip(panels, groups, strict=True):
         order = np.argsort(swept.values[0], kind="stable") if swept.combine == "zip" else slice(None)
         curves(ax, swept.values[0][order], values[:, order], labels)
         ax.set_ylabel(heading)
         if mark_missing(ax, "no answer") or len(labels) > 1:
-            ax.legend(title=_second(swept), fontsize=9, title_fontsize=9)
+            ax.legend(title=second, fontsize=9, title_fontsize=9)
     panels[-1].set_xlabel(input_words(swept, 0))
     return figure
 
@@ -74,14 +85,6 @@ def _has_curves(swept: Any) -> bool:
     return len(swept.values) > 1 and swept.combine == "product"
 
 
-def _second(swept: Any) -> str | None:
-    """Heading of the legend: the second input, and further ones at their first value."""
-    if not _has_curves(swept):
-        return None
-    further = [f"{input_words(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
-    return "\n".join([input_words(swept, 1), *further])
-
-
 def input_words(swept: Any, place: int) -> str:
     """An input in words, without its table.
 
@@ -94,6 +97,11 @@ def input_words(swept: Any, place: int) -> str:
     """
     path = swept.inputs[place]
     return _named((path.partition(".")[2] or path).replace(".", " "), swept.units[place])
+
+
+def _named(name: str, unit: str) -> str:
+    """A name in words with its unit."""
+    return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:
@@ -113,10 +121,8 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
     values = np.where(np.isfinite(values), values, np.nan)
     shown = np.unique(np.linspace(0, len(values) - 1, min(len(values), _MOST_CURVES)).round().astype(int))
     for place, i in enumerate(shown):
-        style = _STYLES[place // len(COLOURS) % len(_STYLES)] if place >= len(COLOURS) else "-"
-        colour = COLOURS[place % len(COLOURS)]
         label = labels[i] if np.isfinite(values[i]).any() else f"{labels[i]}: none"
-        ax.plot(x, values[i], color=colour, linestyle=style, linewidth=1.6, label=label)
+        ax.plot(x, values[i], linewidth=1.6, label=label, **line_style(place))
     grid(ax)
     return ax
 
@@ -154,5 +160,214 @@ def grid(ax: Axes) -> None:
     ax.set_axisbelow(True)
 
 
-def _named(name: str, unit: str) -> str:
-    return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
+def plot_over_input(
+    x: np.ndarray,
+    rows: np.ndarray,
+    labels: Sequence[str],
+    xlabel: str,
+    ylabel: str,
+    ax: Axes | None = None,
+    title: str = "",
+    missing: str = "no answer",
+) -> Axes:
+    """Draw curves over an input.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Values of the input.
+    rows : ndarray, shape (m, n)
+        The curves, with crosses at the bottom where they are not finite; of many, some spread evenly are
+        drawn.
+    labels : sequence of str
+        One a curve; empty for a single one.
+    xlabel, ylabel : str
+        Labels of the axes.
+    ax : Axes, optional
+        Where to draw; a new one by default.
+    title : str
+        What holds of all curves, wrapped.
+    missing : str
+        What the crosses mean.
+    """
+    ax = set_up_axes(ax, xlabel, ylabel)
+    order = np.argsort(x, kind="stable")
+    curves(ax, x[order], rows[:, order], labels)
+    ax.set_title("\n".join(textwrap.wrap(title, _TITLE)), fontsize=10)
+    return add_legend(ax) if mark_missing(ax, missing) or any(labels) else ax
+
+
+def plot_bars(
+    names: Sequence[str], rows: np.ndarray, labels: Sequence[str], xlabel: str, ax: Axes | None = None
+) -> Axes:
+    """Draw horizontal bars of n names for k answers, the name with the longest bar on top.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The names, shape (n,).
+    rows : ndarray, shape (n, k)
+        Lengths; those that are not finite are left out.
+    labels : sequence of str
+        One an answer.
+    xlabel : str
+        Label of the axis.
+    ax : Axes, optional
+        Where to draw; a new one by default.
+    """
+    ax = set_up_axes(ax, xlabel, "")
+    finite = np.where(np.isfinite(rows), rows, 0.0)
+    order = np.argsort(np.abs(finite).max(axis=1, initial=0.0), kind="stable")
+    height = 0.8 / max(rows.shape[1], 1)
+    for k, label in enumerate(labels):
+        places = np.arange(len(names)) + (rows.shape[1] / 2 - k - 0.5) * height
+        ax.barh(places, finite[order, k], height, label=label)
+    ax.set_yticks(np.arange(len(names)), [str(names[i]) for i in order])
+    ax.axvline(0.0, color="0.4", linewidth=0.8)
+    return add_legend(ax)
+
+
+# Loads -----------------------------------------------------------------------------------------------
+
+
+def plot_along_span(
+    x: np.ndarray,
+    values: np.ndarray,
+    labels: Sequence[str],
+    quantity: str,
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw a quantity along the beam, one colour a component: lines of few cases, the range of more.
+
+    Parameters
+    ----------
+    x : ndarray, shape (S,)
+        Stations along the beam [m]; the two sides of a jump have the same.
+    values : ndarray, shape (C, S, k)
+        Values of C cases, such as times, of k components.
+    labels : sequence of str, length k
+        Names of the components, for the legend.
+    quantity : str
+        Name of the quantity, with its unit.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = set_up_axes(ax, position_label(units), quantity)
+    x = units.length_unit("m").of(x)
+    for k, label in enumerate(labels):
+        colour, of_component = COLOURS[k % len(COLOURS)], values[..., k]
+        if len(values) <= _FEW:
+            for number, row in enumerate(of_component):
+                ax.plot(x, row, color=colour, linewidth=1.8, label=label if number == 0 else None)
+            continue
+        low, high = np.nanmin(of_component, axis=0), np.nanmax(of_component, axis=0)
+        ax.fill_between(x, low, high, color=colour, alpha=0.25, linewidth=0)
+        ax.plot(x, high, color=colour, linewidth=1.8, label=f"{label}, range")
+        ax.plot(x, low, color=colour, linewidth=1.8)
+    ax.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
+    return add_legend(ax)
+
+
+def plot_load_over_time(
+    t: np.ndarray, values: np.ndarray, labels: Sequence[str], quantity: str, ax: Axes | None = None
+) -> Axes:
+    """Draw a quantity at one station over time, one line a component.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Times [s].
+    values : ndarray, shape (T, k)
+        Values of k components.
+    labels, quantity, ax
+        As for `plot_along_span`.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = set_up_axes(ax, "time [s]", quantity)
+    for k, label in enumerate(labels):
+        ax.plot(t, values[:, k], color=COLOURS[k % len(COLOURS)], linewidth=0.9, label=label)
+    ax.margins(x=0)
+    return add_legend(ax)
+
+
+def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: Axes | None = None) -> Axes:
+    """Draw the number of cycles whose range is at least as large.
+
+    Parameters
+    ----------
+    ranges, counts : ndarray, shape (n,)
+        Range of each cycle, and how often it counts.
+    quantity : str
+        Name of the range, with its unit.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = set_up_axes(ax, "cycles of at least this range", quantity)
+    order = np.argsort(-ranges)
+    ax.step(np.cumsum(counts[order]), ranges[order], where="pre", color=COLOURS[0], linewidth=1.8)
+    ax.set_xscale("log")
+    return ax
+
+
+# Errors over time ------------------------------------------------------------------------------------
+
+
+def plot_work_precision(
+    families: Mapping[str, np.ndarray],
+    front: np.ndarray,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw error against time, one line a family, and the Pareto front as a broad band below them.
+
+    Parameters
+    ----------
+    families : mapping of str to ndarray, shape (n, 2)
+        Times [s] and relative errors; an error above 1, not a digit being right, is drawn as 1.
+    front : ndarray, shape (k, 2)
+        Times and errors of the Pareto-optimal measurements.
+    title : str
+        Above the axes.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = set_up_axes(ax, "time [s]", "relative error")
+    ax.set(xscale="log", yscale="log")
+    ax.set_title(title, fontsize=11)
+    ax.tick_params(which="minor", labelsize=8)
+    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.15, 0.3)))
+    ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
+    for i, (name, points) in enumerate(families.items()):
+        marker = _MARKERS[i % len(_MARKERS)]
+        ax.plot(
+            *_clip(points).T,
+            marker=marker,
+            markersize=4,
+            linewidth=1.2,
+            label=name,
+            **line_style(i),
+        )
+    return add_legend(ax)
+
+
+def _clip(points: np.ndarray) -> np.ndarray:
+    """Drop points without a positive error, which a logarithmic axis cannot show, and clip errors to 1."""
+    return np.minimum(points[points[:, 1] > 0], [np.inf, 1.0])

@@ -167,7 +167,7 @@ def animate(
     """
     from matplotlib.figure import Figure
 
-    from beamdyn.common.plots.notes import note_below
+    from beamdyn.common.plots.axes_and_lines import note_below
 
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(Figure(figsize=(6.4, 3.6), layout="constrained"), notes)

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogFormatterSciNotation, ScalarFormatter
 
+from beamdyn.common.plots.axes_and_lines import (
+    draw_by_plane,
+    draw_lines,
+    name_colour,
+    name_planes,
+    new_axes,
+    set_up_axes,
+    speed_label,
+    style_by_plane,
+)
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend
+from beamdyn.common.results.pictures import COLOURS, add_legend
 from beamdyn.common.results.pictures import save_figure as save_figure  # exported with the plots
 
-_MARKERS = "osD^vXP"
 _MOST_THICK = 2000  # samples above which a line over time is drawn thin
+
+
+# Over speed ------------------------------------------------------------------------------------------
 
 
 def plot_locus(
@@ -99,30 +109,38 @@ def plot_loci_by_angle(
     Axes
     """
     labels = [f"setting angle {angle:.10g}°" for angle in angles_deg]
-    return _plot_over_speed(
-        speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels, None, SI_UNITS
-    )
+    return _plot_over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels)
 
 
-def plot_shapes(
-    x: np.ndarray,
-    shapes: np.ndarray,
-    labels: Sequence[str],
-    ax: Axes | None = None,
+def _plot_over_speed(
+    speeds: np.ndarray,
+    values: np.ndarray,
+    quantity: str,
+    ax: Axes | None,
+    labels: Sequence[str] | None,
+    critical_speed: float | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw mode shapes, each over its own largest deflection.
+    values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
+    ax = set_up_axes(ax, speed_label(units), quantity)
+    draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
+    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
+    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
+
+
+def mark_critical(
+    ax: Axes, speed: float, label: str = "critical speed", units: DisplayUnits = SI_UNITS
+) -> Axes:
+    """Mark a critical speed by a line, and shade what lies past it.
 
     Parameters
     ----------
-    x : ndarray, shape (n,)
-        Positions along the beam [m].
-    shapes : ndarray, shape (m, n)
-        Deflections of the modes, real, in any unit.
-    labels : sequence of str, length m
-        For the legend.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
+    ax : Axes
+        With angular speed on x; its limits stay.
+    speed : float
+        Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
+    label : str
+        What to call it.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -130,11 +148,71 @@ def plot_shapes(
     -------
     Axes
     """
-    largest = np.abs(shapes).max(axis=1, keepdims=True)
-    scaled = shapes / np.where(largest == 0, 1.0, largest)
-    ax = set_up_shapes(ax, units)
-    _draw_lines(ax, units.length_unit("m").of(x), scaled, labels)
+    left, right = ax.get_xlim()
+    unit = units.speed_unit()
+    at = unit.of(speed)
+    if left <= at < right:
+        ax.axvline(at, color="0.3", linestyle="--", linewidth=1, label=f"{label} {unit.say(speed, 5)}")
+        ax.axvspan(at, right, color="0.93", zorder=0)
+        ax.set_xlim(left, right)
     return add_legend(ax)
+
+
+def mark_points(
+    ax: Axes, x: np.ndarray | Sequence[float], y: np.ndarray | Sequence[float], label: str
+) -> Axes:
+    """Lay points, such as published ones, over a picture.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw.
+    x, y : array_like, shape (n,)
+        The points, in the units of the axes.
+    label : str
+        For the legend: where they come from.
+
+    Returns
+    -------
+    Axes
+    """
+    ax.plot(x, y, "o", color="black", markerfacecolor="white", markersize=7, zorder=3, label=label)
+    return add_legend(ax)
+
+
+def plot_locus_by_plane(
+    speeds: np.ndarray,
+    frequency: np.ndarray,
+    share: np.ndarray,
+    directions: tuple[str, str],
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw natural frequencies over speed, solid where a mode bends mostly in one direction, else dashed.
+
+    Parameters
+    ----------
+    speeds, frequency, ax, labels, units
+        As for `beamdyn.common.plots.plots.plot_locus`.
+    share : ndarray, shape (S, m)
+        Share of each mode's energy in the first direction, which is drawn solid.
+    directions : tuple of str
+        The two directions in words, for the legend.
+
+    Returns
+    -------
+    Axes
+    """
+    speeds = units.speed_unit().of(np.asarray(speeds))
+    ax = set_up_axes(ax, speed_label(units), "natural frequency [Hz]")
+    names = labels or _number_modes(np.shape(frequency)[1])
+    columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
+    for i, (y, solid, label) in enumerate(columns):
+        draw_by_plane(ax, speeds, y, solid, style_by_plane(i))
+        name_colour(ax, label, i)
+    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
+    return name_planes(ax, [f"mostly {direction}" for direction in directions])
 
 
 def plot_response(
@@ -168,17 +246,89 @@ def plot_response(
     """
     speed, length = units.speed_unit(), units.length_unit()
     ax = set_up_axes(ax, speed_label(units), f"largest tip deflection [{length.name}]")
-    rows = {"largest over both phases": np.asarray(amplitude)}
-    if bound is not None:
-        rows["sum of the lines"] = np.asarray(bound)
-    rows |= by_direction or {}
-    drawn = (length.of(np.where(row > 0, row, np.nan)) for row in rows.values())
-    _draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
+    bounds = {} if bound is None else {"sum of the lines": bound}
+    rows = {"largest over both phases": amplitude, **bounds, **(by_direction or {})}
+    drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
+    draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
     return add_legend(ax)
+
+
+def plot_sweep(
+    speeds: np.ndarray,
+    peaks: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] = ("peak",),
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw the peaks of transients over speed, one line each.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    peaks : ndarray, shape (S,) or (d, S)
+        Largest tip deflections [m]; nan leaves a gap.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    labels : sequence of str, length d
+        For the legend, which one line needs none of.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
+
+    Returns
+    -------
+    Axes
+    """
+    speed, length = units.speed_unit(), units.length_unit()
+    ax = set_up_axes(ax, speed_label(units), f"peak of the tip deflection [{length.name}]")
+    draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
+    ax.set_ylim(bottom=0)
+    return add_legend(ax) if len(labels) > 1 else ax
+
+
+def plot_branches(
+    branches: Sequence[tuple[str, np.ndarray, np.ndarray, np.ndarray]],
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw branches of equilibria over speed: solid where they are stable, dashed where not.
+
+    Parameters
+    ----------
+    branches : sequence of tuple
+        Name, speeds (k,) [rad/s], tip deflections over the length (k,) and stability (k,) of each.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
+
+    Returns
+    -------
+    Axes
+    """
+    ax = new_axes() if ax is None else ax
+    for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
+        lost = ~stable  # drawn with the points beside these, so that lines meet
+        around = lost | np.r_[False, lost[:-1]] | np.r_[lost[1:], False]
+        for where, style, word in ((stable, "-", "stable"), (around, "--", "unstable")):
+            if where.any():
+                ax.plot(
+                    units.speed_unit().of(speeds),
+                    np.where(where, tip, np.nan),
+                    style,
+                    color=colour,
+                    label=f"{name}, {word}",
+                )
+    ax.set(xlabel=speed_label(units), ylabel="tip deflection over the length")
+    ax.legend()
+    return ax
+
+
+# Over time and frequency -----------------------------------------------------------------------------
 
 
 def plot_transient(
@@ -215,246 +365,32 @@ def plot_transient(
     return add_legend(ax) if len(labels) > 1 else ax
 
 
-def plot_sweep(
-    speeds: np.ndarray,
-    peaks: np.ndarray,
-    ax: Axes | None = None,
-    labels: Sequence[str] = ("peak",),
-    units: DisplayUnits = SI_UNITS,
-) -> Axes:
-    """Draw the peaks of transients over speed, one line each.
-
-    Parameters
-    ----------
-    speeds : ndarray, shape (S,)
-        Angular speeds [rad/s].
-    peaks : ndarray, shape (S,) or (d, S)
-        Largest tip deflections [m]; nan leaves a gap.
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-    labels : sequence of str, length d
-        For the legend, which one line needs none of.
-    units : DisplayUnits, optional
-        Units of the axes; the arrays are SI.
-
-    Returns
-    -------
-    Axes
-    """
-    speed, length = units.speed_unit(), units.length_unit()
-    ax = set_up_axes(ax, speed_label(units), f"peak of the tip deflection [{length.name}]")
-    _draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
-    ax.set_ylim(bottom=0)
-    return add_legend(ax) if len(labels) > 1 else ax
-
-
-def plot_work_precision(
-    families: Mapping[str, np.ndarray],
-    front: np.ndarray,
-    title: str = "",
+def plot_frequency_response(
+    curves: Sequence[tuple[np.ndarray, np.ndarray]],
+    ylabel: str,
+    labels: Sequence[str],
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw error against time, one line a family, and the Pareto front as a broad band below them.
+    """Draw magnitudes over frequency on logarithmic axes.
 
     Parameters
     ----------
-    families : mapping of str to ndarray, shape (n, 2)
-        Times [s] and relative errors; an error above 1, not a digit being right, is drawn as 1.
-    front : ndarray, shape (k, 2)
-        Times and errors of the Pareto-optimal measurements.
-    title : str
-        Above the axes.
+    curves : sequence of (ndarray, ndarray), each of shape (F,)
+        Frequencies [Hz], of which 0 is not drawn, and magnitudes.
+    ylabel : str
+        Label of the vertical axis.
+    labels : sequence of str, one a curve
+        For the legend; an empty one has no entry.
     ax : Axes, optional
         Where to draw; new axes if not given.
-
-    Returns
-    -------
-    Axes
     """
-    ax = set_up_axes(ax, "time [s]", "relative error")
-    ax.set(xscale="log", yscale="log")
-    ax.set_title(title, fontsize=11)
-    ax.tick_params(which="minor", labelsize=8)
-    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.15, 0.3)))
-    ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
-    for i, (name, points) in enumerate(families.items()):
-        marker = _MARKERS[i % len(_MARKERS)]
-        ax.plot(
-            *_clip(points).T,
-            marker=marker,
-            markersize=4,
-            linewidth=1.2,
-            label=name,
-            **_line_style(i),
-        )
-    return add_legend(ax)
+    ax = set_up_axes(ax, "frequency [Hz]", ylabel)
+    for (frequencies, size), label in zip(curves, labels, strict=True):
+        drawn = frequencies > 0
+        ax.loglog(frequencies[drawn], size[drawn], label=label or None)
+    return add_legend(ax) if any(labels) else ax
 
 
-def _clip(points: np.ndarray) -> np.ndarray:
-    """Drop points without a positive error, which a logarithmic axis cannot show, and clip errors to 1."""
-    return np.minimum(points[points[:, 1] > 0], [np.inf, 1.0])
-
-
-def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
-    """Replace axes by several that share their place, two in a row.
-
-    Parameters
-    ----------
-    count : int
-        How many.
-    ax : Axes, optional
-        Whose place they take; that of a new figure if not given.
-
-    Returns
-    -------
-    Axes
-        Those whose place is taken.
-    list of Axes
-        The new ones, in reading order.
-    """
-    columns = min(2, count)
-    rows = -(-count // columns)
-    if ax is None:
-        from matplotlib import pyplot
-
-        ax = pyplot.subplots(figsize=(6.5 * columns, 4.5 * rows), layout="constrained")[1]
-    place, figure = ax.get_subplotspec(), ax.get_figure()
-    if place is None or figure is None:
-        raise ValueError("ax: give axes made by subplots: their place is divided")
-    ax.set_axis_off()
-    grid = place.subgridspec(rows, columns)
-    return ax, [figure.add_subplot(grid[divmod(i, columns)]) for i in range(count)]
-
-
-def mark_points(
-    ax: Axes, x: np.ndarray | Sequence[float], y: np.ndarray | Sequence[float], label: str
-) -> Axes:
-    """Lay points, such as published ones, over a picture.
-
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw.
-    x, y : array_like, shape (n,)
-        The points, in the units of the axes.
-    label : str
-        For the legend: where they come from.
-
-    Returns
-    -------
-    Axes
-    """
-    ax.plot(x, y, "o", color="black", markerfacecolor="white", markersize=7, zorder=3, label=label)
-    return add_legend(ax)
-
-
-def mark_critical(
-    ax: Axes, speed: float, label: str = "critical speed", units: DisplayUnits = SI_UNITS
-) -> Axes:
-    """Mark a critical speed by a line, and shade what lies past it.
-
-    Parameters
-    ----------
-    ax : Axes
-        With angular speed on x; its limits stay.
-    speed : float
-        Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
-    label : str
-        What to call it.
-    units : DisplayUnits, optional
-        Units of the axes; the arrays are SI.
-
-    Returns
-    -------
-    Axes
-    """
-    left, right = ax.get_xlim()
-    unit = units.speed_unit()
-    at = unit.of(speed)
-    if left <= at < right:
-        ax.axvline(at, color="0.3", linestyle="--", linewidth=1, label=f"{label} {unit.say(speed, 5)}")
-        ax.axvspan(at, right, color="0.93", zorder=0)
-        ax.set_xlim(left, right)
-    return add_legend(ax)
-
-
-def _plot_over_speed(
-    speeds: np.ndarray,
-    values: np.ndarray,
-    quantity: str,
-    ax: Axes | None,
-    labels: Sequence[str] | None,
-    critical_speed: float | None,
-    units: DisplayUnits,
-) -> Axes:
-    values = np.asarray(values)
-    speeds = units.speed_unit().of(np.asarray(speeds))
-    ax = set_up_axes(ax, speed_label(units), quantity)
-    _draw_lines(ax, speeds, values.T, labels or number_modes(values.shape[1]))
-    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
-    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
-
-
-def number_modes(count: int) -> list[str]:
+def _number_modes(count: int) -> list[str]:
     """Names of modes for the legend."""
     return [f"mode {i}" for i in range(1, count + 1)]
-
-
-def set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
-    """Label the axes for mode shapes, each over its largest deflection, and draw the beam at rest."""
-    ax = set_up_axes(ax, position_label(units), "deflection / its largest value")
-    ax.axhline(0, color="0.4", linewidth=0.8)
-    return ax
-
-
-def speed_label(units: DisplayUnits) -> str:
-    """Name of an axis of speeds."""
-    return f"angular speed [{units.speed_unit().name}]"
-
-
-def position_label(units: DisplayUnits) -> str:
-    """Name of an axis of positions along the beam."""
-    return f"position along the beam [{units.length_unit('m').name}]"
-
-
-def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
-    """Label the axes, new ones if none are given, with a grid and plain numbers."""
-    ax = new_axes() if ax is None else ax
-    ax.set_xlabel(xlabel, fontsize=12)
-    ax.set_ylabel(ylabel, fontsize=12)
-    ax.tick_params(labelsize=11)
-    for axis in (ax.xaxis, ax.yaxis):
-        if isinstance(
-            formatter := axis.get_major_formatter(), ScalarFormatter
-        ):  # not of axes drawn on before
-            formatter.set_useOffset(False)
-    ax.margins(x=0.02)
-    ax.grid(color="0.85", linewidth=0.7)
-    ax.set_axisbelow(True)
-    return ax
-
-
-def new_axes() -> Axes:
-    """Axes of a new figure, which matplotlib keeps to show it."""
-    from matplotlib import pyplot
-
-    return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
-
-
-def _draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
-    for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
-        (line,) = ax.plot(x, y, label=label, linewidth=1.8, **_line_style(i))
-        if (isolated := is_isolated(y)).any():
-            line.set(marker=".", markevery=isolated)
-
-
-def _line_style(i: int) -> dict[str, Any]:
-    """Colour and dashes of line i; the dashes change when the colours are used up."""
-    cycle, colour = divmod(i, len(COLOURS))
-    return {"color": COLOURS[colour], "linestyle": DASHES[cycle % len(DASHES)]}
-
-
-def is_isolated(y: np.ndarray) -> np.ndarray:
-    """Whether each value lies between gaps: a line does not show it, so that it needs a marker."""
-    known = np.pad(np.isfinite(y), 1)
-    return known[1:-1] & ~known[:-2] & ~known[2:]

@@ -37,3 +37,10 @@ def available(package: str) -> list[str]:
     """Names that `load` accepts, sorted."""
     names = (file.name for file in files(package).iterdir())
     return sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
+
+
+def values_alone(entry: Any) -> Any:
+    """What a published file has, with each quantity as its ``value`` alone, without unit and source."""
+    if isinstance(entry, dict):
+        return entry["value"] if "value" in entry else {key: values_alone(v) for key, v in entry.items()}
+    return [values_alone(item) for item in entry] if isinstance(entry, list) else entry

@@ -1,21 +1,22 @@
-"""What the browser stores for a page: the designs of a tab, what is being typed, named designs, the look.
-
-The program stores the entries of a tab after each change, and the page itself each key stroke: what has been
-typed is not lost when the program or the tab ends.
-"""
+"""Data of a page that the browser holds: a tab's designs, what is being typed, named designs, look, links."""
 
 from __future__ import annotations
 
+import base64
 import json
-from collections.abc import Mapping
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
+from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens.form_entries import Entries
-from beamdyn.common.screens.reading import read_entry, unit_of, usual_unit
+from beamdyn.common.screens.form_entries import Entries, read_entry, unit_of, usual_unit
 
 _LONGEST = 80  # characters of a name
 _MOST = 100  # named designs
+_LONGEST_LINK, _LARGEST = 30_000, 200_000  # characters of a link, and bytes of what it holds
+_SOURCE = "the link"
 
 # Width of a page below which drawings have narrow paper, as the rules of `look` have it.
 _NARROW = "(max-width: 600px)"
@@ -152,9 +153,13 @@ def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
     found = {}
     for name, design in held.items() if isinstance(held, dict) else ():
         match design:
-            case [str(document), dict(entries)] if all(isinstance(text, str) for text in entries.values()):
+            case [str(document), dict(entries)] if _are_texts(entries.values()):
                 found[name[:_LONGEST]] = document, entries
     return dict([*found.items()][:_MOST])
+
+
+def _are_texts(values: Iterable[object]) -> bool:
+    return all(isinstance(value, str) for value in values)
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
@@ -174,6 +179,66 @@ def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
     found = dict(entries)
     for path, text in typed.items() if isinstance(typed, dict) else ():
         if path in known and isinstance(text, str):
-            unit = unit_of(entries.get(path, ""), known[path]) or usual_unit(known[path])
+            unit = unit_of(entries.get(path, ""), known[path]) or usual_unit(known[path].quantity.unit)
             found[path] = read_entry(text, known[path], unit).text
     return found
+
+
+@dataclass(frozen=True)
+class LinkedDesign:
+    """A design in a link.
+
+    Parameters
+    ----------
+    document : str
+        Name of the kind of file.
+    text : str
+        The file, as TOML.
+    options : mapping
+        Entries that are not part of the file.
+    """
+
+    document: str
+    text: str
+    options: Mapping[str, str]
+
+    def as_fragment(self) -> str:
+        """The part of an address after "#", of letters, digits, "-", "_" and "=".
+
+        Raises
+        ------
+        ConfigError
+            If the design is too large for an address.
+        """
+        held = json.dumps([self.document, self.text, dict(self.options)], ensure_ascii=False)
+        packed = base64.urlsafe_b64encode(zlib.compress(held.encode(), 9)).decode().rstrip("=")
+        if len(packed) > _LONGEST_LINK or len(held.encode()) > _LARGEST:
+            raise ConfigError("this design", ["it is too large for a link: save it as a file"])
+        return f"design={packed}"
+
+    @classmethod
+    def of_fragment(cls, fragment: str) -> LinkedDesign:
+        """The design in the part of an address after "#".
+
+        Raises
+        ------
+        ConfigError
+            If it holds none; the design itself is not checked.
+        """
+        packed = fragment.removeprefix("#").removeprefix("design=")
+        if len(packed) > _LONGEST_LINK:
+            raise ConfigError(_SOURCE, [f"it is longer than {_LONGEST_LINK} characters"])
+        broken = ConfigError(
+            _SOURCE, ["it holds no design, or a part of it is missing: copy it again, whole"]
+        )
+        try:
+            raw = base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True)
+            unpack = zlib.decompressobj()
+            text = unpack.decompress(raw, _LARGEST)
+            held = None if unpack.unconsumed_tail or not unpack.eof else json.loads(text)
+        except (ValueError, zlib.error, RecursionError):
+            raise broken from None
+        match held:
+            case [str(document), str(text), dict(options)] if _are_texts(options.values()):
+                return cls(document, text, options)
+        raise broken

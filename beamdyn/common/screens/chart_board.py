@@ -61,44 +61,40 @@ class _ShownChart:
         self._writer = writer
         self._options: dict[str, Any] = {}
         self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
-        self._element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
-        self._element.on("keydown", js_handler=_KEYS % self._element.id)
+        self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
+        self.element.on("keydown", js_handler=_KEYS % self.element.id)
         # What the component restores is what it was given first: the present data follow.
-        self._element.on("chart:restore", self.update, args=[])
+        self.element.on("chart:restore", self.update, args=[])
 
     @property
     def id(self) -> int:
         """Number of its element."""
-        return self._element.id
-
-    def set_visibility(self, visible: bool) -> None:
-        """Show it, or hide it."""
-        for part in (self.heading, self._element):
-            part.set_visibility(visible)
+        return self.element.id
 
     def fill(self, chart: Chart) -> None:
         """Show another chart."""
         self.heading.set_text(chart.title)
-        last, self._options = self._options, _with_saving(options_of(chart))
-        with self._element.props.suspend_updates():
-            self._element.props["aria-label"] = chart.words
+        last, self._options = self._options, options_of(chart)
+        self._options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
+        with self.element.props.suspend_updates():
+            self.element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
             others = {name: value for name, value in self._options.items() if last.get(name) != value}
-            self._writer.write(self._element, {"options": _without_scripts(others) | _NO_TOOLBOX})
+            self._writer.write(self.element, {"options": _without_scripts(others) | _NO_TOOLBOX})
             self._writer.tell_later(self)
         else:
             self.update()
 
     def update(self) -> None:
         """Tell NiceGUI what is shown; not while something is held, as that takes time for each number."""
-        with self._element.props.suspend_updates():
-            self._element.props["options"] = self._options
-        self._element.update()
+        with self.element.props.suspend_updates():
+            self.element.props["options"] = self._options
+        self.element.update()
 
     def move_cursor(self, chart: Chart) -> None:
         """Show the marks of a chart, of which nothing else has changed."""
         self._options["series"][0] = marks_of(chart)
-        self._element.run_chart_method("setOption", {"series": self._options["series"][:1]})
+        self.element.run_chart_method("setOption", {"series": self._options["series"][:1]})
 
 
 class ChartBoard:
@@ -127,27 +123,19 @@ class ChartBoard:
             with self._column:
                 self._made.append(_ShownChart(self._writer))
         with self._writer.writing(self._column, self._how, *(made.heading for made in self._made)):
-            self._put(charts)
-
-    def _put(self, charts: Sequence[Chart]) -> None:
-        for i, made in enumerate(self._made):
-            made.set_visibility(i < len(charts))
-        last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
-        if last != self._shown:
-            self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
-            self._column.update()
-            self._how.set_visibility(bool(charts))
-        for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
-            if last[i : i + 1] == [self._shown[i]]:
-                made.move_cursor(chart)
-            else:
-                made.fill(chart)
-
-
-def _with_saving(options: dict[str, Any]) -> dict[str, Any]:
-    """Options whose sign for saving does so."""
-    options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
-    return options
+            last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
+            for i, made in enumerate(self._made):
+                made.heading.set_visibility(i < len(charts))
+                made.element.set_visibility(i < len(charts))
+            if last != self._shown:
+                self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
+                self._column.update()
+                self._how.set_visibility(bool(charts))
+            for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
+                if last[i : i + 1] == [self._shown[i]]:
+                    made.move_cursor(chart)
+                else:
+                    made.fill(chart)
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.style import INKS
 
 _DIGITS = 5  # of numbers on the page; of places on an axis, over its length
@@ -61,22 +61,52 @@ def options_of(chart: Chart) -> dict[str, Any]:
 
     Its colours are those of the page; no text is taken for HTML, and none for a script.
     """
-    narrow, wide = ({"grid": {"bottom": _below(chart, letters)}} for letters in (_LETTERS, _LETTERS_WIDE))
+    needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))  # letters of the legend
+    narrow, wide = (
+        {"bottom": 50 + 18 * min(math.ceil(needed / letters), 6)} for letters in (_LETTERS, _LETTERS_WIDE)
+    )
+    no_dot = {"itemStyle": {"opacity": 0}}  # in the legend, except where points are marked
+    lines = ({"name": curve.name} | ({} if curve.points else no_dot) for curve in chart.curves)
     return {
         "animation": False,
         "textStyle": {"color": _paint("text"), "fontFamily": "inherit"},
-        "grid": {"left": 64, "right": 28, "top": 58} | narrow["grid"],
-        "media": [{"query": {"minWidth": _WIDE_CHART}, "option": wide}, {"option": narrow}],
-        "legend": _legend(chart),
-        "tooltip": _tooltip(chart),
-        "toolbox": _toolbox(chart),
-        "dataZoom": [{"type": "inside", "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "ctrl",
-                      "moveOnMouseWheel": False, "preventDefaultMouseMove": False,
-                      "filterMode": "none"}],
-        "xAxis": _axis(chart.x, [curve.x for curve in chart.curves], 28, "middle") | _pointed(chart),
-        "yAxis": _axis(chart.y, [curve.y for curve in chart.curves], 12, "end"),
+        "grid": {"left": 64, "right": 28, "top": 58} | narrow,
+        "media": [
+            {"query": {"minWidth": _WIDE_CHART}, "option": {"grid": wide}},
+            {"option": {"grid": narrow}},
+        ],
+        "legend": {
+            "bottom": 0,
+            "itemWidth": 30,
+            "itemHeight": 10,
+            "textStyle": _letters(_NAMED),
+            "inactiveColor": _paint("ghost"),
+            "data": [*lines, *({"name": each.name} for each in chart.points)],
+        },
+        "tooltip": {  # all curves at the x of the pointer; of curves over decades, one point
+            "trigger": "item" if chart.x.logarithmic else "axis",
+            "renderMode": "richText",  # not HTML: names are shown as they are
+            "confine": True,
+            "order": "seriesDesc",
+            "textStyle": _letters(_NAMED),
+            "backgroundColor": _paint("paper", area=True),
+            "borderColor": _paint("axis"),
+        },
+        "toolbox": _toolbox(chart.title),
+        "dataZoom": [
+            {
+                "type": "inside",
+                "zoomOnMouseWheel": "ctrl",
+                "moveOnMouseMove": "ctrl",
+                "moveOnMouseWheel": False,
+                "preventDefaultMouseMove": False,
+                "filterMode": "none",
+            }
+        ],
+        "xAxis": _axis(chart.x, [curve.x for curve in chart.curves], False) | _pointed(chart),
+        "yAxis": _axis(chart.y, [curve.y for curve in chart.curves], True),
         "series": [*_series(chart)],
-    }  # fmt: skip
+    }
 
 
 def _paint(role: str, area: bool = False) -> str:
@@ -87,28 +117,44 @@ def _paint(role: str, area: bool = False) -> str:
     return f"var(--{role}{'-area' if area else ''},{ink.area if area else ink.line})"
 
 
+def _letters(size: int) -> dict[str, Any]:
+    """Style of a text whose letters have a size [px]."""
+    return {"color": _paint("text"), "fontSize": size}
+
+
 # Frame ------------------------------------------------------------------------------------------------
 
 
-def _axis(axis: ChartAxis, values: Sequence[Any], gap: float, place: str) -> dict[str, Any]:
-    upright = place == "end"
-    letters = {"color": _paint("text"), "fontSize": _NAMED}
-    made: dict[str, Any] = {
+def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
+    """An axis; one of decades has a number at each power of ten, of which those that overlap are left out."""
+    line = {"lineStyle": {"color": _paint("axis")}}
+    label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
+    tick: dict[str, Any] = {"show": True} | line
+    if axis.logarithmic:
+        low, high = _decades(axis, values)
+        powers = [10.0**n for n in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+        label |= {":formatter": _POWERS, "customValues": powers}
+        tick["customValues"] = powers
+        minor = len(powers) < _FEW
+    else:
+        low, high, minor = axis.low, axis.high, False
+        label["showMaxLabel"] = low is None or high is None or _is_tick(low, high)
+    aside = {"align": "left", "padding": [0, 0, 0, -56]} if upright else {}
+    return {
         "type": "log" if axis.logarithmic else "value",
         "name": axis.title,
-        "nameLocation": place,
-        "nameGap": gap,
-        "nameTextStyle": letters | ({"align": "left", "padding": [0, 0, 0, -56]} if upright else {}),
-        "axisLabel": {"color": _paint("text"), "fontSize": _PALE, "hideOverlap": True} | _numbers(axis),
-        "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": _paint("axis")}},
-        "axisTick": {"show": True, "lineStyle": {"color": _paint("axis")}},
+        "nameLocation": "end" if upright else "middle",
+        "nameGap": 12 if upright else 28,
+        "nameTextStyle": _letters(_NAMED) | aside,
+        "axisLabel": label,
+        "axisLine": {"show": True, "onZero": False} | line,
+        "axisTick": tick,
         "splitLine": {"show": True, "lineStyle": {"color": _paint("ghost"), "width": 0.6}},
-        "minorTick": {"show": False},
+        "minorTick": {"show": minor},
         "scale": upright,
+        "min": low,
+        "max": high,
     }
-    return (
-        _over_decades(made, axis, values) if axis.logarithmic else made | {"min": axis.low, "max": axis.high}
-    )
 
 
 def _pointed(chart: Chart) -> dict[str, Any]:
@@ -116,13 +162,6 @@ def _pointed(chart: Chart) -> dict[str, Any]:
     heading = f"{chart.x.name} {{value}} {chart.x.unit}".rstrip() + f"\n{chart.y.title}"
     line = {"color": _paint("axis")}
     return {"axisPointer": {"label": {"show": False, "formatter": heading}, "lineStyle": line}}
-
-
-def _numbers(axis: ChartAxis) -> dict[str, Any]:
-    """How the numbers at an axis are written: small and large ones by powers of ten; ends, where free."""
-    if axis.logarithmic:
-        return {":formatter": _POWERS}
-    return {"showMaxLabel": axis.low is None or axis.high is None or _is_tick(axis.low, axis.high)}
 
 
 def _is_tick(low: float, high: float) -> bool:
@@ -135,17 +174,7 @@ def _is_tick(low: float, high: float) -> bool:
     return bool(abs(part - round(part)) < 1e-6)
 
 
-def _over_decades(made: dict[str, Any], axis: ChartAxis, values: Sequence[Any]) -> dict[str, Any]:
-    """An axis with a number at each power of ten, of which those that overlap are left out."""
-    low, high = _ends(axis, values)
-    powers = [10.0**power for power in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
-    for part in (made["axisLabel"], made["axisTick"]):
-        part["customValues"] = powers
-    made["minorTick"]["show"] = len(powers) < _FEW
-    return made | {"min": low, "max": high}
-
-
-def _ends(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
+def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
     """Ends of an axis with decades: whole ones around the values, where they are not given."""
     known = np.concatenate([np.asarray(each, dtype=float).ravel() for each in values] or [np.empty(0)])
     known = np.log10(known[np.isfinite(known) & (known > 0)])
@@ -155,43 +184,9 @@ def _ends(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
     return low, max(high, 10 * low)
 
 
-def _legend(chart: Chart) -> dict[str, Any]:
-    return {
-        "bottom": 0,
-        "itemWidth": 30,
-        "itemHeight": 10,
-        "textStyle": {"color": _paint("text"), "fontSize": _NAMED},
-        "inactiveColor": _paint("ghost"),
-        "data": [*map(_in_legend, chart.curves), *({"name": each.name} for each in chart.points)],
-    }
-
-
-def _in_legend(curve: ChartCurve) -> dict[str, Any]:
-    """The entry of a curve: its line, with a dot only where its points are marked."""
-    return {"name": curve.name} if curve.points else {"name": curve.name, "itemStyle": {"opacity": 0}}
-
-
-def _below(chart: Chart, letters: int) -> int:
-    """Room below a chart for the axis and rows of a legend of so many letters [px]."""
-    needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
-    return 50 + 18 * min(math.ceil(needed / letters), 6)
-
-
-def _tooltip(chart: Chart) -> dict[str, Any]:
-    """What is said at the pointer: all curves at its x; of curves over decades, one point."""
-    return {
-        "trigger": "item" if chart.x.logarithmic else "axis",
-        "renderMode": "richText",  # not HTML: names are shown as they are
-        "confine": True,
-        "order": "seriesDesc",
-        "backgroundColor": _paint("paper", area=True),
-        "borderColor": _paint("axis"),
-        "textStyle": {"color": _paint("text"), "fontSize": _NAMED},
-    }
-
-
-def _toolbox(chart: Chart) -> dict[str, Any]:
-    name = "-".join("".join(c if c.isalnum() else " " for c in chart.title.lower()).split())
+def _toolbox(title: str) -> dict[str, Any]:
+    """Signs above a chart: zoom, all of it, and saving under its title as a name."""
+    name = "-".join("".join(c if c.isalnum() else " " for c in title.lower()).split())
     return {
         "show": True,
         "right": 12,
@@ -216,8 +211,26 @@ def _series(chart: Chart) -> Iterator[dict[str, Any]]:
     for i, (curve, role) in enumerate(zip(chart.curves, _roles(chart), strict=True)):
         dashed = curve.dashed or i >= len(_COLOURS)
         kind = _DASHES[next(dashes) % len(_DASHES) if curve.pale else 0] if dashed else "solid"
-        yield _line(i, curve, role, kind)
-    yield from map(_points, chart.points)
+        width = 1.2 if curve.pale else 2
+        yield _line(curve) | {
+            "id": f"curve {i}",
+            "itemStyle": {"color": _paint(role)},
+            "lineStyle": {"color": _paint(role), "width": width, "type": kind},
+        }
+    for each in chart.points:
+        known = [(x, y, words) for x, y, words in each.at if math.isfinite(x) and math.isfinite(y)]
+        ring = {"color": _paint("paper", area=True), "borderColor": _paint(each.role), "borderWidth": 1.8}
+        yield {
+            "id": f"points {each.name}",
+            "name": each.name,
+            "type": "scatter",
+            "data": [{"value": [_place(x), _short(y)], "name": words} for x, y, words in known],
+            "symbolSize": 9,
+            "z": 5,
+            "itemStyle": ring,
+            "tooltip": {"trigger": "item", "formatter": "{b}"},
+            "emphasis": {"disabled": True},
+        }
 
 
 def _roles(chart: Chart) -> list[str]:
@@ -225,8 +238,48 @@ def _roles(chart: Chart) -> list[str]:
     return ["ground" if n is None else _COLOURS[n % len(_COLOURS)] for n in chart.colour_numbers]
 
 
+def _line(curve: ChartCurve) -> dict[str, Any]:
+    """The line of a curve, its points as exact as they are seen; one between gaps is a dot."""
+    x, y = thinned(curve.x, curve.y, curve.most)
+    known = np.pad(np.isfinite(y), 1)
+    alone = known[1:-1] & ~known[:-2] & ~known[2:]
+    span = float(np.ptp(x)) if len(x) else 0.0
+    decimals = _DIGITS - math.floor(math.log10(span)) if span > 0 else 12
+    digits = _digits(y[np.isfinite(y)])
+    data: list[Any] = []
+    for a, b, dot in zip(x.tolist(), y.tolist(), alone.tolist(), strict=True):
+        pair = [round(a, decimals), _short(b, digits) if math.isfinite(b) else None]
+        data.append({"value": pair, "symbol": "circle"} if dot else pair)
+    dotted = curve.points or bool(alone.any())
+    return {
+        "name": curve.name,
+        "type": "line",
+        "data": data,
+        "showSymbol": dotted,
+        "symbol": "circle" if curve.points or not dotted else "none",
+        "symbolSize": 5,
+        "emphasis": {"disabled": True},
+    }
+
+
 def marks_of(chart: Chart) -> dict[str, Any]:
-    """The series of marks, bands and cursor; there is always one, so that another replaces it."""
+    """The series of marks, bands and cursor; there is always one, so that another replaces it.
+
+    Marks are upright lines, in the colour of a curve where they are about one.
+    """
+    role_of = {curve.name: _paint(role) for curve, role in zip(chart.curves, _roles(chart), strict=True)}
+    marks: list[dict[str, Any]] = []
+    for mark in chart.marks:
+        if math.isfinite(mark.at):
+            place = {"position": "insideStartTop"} if mark.at_foot else {}
+            colour = {"color": role_of[mark.curve]} if mark.curve in role_of else {}
+            line = {"lineStyle": colour} if colour else {}
+            label = {"formatter": "{b}"} | place | colour
+            marks.append({"xAxis": _place(mark.at), "name": mark.text, "label": label} | line)
+    if chart.cursor is not None and math.isfinite(chart.cursor):
+        now = {"color": _paint("friction"), "width": 2, "type": "solid"}
+        marks.append({"xAxis": _place(chart.cursor), "lineStyle": now, "label": {"show": False}})
+    around = {"textBorderColor": _paint("paper", area=True), "textBorderWidth": 3}
     return {
         "id": "marks",
         "name": "marks",
@@ -234,125 +287,29 @@ def marks_of(chart: Chart) -> dict[str, Any]:
         "data": [],
         "silent": True,
         "tooltip": {"show": False},
-        "markLine": _marks(chart),
-        "markArea": _bands(chart),
-    }
-
-
-def _line(i: int, curve: ChartCurve, role: str, kind: str | list[int]) -> dict[str, Any]:
-    x, y = thinned(curve.x, curve.y, curve.most)
-    alone = _alone(y)
-    return {
-        "id": f"curve {i}",
-        "name": curve.name,
-        "type": "line",
-        "data": [_dotted(pair) if dot else pair for pair, dot in zip(_pairs(x, y), alone, strict=True)],
-        "showSymbol": curve.points or bool(alone.any()),
-        "symbol": "circle" if curve.points or not alone.any() else "none",
-        "symbolSize": 5,
-        "connectNulls": False,
-        "itemStyle": {"color": _paint(role)},
-        "lineStyle": {"color": _paint(role), "width": 1.2 if curve.pale else 2, "type": kind},
-        "emphasis": {"disabled": True},
-    }
-
-
-def _alone(y: np.ndarray) -> np.ndarray:
-    """Whether each value lies between gaps: a line does not show it (n,)."""
-    known = np.pad(np.isfinite(y), 1)
-    return known[1:-1] & ~known[:-2] & ~known[2:]
-
-
-def _dotted(pair: list[float | None]) -> dict[str, Any]:
-    """A point with a dot."""
-    return {"value": pair, "symbol": "circle"}
-
-
-def _points(points: ChartPoints) -> dict[str, Any]:
-    at = [{"value": [_place(x), _short(y)], "name": words} for x, y, words in points.at if _is_number(x, y)]
-    return {
-        "id": f"points {points.name}",
-        "name": points.name,
-        "type": "scatter",
-        "data": at,
-        "symbolSize": 9,
-        "z": 5,
-        "itemStyle": {
-            "color": _paint("paper", area=True),
-            "borderColor": _paint(points.role),
-            "borderWidth": 1.8,
+        "markLine": {
+            "symbol": "none",
+            "animation": False,
+            "lineStyle": {"color": _paint("dimension"), "type": "dashed", "width": 1.2},
+            "label": _letters(_PALE) | {"position": "insideEndTop"} | around,
+            "data": marks,
         },
-        "tooltip": {"trigger": "item", "formatter": "{b}"},
-        "emphasis": {"disabled": True},
-    }
-
-
-def _marks(chart: Chart) -> dict[str, Any]:
-    """Upright lines, their texts at different heights where they are near one another."""
-    role_of = {curve.name: role for curve, role in zip(chart.curves, _roles(chart), strict=True)}
-    each = [_mark(mark, role_of.get(mark.curve)) for mark in chart.marks if math.isfinite(mark.at)]
-    if chart.cursor is not None and math.isfinite(chart.cursor):
-        now = {"color": _paint("friction"), "width": 2, "type": "solid"}
-        each.append({"xAxis": _place(chart.cursor), "lineStyle": now, "label": {"show": False}})
-    return {
-        "symbol": "none",
-        "animation": False,
-        "lineStyle": {"color": _paint("dimension"), "type": "dashed", "width": 1.2},
-        "label": {
-            "color": _paint("text"),
-            "fontSize": _PALE,
-            "position": "insideEndTop",
-            "textBorderColor": _paint("paper", area=True),
-            "textBorderWidth": 3,
+        "markArea": {
+            "itemStyle": {"color": _paint("ground", area=True), "opacity": 0.16},
+            "label": _letters(_PALE) | {"position": "insideBottom", "overflow": "break"},
+            "data": [*_bands(chart)],
         },
-        "data": each,
     }
 
 
-def _mark(mark: ChartMark, role: str | None) -> dict[str, Any]:
-    """An upright line, in the colour of a curve if it is about one."""
-    place = {"position": "insideStartTop"} if mark.at_foot else {}
-    colour = {"color": _paint(role)} if role else {}
-    line = {"lineStyle": colour} if role else {}
-    label = {"formatter": "{b}"} | place | colour
-    return {"xAxis": _place(mark.at), "name": mark.text, "label": label} | line
-
-
-def _bands(chart: Chart) -> dict[str, Any]:
-    length = _length(chart)
-    areas = [
-        [
-            {"xAxis": _place(band.low), "name": band.text if band.high - band.low > _WIDE * length else ""},
-            {"xAxis": _place(band.high)},
-        ]
-        for band in chart.bands
-    ]
-    return {
-        "itemStyle": {"color": _paint("ground", area=True), "opacity": 0.16},
-        "label": {
-            "color": _paint("text"),
-            "fontSize": _PALE,
-            "position": "insideBottom",
-            "overflow": "break",
-        },
-        "data": areas,
-    }
-
-
-def _length(chart: Chart) -> float:
-    """Length of the axis of x, as far as it is known."""
+def _bands(chart: Chart) -> Iterator[list[dict[str, Any]]]:
+    """Ends of each band, whose text stands there if it has room on the axis, as far as that is known."""
     ends = [end for end in (chart.x.low, chart.x.high) if end is not None]
     ends += [float(x) for curve in chart.curves for x in np.asarray(curve.x)[[0, -1]]]
-    return max(ends, default=0.0) - min(ends, default=0.0)
-
-
-def _pairs(x: np.ndarray, y: np.ndarray) -> Iterator[list[float | None]]:
-    """Points of a line, as exact as they are seen."""
-    span = float(np.ptp(x)) if len(x) else 0.0
-    decimals = _DIGITS - math.floor(math.log10(span)) if span > 0 else 12
-    digits = _digits(y[np.isfinite(y)])
-    for a, b in zip(x.tolist(), y.tolist(), strict=True):
-        yield [round(a, decimals), _short(b, digits) if math.isfinite(b) else None]
+    least = _WIDE * (max(ends, default=0.0) - min(ends, default=0.0))
+    for band in chart.bands:
+        text = band.text if band.high - band.low > least else ""
+        yield [{"xAxis": _place(band.low), "name": text}, {"xAxis": _place(band.high)}]
 
 
 def _digits(y: np.ndarray) -> int:
@@ -360,10 +317,6 @@ def _digits(y: np.ndarray) -> int:
     span, largest = (float(np.ptp(y)), float(np.abs(y).max())) if len(y) else (0.0, 0.0)
     more = math.ceil(math.log10(largest / span)) - 1 if span > 0 else 0
     return min(_DIGITS + max(more, 0), _MOST_DIGITS)
-
-
-def _is_number(*values: float) -> bool:
-    return all(map(math.isfinite, values))
 
 
 def _place(value: float) -> float:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
-from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline
+from beamdyn.common.drawing.shapes import Disc, Drawing, Outline
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens.form_entries import Entries
-from beamdyn.common.screens.history import differing
-from beamdyn.common.screens.input_words import given_or_default, label
+from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
+from beamdyn.common.screens.open_document import differing
 from beamdyn.common.screens.screens import KeyResult
 
 if TYPE_CHECKING:
@@ -24,22 +23,6 @@ if TYPE_CHECKING:
 _MOST = 60  # differences of results that are listed
 _DASH = (4.0, 2.5)
 _NUMBER = re.compile(r"\(?([-+]?\d+\.?\d*(?:e[-+]?\d+)?)\s*([^\d\s)][^)]*)?\)?", re.ASCII)  # and its unit
-
-
-@dataclass(frozen=True)
-class OtherDesign:
-    """A design that the open one is compared with.
-
-    Parameters
-    ----------
-    name : str
-        Name of the design.
-    entries : mapping
-        Its entries.
-    """
-
-    name: str
-    entries: Entries
 
 
 class Difference(NamedTuple):
@@ -61,19 +44,15 @@ class Difference(NamedTuple):
 def input_differences(
     here: Mapping[str, str], there: Mapping[str, str], inputs: Sequence[Input]
 ) -> Iterator[Difference]:
-    """Inputs whose texts differ, in their order; a default stands for what is not given."""
+    """Inputs whose texts differ, in their order; a default stands in brackets for what is not given."""
     differ = differing(here, there)
     known = {entry.path: entry for entry in inputs}
     for path in (*known, *sorted(differ - {*known})):
         if path in differ:
-            words = label(known[path]) if path in known else path
-            values = (_value(entries, path, known.get(path)) for entries in (here, there))
-            yield Difference(words, *values)
-
-
-def _value(entries: Mapping[str, str], path: str, entry: Input | None) -> str:
-    text = entries.get(path, "").strip()
-    return text or ("not given" if entry is None else given_or_default(entry, ""))
+            default = default_words(known[path]) if path in known else NOT_GIVEN
+            usual = default if default == NOT_GIVEN else f"({default})"
+            values = (entries.get(path, "").strip() or usual for entries in (here, there))
+            yield Difference(label(known[path]) if path in known else path, *values)
 
 
 def result_differences(
@@ -81,8 +60,15 @@ def result_differences(
 ) -> Iterator[Difference]:
     """Numbers that differ in tables which both designs have, as they are shown."""
     for one, other in zip(_tables(here), _tables(there), strict=False):
-        if [c.header for c in one.columns] == [c.header for c in other.columns]:
-            yield from _cells_that_differ(one, other)
+        if [c.header for c in one.columns] != [c.header for c in other.columns]:
+            continue
+        ours, others = [*_rows(one)], [*_rows(other)]
+        name_of = _naming(ours, others)
+        theirs = {name_of(row): row.numbers for row in others}
+        for row in ours:
+            name, numbers = name_of(row) + row.unit, theirs.get(name_of(row), row.numbers)
+            each = ((h, a, numbers[h]) for h, a in row.numbers.items() if a != numbers[h])
+            yield from (Difference(name + head, a, b) for head, a, b in each)
 
 
 def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
@@ -96,17 +82,6 @@ def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
             yield part
 
 
-def _cells_that_differ(one: Table, other: Table) -> Iterator[Difference]:
-    """Cells of the same row and column."""
-    here, there = [*_rows(one)], [*_rows(other)]
-    name_of = _naming(here, there)
-    theirs = {name_of(row): row.numbers for row in there}
-    for row in here:
-        numbers = theirs.get(name_of(row), row.numbers)
-        name = name_of(row) + row.unit
-        yield from (Difference(name + h, a, numbers[h]) for h, a in row.numbers.items() if a != numbers[h])
-
-
 class _TableRow(NamedTuple):
     """A row of a table: its number, words and unit, and its numbers by the heads of their columns."""
 
@@ -117,18 +92,18 @@ class _TableRow(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Its first number, such as the speed of which the others are results."""
+        """The first number of the row, such as the speed of which the others are results."""
         head, text = next(iter(self.numbers.items()), ("", ""))
         return f"{head.removeprefix(', ')} {text}"
 
     @property
     def counted(self) -> str:
-        """Its words and its number."""
+        """Words and number of the row."""
         return ", ".join(filter(None, (self.words, f"row {self.number}")))
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """What rows of two tables are known by: words of their own, else places that both have, else numbers."""
+    """Choose how rows of two tables are named: by words of their own, places that both have, or numbers."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}
@@ -183,51 +158,36 @@ def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str
     """Charts with the curves of another design's charts, pale and dashed, if these have the same axes."""
     if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
         return charts
-    return [_with_curves(chart, there, name) for chart, there in zip(charts, other, strict=True)]
 
+    def around(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
+        """An axis that spans both; an end that follows from the curves in one of them does so here."""
+        low = None if axis.low is None or there.low is None else min(axis.low, there.low)
+        high = None if axis.high is None or there.high is None else max(axis.high, there.high)
+        return replace(axis, low=low, high=high)
 
-def _with_curves(chart: Chart, there: Chart, name: str) -> Chart:
-    """A chart with the curves of another one, and axes long enough for both."""
-    pale = [_pale(curve, name) for curve in there.curves if not curve.pale]
-    return replace(
-        chart,
-        x=_around_both(chart.x, there.x),
-        y=_around_both(chart.y, there.y),
-        curves=[*chart.curves, *pale],
-    )
+    def pale(curve: ChartCurve) -> ChartCurve:
+        return replace(curve, name=f"{curve.name}, {name[:30]}", pale=True, dashed=True, points=False)
 
-
-def _around_both(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
-    """An axis that spans two; an end that follows from the curves in one of them does so here."""
-    lows, highs = (axis.low, there.low), (axis.high, there.high)
-    return replace(axis, low=_if_given(min, lows), high=_if_given(max, highs))
-
-
-def _if_given(choose: Callable[..., float], ends: tuple[float | None, float | None]) -> float | None:
-    known = [end for end in ends if end is not None]
-    return choose(known) if len(known) == len(ends) else None
-
-
-def _pale(curve: ChartCurve, name: str) -> ChartCurve:
-    return replace(curve, name=f"{curve.name}, {name[:30]}", pale=True, dashed=True, points=False)
+    made = []
+    for chart, there in zip(charts, other, strict=True):
+        curves = [*chart.curves, *(pale(curve) for curve in there.curves if not curve.pale)]
+        made.append(replace(chart, x=around(chart.x, there.x), y=around(chart.y, there.y), curves=curves))
+    return made
 
 
 def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
     """Drawings with the outlines of another design beneath them."""
     if [len(row) for row in rows] != [len(row) for row in other]:
         return rows
-    return [
-        [_with_ghost(*pair, name) for pair in zip(row, there, strict=True)]
-        for row, there in zip(rows, other, strict=True)
-    ]
 
+    def beneath(drawing: Drawing, there: Drawing) -> Drawing:
+        ghosts = [
+            replace(shape, role="other", width=max(shape.width, 1.0), dash=_DASH, filled=False)
+            for shape in there.shapes
+            if isinstance(shape, Outline | Disc)
+        ]
+        words = [name[:40], there.scale] if there.scale != drawing.scale else [name[:40]]
+        key = {**drawing.key, "other": ", ".join(words)}
+        return replace(drawing, shapes=[*ghosts, *drawing.shapes], key=key)
 
-def _with_ghost(drawing: Drawing, other: Drawing, name: str) -> Drawing:
-    ghosts = [_ghost(s) for s in other.shapes if isinstance(s, Outline | Disc)]
-    said = [name[:40], other.scale] if other.scale != drawing.scale else [name[:40]]
-    key = {**drawing.key, "other": ", ".join(said)}
-    return replace(drawing, shapes=[*ghosts, *drawing.shapes], key=key)
-
-
-def _ghost(shape: Outline | Disc) -> DrawnShape:
-    return replace(shape, role="other", width=max(shape.width, 1.0), dash=_DASH, filled=False)
+    return [[*map(beneath, *pair)] for pair in zip(rows, other, strict=True)]

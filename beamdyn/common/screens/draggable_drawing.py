@@ -11,12 +11,11 @@ from nicegui import ui
 
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.screens.handles import Place, Sheet, Viewport
-from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.screens import Handle
 
 STYLE = (
-    f"""
-{page_colours(":root")}"""
+    page_colours(":root")
     + """
 .board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
 .board .machine { display: block; width: 100%; height: auto; user-select: none; }
@@ -108,58 +107,44 @@ class DraggableDrawing:
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
         """Show a drawing; `words` describes the position of each handle for screen readers."""
-        parts = self._said, self._board, self._machine, self._how
+        parts, self.view = (self._said, self._board, self._machine, self._how), sheet.view
         with self._writer.writing(*parts, *self._handles):
-            self._put_sheet(sheet, words)
+            self._said.set_text(sheet.said)
+            self._board.set_visibility(sheet.view is not None)
+            if sheet.view is not None:
+                self._board.style(f"--ratio: {sheet.ratio:.6g}")
+                self._board.props["data-picture"] = sheet.name
+                self._machine.set_content(sheet.element)
+            self._how.set_visibility(bool(sheet.handles))
+            for element in self._handles:
+                toggle(element, "away", not sheet.handles)
+            if sheet.handles:  # else the last ones stay, hidden: one of them may be held
+                self._put_handles(sheet, words)
 
-    def _put_sheet(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        self._show(sheet)
-        self._how.set_visibility(bool(sheet.handles))
-        for element in self._handles:
-            element.classes(add="" if sheet.handles else "away", remove="away" if sheet.handles else "")
-        if sheet.handles:  # else the last ones stay, hidden: one of them may be held
-            self._make([handle.label for handle in sheet.handles])
-            self._sheet = sheet
-            for element, handle in zip(self._handles, sheet.handles, strict=True):
-                self._put(element, handle, words)
-
-    def _show(self, sheet: Sheet) -> None:
-        self.view = sheet.view
-        drawn = self.view is not None
-        self._said.set_text("" if drawn else sheet.text)
-        self._board.set_visibility(drawn)
-        if drawn:
-            self._board.style(f"--ratio: {sheet.ratio:.6g}")
-            self._board.props["data-picture"] = sheet.name
-            self._machine.set_content(sheet.element)
-
-    def _make(self, labels: list[str]) -> None:
-        """Make handles for these points; existing ones are kept."""
-        if labels == [handle.label for handle in self._sheet.handles]:
-            return
-        for element in self._handles:
-            element.delete()
-        with self._board:
-            self._handles = [self._handle(i, label) for i, label in enumerate(labels)]
+    def _put_handles(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
+        """Move the handles to their places, with a message to the page only for those that have changed."""
+        labels = [handle.label for handle in sheet.handles]
+        if labels != [handle.label for handle in self._sheet.handles]:
+            for element in self._handles:
+                element.delete()
+            with self._board:
+                self._handles = [self._handle(i, label) for i, label in enumerate(labels)]
+        self._sheet = sheet
+        for element, handle in zip(self._handles, sheet.handles, strict=True):
+            x, y = sheet.place(handle)
+            at = f"left: {100 * x:.3f}%; top: {100 * y:.3f}%"
+            if self.held is None or self._places.get(element.id) != at:
+                self._places[element.id] = at
+                element.style(at)
+                element.props["aria-valuenow"] = round(100 * x)
+                element.props["aria-valuetext"] = words(handle)
 
     def _handle(self, i: int, label: str) -> Any:
         made: Any = ui.element("div").classes("handle")
         made.props('role="slider" tabindex=0 aria-roledescription="point that can be moved"')
         made.props["aria-label"] = made.props["title"] = label
         made.on("pointerdown", partial(self._pulled, i), throttle=_OFTEN, js_handler=_HOLD)
-        made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
-        return made
-
-    def _put(self, element: Any, handle: Handle, words: Callable[[Handle], str]) -> None:
-        """Move a handle to its place, with a message to the page only if that has changed."""
-        x, y = self._sheet.place(handle)
-        at = f"left: {100 * x:.3f}%; top: {100 * y:.3f}%"
-        if self.held is not None and self._places.get(element.id) == at:
-            return
-        self._places[element.id] = at
-        element.style(at)
-        element.props["aria-valuenow"] = round(100 * x)
-        element.props["aria-valuetext"] = words(handle)
+        return made.on("keydown", partial(self._stepped, i), js_handler=_KEY)
 
     def _stepped(self, i: int, event: Any) -> None:
         across, up, far = event.args
@@ -182,15 +167,12 @@ class DraggableDrawing:
         self._follows = True
         try:
             while self._wanted is not None:
-                wanted, self._wanted = self._wanted, None
-                self._follow(*wanted)
+                (i, place, done), self._wanted = self._wanted, None
+                handle, view = self._sheet.handles[i], self._sheet.view
+                assert view is not None
+                x, y = view.point(place)
+                self.held = None if done else view
+                self._moved(handle, (x / handle.scale, y / handle.scale), done)
                 await asyncio.sleep(_PAUSE)
         finally:
             self._follows = False
-
-    def _follow(self, i: int, place: Place, done: bool) -> None:
-        handle, view = self._sheet.handles[i], self._sheet.view
-        assert view is not None
-        x, y = view.point(place)
-        self.held = None if done else view
-        self._moved(handle, (x / handle.scale, y / handle.scale), done)

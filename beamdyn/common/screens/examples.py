@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from textwrap import shorten
 
@@ -49,7 +50,11 @@ def examples_of(program: Program) -> tuple[Example, ...]:
 
 
 def _accepted(program: Program) -> Iterator[Example]:
-    for file in sorted(_texts(), key=lambda file: file.name):
+    """Check the TOML files of the installed package, or of the source tree around it."""
+    packed = Path(__file__).with_name("shipped_examples")
+    folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
+    found = [file for place in (folder, folder / "calipers") for file in place.glob("*.toml")]
+    for file in sorted(found, key=lambda file: file.name):
         text, name = file.read_text(encoding="utf-8"), file.name.removesuffix(".toml")
         for document in program.documents:
             try:
@@ -60,26 +65,13 @@ def _accepted(program: Program) -> Iterator[Example]:
             break
 
 
-def _texts() -> Iterator[Path]:
-    """The TOML files of the examples: in the installed package, or in the source tree around it."""
-    packed = Path(__file__).with_name("shipped_examples")
-    folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
-    for place in (folder, folder / "calipers"):
-        if place.is_dir():
-            yield from (file for file in place.iterdir() if file.name.endswith(".toml"))
-
-
 def _title(text: str, name: str) -> str:
     """The first sentence of the comment at the head of a file, or its clauses that are not too long.
 
     The file's name where there is none.
     """
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.lstrip("# "))
-    words = _SENTENCE.split(" ".join(lines))[0]
+    lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
+    words = _SENTENCE.split(" ".join(line.lstrip("# ") for line in lines))[0]
     if len(words) > _LONGEST:
         ends = [end for found in _CLAUSE.finditer(words) if (end := found.start()) <= _LONGEST]
         words = words[: ends[-1]] if ends else shorten(words, _LONGEST, placeholder=" ...")

@@ -4,49 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens.drag_slider import DragSlider
-from beamdyn.common.screens.form_entries import has_rows, in_unit, units_of
-from beamdyn.common.screens.input_words import (
+from beamdyn.common.screens.controls import DragSlider
+from beamdyn.common.screens.form_entries import (
     NOT_GIVEN,
+    Reading,
     default_words,
+    has_rows,
     heading_of,
     help_of,
+    in_unit,
+    is_bare,
     label,
     label_html,
     name_words,
     options_of,
+    read_entry,
     table_of,
+    unit_of,
+    units_of,
+    usual_unit,
 )
+from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.reading import Reading, is_bare, read_entry, unit_of, usual_unit
-from beamdyn.common.screens.screens import Drag
+from beamdyn.common.screens.screens import Drag, Screen
 
 
 class Form:
-    """The fields of some tables.
+    """The fields of the tables of a screen.
 
     Parameters
     ----------
+    work : OpenDocument
+        The document, whose entries stand in the fields at first.
+    screen : Screen
+        Which of its screens.
     inputs : sequence of Input
-        Inputs, each with a field.
-    sections : sequence of str
-        Tables shown, in this order; "" for inputs outside any.
-    entries : mapping
-        Texts of the fields at first, by path.
+        Inputs that have a field, if they are in one of the screen's tables.
     changed : callable
         Called with path and text when a field changes.
-    drags : sequence of Drag
-        Sliders below fields.
     hold : callable
         Called with True when a slider is taken hold of, with False when it is let go.
-    headings : mapping
-        Headings of tables, where one that is made from the table's name does not serve.
     writer : PageWriter
         Writes into the fields while something is held.
 
@@ -58,41 +60,34 @@ class Form:
 
     def __init__(
         self,
+        work: OpenDocument,
+        screen: Screen,
         inputs: Sequence[Input],
-        sections: Sequence[str],
-        entries: Mapping[str, str],
         changed: Callable[[str, str], object],
-        drags: Sequence[Drag] = (),
-        hold: Callable[[bool], object] = lambda _: None,
-        headings: Mapping[str, str] = MappingProxyType({}),
-        writer: PageWriter | None = None,
+        hold: Callable[[bool], object],
+        writer: PageWriter,
     ) -> None:
-        self._writer = writer or PageWriter()
+        self._changed, self._hold, self._held, self._writer = changed, hold, False, writer
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
-        self._units: dict[str, str] = {}  # units of bare numbers, by path
-        self._headings = headings
+        self._units: dict[str, str] = {}  # of bare numbers, by path
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # of the fields
-        self._changed = changed
-        self._hold, self._held = hold, False
-        self._drags = {drag.path: drag for drag in drags}
-        for section in sections:
+        self._drags = {drag.path: drag for drag in screen.drags}
+        entries, headings = work.entries, work.document.headings
+        for section in screen.sections:
             chosen = [entry for entry in inputs if table_of(entry.path) == section]
-            if chosen:
-                self._section(section, chosen, entries)
-
-    def _section(self, section: str, inputs: Sequence[Input], entries: Mapping[str, str]) -> None:
-        given = any(entries.get(entry.path, "") for entry in inputs)
-        usual = all(default_words(entry) != NOT_GIVEN for entry in inputs)
-        heading = heading_of(section, self._headings)
-        table = ui.expansion(heading, value=given or usual or not section).classes("w-full section")
-        with table.props("dense"):
-            for entry in inputs:
-                with ui.element("div") as self._places[entry.path]:
-                    self._field(entry, entries.get(entry.path, ""))
-        self._tables[section] = table
+            if not chosen:
+                continue
+            given = any(entries.get(entry.path, "") for entry in chosen)
+            usual = all(default_words(entry) != NOT_GIVEN for entry in chosen)
+            table = ui.expansion(heading_of(section, headings), value=given or usual or not section)
+            with table.classes("w-full section").props("dense"):
+                for entry in chosen:
+                    with ui.element("div") as self._places[entry.path]:
+                        self._field(entry, entries.get(entry.path, ""))
+            self._tables[section] = table
 
     def _field(self, entry: Input, text: str) -> None:
         made = self._select(entry, text) if options_of(entry) else self._input(entry, text)
@@ -104,8 +99,8 @@ class Form:
         if entry.quantity.symbol:
             made.add_slot("label", label_html(entry))
         self.fields[entry.path] = made
-        if (drag := self._drags.get(entry.path)) is not None:
-            self._slider(drag, entry, made)
+        if entry.path in self._drags:
+            self._slider(self._drags[entry.path], entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
         """A slider that writes into a field and follows what is written there, limited to its range."""
@@ -122,53 +117,52 @@ class Form:
             if at is not None and at != place():  # else it has followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
+        def hold(held: bool) -> None:
+            if held != self._held:
+                self._held = held
+                self._hold(held)
+
         def follow(at: float, done: bool) -> None:
             if not done:
-                self._be_held(True)
+                hold(True)
             with self._writer.writing(field, made):
                 write(at)
             if done:
-                self._be_held(False)
+                hold(False)
 
-        start = place()
-        made = DragSlider(
-            follow, min=drag.low, max=drag.high, step=drag.step, value=drag.low if start is None else start,
-            on_change=lambda e: write(e.value),
-        )  # fmt: skip
+        start, ends = place(), {"min": drag.low, "max": drag.high}
+        at = drag.low if start is None else start
+        made = DragSlider(follow, **ends, step=drag.step, value=at, on_change=lambda e: write(e.value))
         unit = f" [{drag.unit}]" if drag.unit else ""
         made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
-
-    def _be_held(self, held: bool) -> None:
-        if held != self._held:
-            self._held = held
-            self._hold(held)
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in options_of(entry)}
         if not entry.required:
             default = default_words(entry)
             options = {"": default if default == NOT_GIVEN else f"{NOT_GIVEN}: {default}", **options}
-        value = text if text in options else None
-        return ui.select(
-            options,
-            value=value,
-            label=label(entry),
-            on_change=lambda e: self._changed(entry.path, e.value or ""),
-        )
+        made = ui.select(options, value=text if text in options else None, label=label(entry))
+        return made.on_value_change(lambda e: self._changed(entry.path, e.value or ""))
 
     def _input(self, entry: Input, text: str) -> Any:
-        made = _lines if has_rows(entry) else ui.input
-        field = made(
+        usual, several = default_words(entry), has_rows(entry)
+        field: Any = (ui.textarea if several else ui.input)(
             label(entry),
             value=text,
-            placeholder="" if entry.required else default_words(entry),
+            placeholder="" if entry.required else usual,
             on_change=lambda e: self._heard(entry, e.value or ""),
-        ).props("debounce=100 autocomplete=off spellcheck=false")
-        field.on("blur", lambda: self._tidy(entry))
-        self._units[entry.path] = (
-            unit_of(text, entry) or unit_of(default_words(entry), entry) or usual_unit(entry)
         )
+        field.props("debounce=100 autocomplete=off spellcheck=false" + " autogrow" * several)
+
+        def tidy() -> None:  # what was read replaces what was typed when the field is left
+            read = self._read(entry.path)
+            if read.remark and not field.error:
+                field.set_value(read.text)
+
+        field.on("blur", tidy)
+        given = unit_of(text, entry) or unit_of(usual, entry)
+        self._units[entry.path] = given or usual_unit(entry.quantity.unit)
         units = units_of(entry)
         if len(units) > 1:
             with field.add_slot("append"):
@@ -178,26 +172,16 @@ class Form:
     def _heard(self, entry: Input, typed: str) -> None:
         """Read a text that was typed or written into a field, and show how it was read."""
         self.typed[entry.path] = typed
-        read = self._read(entry.path)
+        read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = unit_of(read.text, entry) or self._units[entry.path]
-        self._remark(entry, read)
+        field.props["hint"] = read.remark or help_of(entry)
+        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> Reading:
         """The text of a field, as it is read."""
         typed = self.fields[path].value or ""
         return read_entry(typed, self._inputs[path], self._units.get(path, ""))
-
-    def _remark(self, entry: Input, read: Reading) -> None:
-        field = self.fields[entry.path]
-        field.props["hint"] = read.remark or help_of(entry)
-        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
-
-    def _tidy(self, entry: Input) -> None:
-        """Replace a field's text by what was read from it, when the field is left."""
-        read, field = self._read(entry.path), self.fields[entry.path]
-        if read.remark and not field.error:
-            field.set_value(read.text)
 
     def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
         """A button whose menu converts the field's value to another unit; made at the first click."""
@@ -214,10 +198,6 @@ class Form:
 
         button = ui.button(icon="straighten", on_click=choose)
         button.props(f'flat dense round size=sm aria-label="unit of {name_words(entry)}"')
-
-    def shows(self, entries: Mapping[str, str]) -> bool:
-        """Whether these entries stand in the fields."""
-        return all(self._read(path).text == entries.get(path, "") for path in self.fields)
 
     def put(self, entries: Mapping[str, str]) -> None:
         """Show these entries; fields that show theirs already are left alone."""
@@ -247,8 +227,3 @@ class Form:
             field.error = " ".join(said) if said else None
             if said:
                 self._tables[table_of(path)].open()
-
-
-def _lines(*given: Any, **more: Any) -> Any:
-    """A text field that grows with its lines."""
-    return ui.textarea(*given, **more).props("autogrow")

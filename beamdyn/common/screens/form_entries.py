@@ -1,16 +1,21 @@
-"""Conversion between the entries of a form (text by path) and the nested tables of a TOML file."""
+"""Texts of the fields of a form: names and defaults of inputs, how what is typed is read, and TOML tables."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
+from beamdyn.common.drawing.symbols import symbol_html
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
+from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 
 Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
@@ -31,34 +36,34 @@ _UNITS = {
 
 def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
     """The entries for these tables; values without a field are kept as entries, too."""
-    leaves = {entry.path for entry in inputs}
-    return {entry.path: "" for entry in inputs} | dict(_flat(tables, leaves, ""))
+    found = {entry.path: "" for entry in inputs}
+    leaves = {*found}
 
+    def flatten(tables: Mapping[str, Any], prefix: str) -> None:
+        for key, value in tables.items():
+            path = prefix + key
+            if isinstance(value, dict) and path not in leaves:
+                flatten(value, f"{path}.")
+            else:
+                found[path] = value if isinstance(value, str) else _lined(value)
 
-def _flat(tables: Mapping[str, Any], leaves: set[str], prefix: str) -> Iterator[tuple[str, str]]:
-    for key, value in tables.items():
-        path = prefix + key
-        if isinstance(value, dict) and path not in leaves:
-            yield from _flat(value, leaves, f"{path}.")
-        else:
-            yield path, value if isinstance(value, str) else _lined(value)
+    flatten(tables, "")
+    return found
 
 
 def _lined(value: Any) -> str:
-    """A value as TOML; a list of tables or of rows with a line for each."""
-    if _is_tables(value) or _is_rows(value):
+    """A value as TOML; a list of tables, or of rows of plain numbers, with a line for each.
+
+    Points are no such rows: their coordinates have units.
+    """
+    rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
+    if rows or _is_list_of(dict, value):
         return "[{}]".format(",\n ".join(toml_value(item) for item in value))
     return toml_value(value)
 
 
-def _is_tables(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
-
-
-def _is_rows(value: Any) -> bool:
-    """Whether a value is a table of plain numbers; points, whose coordinates have units, are none."""
-    rows = isinstance(value, list) and bool(value) and all(isinstance(item, list) for item in value)
-    return rows and any(isinstance(cell, int | float) for cell in value[-1])
+def _is_list_of(kind: type, value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(item, kind) for item in value)
 
 
 def has_rows(entry: Input) -> bool:
@@ -95,36 +100,34 @@ def tables_of(
 
 def _value(text: str, entry: Input | None) -> Any:
     """The text as a TOML value: a number, list or table if the input is one, else a string."""
-    if entry is not None and (entry.choices or _is_text(entry.kind)):
-        return next((choice for choice in entry.choices if str(choice) == text), text)
-    if entry is not None and entry.quantity.unit and text[0] not in "[{":
-        return text
+    if entry is not None:
+        is_text = entry.kind is str or (get_origin(entry.kind) is not list and str in get_args(entry.kind))
+        if entry.choices or is_text:
+            return next((choice for choice in entry.choices if str(choice) == text), text)
+        if entry.quantity.unit and text[0] not in "[{":
+            return text
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         return text
 
 
-def _is_text(kind: Any) -> bool:
-    return kind is str or (get_origin(kind) is not list and str in get_args(kind))
-
-
 def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
     """Tables as the text of a TOML file."""
-    return "\n".join([*([f"# {heading}", ""] if heading else []), *_lines(tables, "")]).strip() + "\n"
 
+    def lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
+        nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
+        listed = {key: value for key, value in tables.items() if _is_list_of(dict, value)}
+        for key, value in tables.items():
+            if key not in nested and key not in listed:
+                yield f"{_key(key)} = {_lined(value)}"
+        for key in (key for key in tables if key in nested or key in listed):
+            path = prefix + _key(key)
+            head = f"[{path}]" if key in nested else f"[[{path}]]"
+            for item in [nested[key]] if key in nested else listed[key]:
+                yield from ("", head, *lines(item, f"{path}."))
 
-def _lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
-    for key, value in tables.items():
-        if not isinstance(value, dict) and not _is_tables(value):
-            yield f"{_key(key)} = {_lined(value)}"
-    for key, value in tables.items():
-        path = prefix + _key(key)
-        if isinstance(value, dict):
-            yield from ("", f"[{path}]", *_lines(value, f"{path}."))
-        elif _is_tables(value):
-            for item in value:
-                yield from ("", f"[[{path}]]", *_lines(item, f"{path}."))
+    return "\n".join([*([f"# {heading}", ""] if heading else []), *lines(tables, "")]).strip() + "\n"
 
 
 def _key(name: str) -> str:
@@ -161,14 +164,9 @@ def by_field(
         return {path: [reason_of(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
-        sentences.setdefault(_field(place, paths), []).append(sentence)
+        around = [path for path in paths if f"{place}.".startswith(f"{path}.")]  # it may lie within an input
+        sentences.setdefault(max(around, key=len, default=""), []).append(sentence)
     return sentences
-
-
-def _field(place: str, paths: Sequence[str]) -> str:
-    """The field in which a place lies, which may be a key within an input."""
-    around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
-    return max(around, key=len, default="")
 
 
 def units_for(unit: str) -> tuple[str, ...]:
@@ -190,3 +188,151 @@ def in_unit(text: str, quantity: Quantity, target: str) -> str:
     except (ValueError, RecursionError, AttributeError):
         return text
     return f"{value:.10g} {target}"
+
+
+_NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
+_BARE = re.compile(_NUMBER, re.ASCII)
+_QUANTITY = re.compile(rf"({_NUMBER})(\s*[^\d\s.,+-].*|\s+1/.*)?", re.ASCII | re.DOTALL)
+_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # between the coordinates of a point
+_USUAL = {"m": "mm", "rad": "deg"}  # units shown before one has been chosen
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A text as it was read.
+
+    Parameters
+    ----------
+    text : str
+        The text as a file has it.
+    remark : str
+        How it was read, if that differs from what was typed.
+    """
+
+    text: str
+    remark: str = ""
+
+
+def read_entry(typed: str, entry: Input, unit: str) -> Reading:
+    """Read what was typed into a field.
+
+    Parameters
+    ----------
+    typed : str
+        The text.
+    entry : Input
+        The input of the field.
+    unit : str
+        The unit shown, which a bare number is given.
+    """
+    if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
+        # They are the coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
+        each = [_QUANTITY.fullmatch(part.strip()) for part in parts]
+        made = [f"{m[1].replace(',', '.')} {(m[2] or '').strip() or unit}".strip() for m in each if m]
+        text = toml_value(made)
+        return Reading(text, f"read as {text}") if len(made) == 2 else Reading(typed)
+    match = _QUANTITY.fullmatch(typed.strip())
+    is_number = entry.quantity.unit or {float, int} & {*parts_of(entry.kind)}
+    if match is None or entry.choices or not is_number:
+        return Reading(typed)
+    number, given = match[1].replace(",", "."), (match[2] or "").strip()
+    needed = unit if entry.quantity.unit and not given else given
+    text = f"{number} {needed}".strip()
+    as_typed = number == match[1] and needed == given
+    return Reading(typed) if as_typed else Reading(text, f"read as {text}")
+
+
+def is_bare(typed: str) -> bool:
+    """Whether a text is a number without a unit."""
+    return _BARE.fullmatch(typed.strip()) is not None
+
+
+def unit_of(text: str, entry: Input) -> str:
+    """The unit of a text, if it is a quantity of its input; "" if it is not."""
+    match = _QUANTITY.fullmatch(text.strip())
+    unit = (match[2] or "").strip() if match else ""
+    try:
+        entry.quantity.convert(f"1 {unit}")
+    except ValueError:
+        return ""
+    return unit
+
+
+def usual_unit(unit: str) -> str:
+    """The unit that a field of an SI unit has as long as none has been chosen."""
+    return _USUAL.get(unit, unit)
+
+
+NOT_GIVEN = "not given"
+_KEY = re.compile(r"\[(\w+)\] (\w+) = ")
+
+
+def label(entry: Input) -> str:
+    """Name and symbol of an input."""
+    symbol = entry.quantity.symbol
+    return f"{name_words(entry)}, {symbol}" if symbol and symbol != entry.name else name_words(entry)
+
+
+def label_html(entry: Input) -> str:
+    """The label as HTML, with the symbol typeset as in a sketch."""
+    words, _, symbol = label(entry).rpartition(", ")
+    return f"{escape(words)}, {symbol_html(symbol)}" if words else escape(symbol)
+
+
+def help_of(entry: Input) -> str:
+    """Meaning, unit and bounds, and whether it may be left out."""
+    return entry.help if entry.required else f"{entry.help}; not required"
+
+
+def name_words(entry: Input) -> str:
+    """Name of an input in words, with the names of tables nested in its table before it."""
+    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
+
+
+def table_of(path: str) -> str:
+    """Name of the table that holds an input; "" outside any."""
+    return path.partition(".")[0] if "." in path else ""
+
+
+def heading_of(section: str, headings: Mapping[str, str]) -> str:
+    """Heading of a table of the form."""
+    return headings.get(section, section.replace("_", " ").capitalize() or "General")
+
+
+def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, str]) -> str:
+    """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
+    tables = {table_of(entry.path) for entry in inputs}
+
+    def named(found: re.Match[str]) -> str:
+        if found[1] not in tables:
+            return found[0]
+        return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
+
+    return _KEY.sub(named, sentence)
+
+
+def options_of(entry: Input) -> tuple[str, ...]:
+    """The words or numbers from which an input is chosen; none where it is typed."""
+    if entry.kind is bool:
+        return ("true", "false")
+    few = all(isinstance(choice, str | int) for choice in entry.choices)
+    return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
+
+
+def default_words(entry: Input) -> str:
+    """The default value, as a user would type it."""
+    if entry.default is None or entry.default in ("", [], ()):
+        return NOT_GIVEN
+    value, unit = entry.default, entry.quantity.unit
+    if value == math.inf and entry.quantity.infinite:
+        return entry.quantity.infinite
+
+    def in_words(number: float) -> str:
+        short = unit == "m" and abs(number) < 1
+        return f"{1e3 * number:.6g} mm" if short else f"{number:.6g} {unit}".rstrip()
+
+    if isinstance(value, tuple):
+        return toml_value([in_words(number) for number in value])
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return show(value).strip('"')
+    return in_words(value)

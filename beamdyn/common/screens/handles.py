@@ -19,11 +19,10 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.screens.comparison import with_ghost
-from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for
+from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for, usual_unit
 from beamdyn.common.screens.screens import Handle, Screen
 
 Place = tuple[float, float]
-_UNITS = {"m": "mm", "rad": "deg"}  # of fields that have none
 _NARROW = 400.0  # width of the paper on a narrow page [pt]
 _ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
 
@@ -59,10 +58,6 @@ class Viewport:
         places = np.array([(left, bottom), (right, top)])
         corners = places / (paper.width, paper.height)
         return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
-
-    def holds(self, rows: Rows) -> bool:
-        """Whether it belongs to a picture with as many rows of drawings."""
-        return len(self.paper.heights) == len(rows)
 
     def place(self, point: Place) -> Place:
         """The place in the picture of a point of the drawing."""
@@ -105,7 +100,7 @@ class Sheet:
 
     @cached_property
     def text(self) -> str:
-        """Its SVG file, or why there is none."""
+        """The SVG file of the drawing, or why there is none."""
         return as_file(self.element) if self.element else self.said
 
     @property
@@ -154,35 +149,28 @@ def draw_sheet(
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
-            rows = rows if view is not None else _with_room(screen, answer, rows)
+            marks = len(screen.slider.marks) if screen.slider is not None and view is None else 0
+            if marks:  # the first drawing keeps room for its shapes at each mark of the slider
+                corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
+                rows = _with_first(rows, room=np.vstack(corners))
             rows = with_ghost(rows, other, name) if other else rows
             rows = [[drawing] for row in rows for drawing in row] if narrow else rows
-            width = _NARROW if narrow else WIDTH
-            return _sheet_of_drawings(rows, tuple(screen.handles(answer, progress)), view, width)
+            handles = tuple(screen.handles(answer, progress))
+            points = {handle.label: np.multiply(handle.scale, handle.at) for handle in handles}
+            rows = _with_first(rows, points=points)
+            held = view if view is not None and len(view.paper.heights) == len(rows) else None
+            paper = Paper.of(rows, _NARROW if narrow else WIDTH) if held is None else held.paper
+            layouts = lay_out(rows, paper, None if held is None else held.layout)
+            shown = Viewport.of_layout(layouts[0], paper)
+            return Sheet("", handles, shown, paper.width / paper.height, element(layouts, paper))
     except (ValueError, ArithmeticError) as error:
         return Sheet(f"There is no drawing: {reason_of(error)}")
 
 
-def _with_room(screen: Screen, answer: Any, rows: Rows) -> Rows:
-    """The same drawings; the first keeps room for its shapes at each mark of the slider."""
-    marks = len(screen.slider.marks) if screen.slider is not None else 0
-    corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
-    if not corners:
-        return rows
+def _with_first(rows: Rows, **changes: Any) -> Rows:
+    """Drawings of which the first is changed."""
     (first, *others), *more = rows
-    return [[replace(first, room=np.vstack(corners)), *others], *more]
-
-
-def _sheet_of_drawings(rows: Rows, handles: tuple[Handle, ...], view: Viewport | None, width: float) -> Sheet:
-    points = {handle.label: np.multiply(handle.scale, handle.at) for handle in handles}
-    (first, *others), *more = rows
-    rows = [[replace(first, points=points), *others], *more]
-    held = view if view is not None and view.holds(rows) else None
-    paper = Paper.of(rows, width) if held is None else held.paper
-    layouts = lay_out(rows, paper, None if held is None else held.layout)
-    made = element(layouts, paper)
-    ratio = paper.width / paper.height
-    return Sheet("", handles, Viewport.of_layout(layouts[0], paper), ratio, made)
+    return [[replace(first, **changes), *others], *more]
 
 
 # In the fields ------------------------------------------------------------------------------------------
@@ -215,21 +203,17 @@ def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[
 
 
 def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
-    known = {entry.path: entry for entry in inputs}
-    return {
-        path: _text(value, entries.get(path, ""), known[path], handle.grain)
-        for path, value in handle.moved(*target).items()
-        if path in known  # the drawing may be that of another kind, the last good one
-    }
-
-
-def _text(value: float | Place, text: str, entry: Input, grain: float) -> str:
-    """A value as text for its field; parts of the old text that still hold are kept."""
-    unit = entry.quantity.unit
-    if not isinstance(value, tuple):
-        return _number(value, text, unit, grain)
-    there = _coordinates(text, entry)
-    return toml_value([_number(v, t, unit, grain) for v, t in zip(value, there, strict=True)])
+    """Texts of the fields that a handle sets; parts of old texts that still hold are kept."""
+    known, texts = {entry.path: entry for entry in inputs}, {}
+    for path, value in handle.moved(*target).items():
+        if path in known:  # the drawing may be that of another kind, the last good one
+            text, unit = entries.get(path, ""), known[path].quantity.unit
+            if isinstance(value, tuple):
+                pairs = zip(value, _coordinates(text, known[path]), strict=True)
+                texts[path] = toml_value([_number(v, t, unit, handle.grain) for v, t in pairs])
+            else:
+                texts[path] = _number(value, text, unit, handle.grain)
+    return texts
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
@@ -248,13 +232,8 @@ def _number(value: float, text: str, unit: str, grain: float) -> str:
             return text
     except ValueError:
         pass
-    shown = _unit_of(text, unit)
+    by_length = sorted(units_for(unit), key=len, reverse=True)
+    shown = next((u for u in by_length if text.rstrip().endswith(u)), usual_unit(unit))
     size = quantity(f"1 {shown}", unit)
     decimals = max(0, -math.floor(math.log10(grain / size) + 1e-9))
     return f"{round(value / size, decimals) + 0.0:.{decimals}f} {shown}"
-
-
-def _unit_of(text: str, unit: str) -> str:
-    """The unit of a text, if it is one of those in common use."""
-    by_length = sorted(units_for(unit), key=len, reverse=True)
-    return next((u for u in by_length if text.rstrip().endswith(u)), _UNITS.get(unit, unit))

@@ -4,38 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.screens.comparison import OtherDesign
-from beamdyn.common.screens.history import History
+from beamdyn.common.screens.open_document import History, OtherDesign
 
 _LOOKS = {"": ("brightness_auto", None), "light": ("light_mode", False), "dark": ("dark_mode", True)}
-
-
-class Commands(Protocol):
-    """Actions of the buttons of the bar."""
-
-    def undo(self) -> None:
-        """Take the last change back."""
-        ...
-
-    def redo(self) -> None:
-        """Make it again."""
-        ...
-
-    async def designs(self) -> None:
-        """Show named designs and examples."""
-        ...
-
-    def stop_comparing(self) -> None:
-        """Show the open design alone."""
-        ...
-
-    def keep_look(self, look: str) -> None:
-        """Store whether the page is light or dark."""
-        ...
 
 
 class Header:
@@ -51,8 +26,8 @@ class Header:
         Called when another screen has been chosen.
     files : mapping
         Entries of the menu of files, and the function that each calls.
-    do : Commands
-        Actions of the other buttons.
+    do : object
+        The page: what has the methods `undo`, `redo`, `designs`, `stop_comparing` and `keep_look`.
     """
 
     def __init__(
@@ -61,33 +36,26 @@ class Header:
         screens: Sequence[str],
         turned: Callable[[], object],
         files: Mapping[str, Callable[[], object]],
-        do: Commands,
+        do: Any,
     ) -> None:
-        self._do = do
-        self._look = ""
-        self._dark = ui.dark_mode(None)
+        self._do, self._dark = do, ui.dark_mode(None)
         first: Any = screens[0]
-        self.tabs: Any
         with ui.header().classes("items-center gap-1 q-py-none"):
             ui.html(escape(title), tag="h1", sanitize=False)
-            with ui.tabs(value=first, on_change=turned).props(
-                "dense no-caps shrink stretch inline-label outside-arrows mobile-arrows"
-            ) as self.tabs:
+            self.tabs: Any = ui.tabs(value=first, on_change=turned)
+            with self.tabs.props("dense no-caps shrink stretch inline-label outside-arrows mobile-arrows"):
                 self._tabs: dict[str, Any] = {name: ui.tab(name, label=name) for name in screens}
             ui.space()
-            self._buttons(files)
-
-    def _buttons(self, files: Mapping[str, Callable[[], object]]) -> None:
-        self._compared: Any = ui.button(on_click=self._do.stop_comparing, icon="close")
-        self._compared.props("flat dense no-caps color=white").set_visibility(False)
-        self._undo = _icon("undo", "Undo (Ctrl-Z)", self._do.undo)
-        self._redo = _icon("redo", "Redo (Ctrl-Shift-Z)", self._do.redo)
-        self._light = _icon(_LOOKS[""][0], "", self._next_look)
-        self.show_look("")
-        ui.button("Designs", on_click=self._do.designs).props("flat dense no-caps color=white")
-        with ui.button("File").props("flat dense no-caps color=white"), ui.menu().props("auto-close"):
-            for words, act in files.items():
-                ui.menu_item(words, act)
+            self._compared: Any = ui.button(on_click=do.stop_comparing, icon="close")
+            self._compared.props("flat dense no-caps color=white").set_visibility(False)
+            self._undo = _icon("undo", "Undo (Ctrl-Z)", do.undo)
+            self._redo = _icon("redo", "Redo (Ctrl-Shift-Z)", do.redo)
+            self._light = _icon("", "", self._next_look)
+            self.show_look("")
+            ui.button("Designs", on_click=do.designs).props("flat dense no-caps color=white")
+            with ui.button("File").props("flat dense no-caps color=white"), ui.menu().props("auto-close"):
+                for words, act in files.items():
+                    ui.menu_item(words, act)
 
     def mark(self, stale: Collection[str], history: History, other: OtherDesign | None) -> None:
         """Show which screens are stale, what can be undone, and which design is compared."""

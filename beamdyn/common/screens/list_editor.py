@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import takewhile
@@ -9,12 +10,12 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.screens.list_rows import ItemRow, Put
-from beamdyn.common.screens.lists import Entries, Item, ListGroup, Lists, gone_with
+from beamdyn.common.screens.lists import Cell, Entries, Item, ListGroup, Lists, gone_with
 from beamdyn.common.screens.page_writer import PageWriter
 
-_READ = 10_000  # how long a notice stays [ms]
+Put = Callable[[Item, str, str], object]  # item, key of its cell, and text
 
+_READ = 10_000  # how long a notice stays [ms]
 STYLE = """
 .listed { display: flex; gap: 4px; align-items: start; width: 100%; }
 .listed > .q-field { flex: 1 1 0; min-width: 0; }
@@ -26,6 +27,113 @@ STYLE = """
 .advice { border-left: 4px solid #0072B2; padding-left: 0.5rem; width: 100%; }
 .advice:empty { display: none; }
 """
+
+
+class ItemRow:
+    """The row of an item: its fields, and a button that removes it.
+
+    A row is kept for other items with the same fields, since a new field would lose the focus, and a new
+    button the click on it.
+
+    Parameters
+    ----------
+    item : Item
+        The item at first.
+    put : callable
+        Called with item, key and text when another text has been typed or chosen.
+    remove : callable, optional
+        Called with the item when it is to be removed; None if it cannot be.
+    """
+
+    def __init__(self, item: Item, put: Put, remove: Callable[[Item], object] | None) -> None:
+        self._item, self._put, self._remove = item, put, remove
+        self._fields: dict[str, Any] = {}
+        self._name: Any = None
+        self._bin: Any = None
+        short = len(item.cells) <= 3
+        self._row: Any = ui.element("div").classes("listed" if short else "listed-part")
+        with self._row:
+            if not short:
+                with ui.row().classes("w-full items-center no-wrap justify-between"):
+                    self._name = ui.label().classes("text-weight-medium")
+                    self._make_bin()
+            with contextlib.nullcontext() if short else ui.element("div").classes("cells"):
+                for cell in item.cells:
+                    self._make_field(cell)
+            if short:
+                self._make_bin()
+        self._say_names()
+
+    def _make_bin(self) -> None:
+        if (remove := self._remove) is not None:
+            self._bin = ui.button(icon="delete", on_click=lambda: remove(self._item))
+            self._bin.props("flat dense round size=sm")
+
+    def _make_field(self, cell: Cell) -> None:
+        """Make the field of a cell, in which another text is chosen, or typed until the field is left."""
+
+        def text() -> str:
+            return next(each.text for each in self._item.cells if each.key == cell.key)
+
+        def typed() -> None:
+            if (now := made.value or "") != text():
+                self._put(self._item, cell.key, now)
+            if not cell.options:
+                made.set_value(text())  # what is not taken goes back
+
+        made: Any
+        if cell.options:
+            made = ui.select(_options(cell), value=_chosen(cell), label=cell.label, on_change=typed)
+        else:
+            made = ui.input(cell.label, value=cell.text, placeholder=cell.usual)
+            made.props("autocomplete=off spellcheck=false").on("blur", typed).on("keydown.enter", typed)
+        made.props("dense outlined stack-label hide-hint hide-bottom-space")
+        made.props["title"] = made.props["hint"] = cell.hint or cell.label
+        self._fields[cell.key] = made
+
+    def _say_names(self) -> None:
+        for key, field in self._fields.items():
+            field.props["data-path"] = f"{self._item.id}.{key}"
+            field.update()
+        if self._name is not None:
+            self._name.set_text(self._item.name)
+        if self._bin is not None:
+            self._bin.props["aria-label"] = self._bin.props["title"] = f"remove {self._item.name}"
+            self._bin.update()
+
+    @property
+    def texts(self) -> list[Any]:
+        """The fields into which text is typed."""
+        return [self._fields[cell.key] for cell in self._item.cells if not cell.options]
+
+    def fits(self, item: Item) -> bool:
+        """Whether its fields are those of an item: by key, label, and whether they are chosen from."""
+        kinds = ([(c.key, c.label, bool(c.options)) for c in each.cells] for each in (self._item, item))
+        return next(kinds) == next(kinds)
+
+    def show(self, item: Item) -> None:
+        """Show another item; a field whose text is the same as before keeps what is being typed."""
+        before, self._item = self._item, item
+        for old, cell in zip(before.cells, item.cells, strict=True):
+            field = self._fields[cell.key]
+            if cell.options and cell.options != old.options:
+                field.set_options(_options(cell), value=_chosen(cell))
+            elif cell.text != old.text:
+                field.set_value(_chosen(cell) if cell.options else cell.text)
+        if (before.id, before.name) != (item.id, item.name):
+            self._say_names()
+
+    def delete(self) -> None:
+        """Remove it from the page."""
+        self._row.delete()
+
+
+def _options(cell: Cell) -> dict[str, str]:
+    return {option: option or cell.usual or "not given" for option in cell.options}
+
+
+def _chosen(cell: Cell) -> str | None:
+    return cell.text if cell.text in cell.options else None
 
 
 class GroupRows:
@@ -47,34 +155,27 @@ class GroupRows:
         self, group: ListGroup, put: Put, add: Callable[[str], object], remove: Callable[[Item], object]
     ) -> None:
         self._put, self._remove = put, remove if group.kinds else None
-        self._rows: list[ItemRow] = []
+        self.rows: list[ItemRow] = []
         with ui.expansion(group.heading, value=True).classes("w-full section").props("dense"):
             ui.label(group.about).classes("status")
             self._place: Any = ui.column().classes("w-full rows")
             with ui.row().classes("gap-1"):
                 for kind, words in group.kinds.items():
-                    ui.button(words, icon="add", on_click=partial(add, kind)).props(
-                        f'outline dense no-caps size=sm aria-label="add {words}"'
-                    )
+                    button = ui.button(words, icon="add", on_click=partial(add, kind))
+                    button.props(f'outline dense no-caps size=sm aria-label="add {words}"')
         self.show(group.items)
-
-    @property
-    def texts(self) -> list[Any]:
-        """The fields into which text is typed."""
-        return [field for row in self._rows for field in row.texts]
 
     def show(self, items: Sequence[Item]) -> None:
         """Show these items; rows are kept as far as their fields fit."""
-        kept = sum(
-            1 for _ in takewhile(lambda pair: pair[0].fits(pair[1]), zip(self._rows, items, strict=False))
-        )
-        for row in self._rows[kept:]:
+        pairs = zip(self.rows, items, strict=False)
+        kept = [*takewhile(lambda pair: pair[0].fits(pair[1]), pairs)]
+        for row in self.rows[len(kept) :]:
             row.delete()
-        del self._rows[kept:]
-        for row, item in zip(self._rows, items, strict=False):
+        for row, item in kept:
             row.show(item)
         with self._place:
-            self._rows += [ItemRow(item, self._put, self._remove) for item in items[kept:]]
+            new = [ItemRow(item, self._put, self._remove) for item in items[len(kept) :]]
+        self.rows = [*self.rows[: len(kept)], *new]
 
 
 class ListEditor:
@@ -100,13 +201,21 @@ class ListEditor:
         writer: PageWriter,
     ) -> None:
         self._lists, self._now, self._changed, self._writer = lists, now, changed, writer
+
+        def empty() -> None:
+            self._replace_entries(lists.empty(now()))
+
+        def put(item: Item, key: str, text: str) -> None:
+            self._replace_entries(lists.put(now(), item, key, text))
+
+        def add(kind: str) -> None:
+            self._replace_entries(lists.add(now(), kind))
+
         with ui.column().classes("lists w-full gap-1"):
-            ui.button("Start from nothing", icon="note_add", on_click=self._empty).props("flat dense no-caps")
+            ui.button("Start from nothing", icon="note_add", on_click=empty).props("flat dense no-caps")
             self._said: Any = ui.column().classes("advice gap-1").props('role="status" aria-live="polite"')
             with ui.column().classes("w-full gap-1"):
-                self._groups = [
-                    GroupRows(group, self._put, self._add, self._remove) for group in lists.groups(now())
-                ]
+                self._groups = [GroupRows(each, put, add, self._remove) for each in lists.groups(now())]
         self._advise(now())
 
     def show(self, entries: Mapping[str, str]) -> None:
@@ -116,9 +225,10 @@ class ListEditor:
 
     def follow(self, entries: Mapping[str, str]) -> None:
         """Show other entries in the lists."""
-        with self._writer.writing(*(field for rows in self._groups for field in rows.texts)):
-            for rows, group in zip(self._groups, self._lists.groups(entries), strict=True):
-                rows.show(group.items)
+        rows = [row for group in self._groups for row in group.rows]
+        with self._writer.writing(*(field for row in rows for field in row.texts)):
+            for shown, group in zip(self._groups, self._lists.groups(entries), strict=True):
+                shown.show(group.items)
 
     def _advise(self, entries: Mapping[str, str]) -> None:
         sentences = self._lists.advice(entries)
@@ -127,23 +237,14 @@ class ListEditor:
             for sentence in sentences:
                 ui.label(sentence)
 
-    def _put(self, item: Item, key: str, text: str) -> None:
-        self._take(self._lists.put(self._now(), item, key, text))
-
-    def _add(self, kind: str) -> None:
-        self._take(self._lists.add(self._now(), kind))
-
     def _remove(self, item: Item) -> None:
         before, left = self._now(), self._lists.remove(self._now(), item)
-        self._take(left)
+        self._replace_entries(left)
         if gone := gone_with(item, self._lists.groups(before), self._lists.groups(left)):
             said = f"Removed along with {item.name}: {', '.join(gone)}. Undo brings all back."
             ui.notify(said, timeout=_READ, close_button="Close")
 
-    def _empty(self) -> None:
-        self._take(self._lists.empty(self._now()))
-
-    def _take(self, entries: Entries) -> None:
+    def _replace_entries(self, entries: Entries) -> None:
         if entries != self._now():
             self.show(entries)
             self._changed(entries)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.edge.rendering import STYLE as TABLES
 from beamdyn.common.screens.chart_board import STYLE as CHARTS
+from beamdyn.common.screens.controls import STYLE as PLAYER
 from beamdyn.common.screens.draggable_drawing import STYLE as BOARD
-from beamdyn.common.screens.folded_panel import STYLE as FOLDED
 from beamdyn.common.screens.list_editor import STYLE as LISTS
-from beamdyn.common.screens.player import STYLE as PLAYER
-from beamdyn.common.screens.sketch_panel import STYLE as SKETCH
+from beamdyn.common.screens.panels import STYLE as PANELS
 
 BLUE, RED = "#0072B2", "#8c1c00"
 _BAR = "#005a8c"
@@ -68,7 +67,7 @@ body {{ font-size: 15px; }}
 .q-tab-panels, .q-tab-panel, .q-panel {{ overflow: visible; }}
 .screen {{ display: grid; grid-template-columns: minmax(270px, 330px) minmax(0, 1fr); gap: 1rem;
   width: 100%; }}
-.screen h2 {{ font-size: 1.15rem; font-weight: 600; line-height: 1.3; }}
+.screen h2, .designs h2 {{ font-size: 1.15rem; font-weight: 600; line-height: 1.3; }}
 .left {{ position: sticky; top: 44px; align-self: start; max-height: calc(100vh - 52px); overflow-y: auto;
   padding: 4px 6px 4px 4px; flex-wrap: nowrap; }}
 .right {{ min-width: 0; container-type: inline-size; }}
@@ -86,7 +85,6 @@ body {{ font-size: 15px; }}
   .shown {{ grid-template-columns: minmax(0, 1fr) minmax(380px, 38%); }}
 }}
 .designs {{ width: min(640px, 92vw); max-width: none; }}
-.designs h2 {{ font-size: 1.15rem; font-weight: 600; }}
 .designs h3 {{ font-size: 1rem; font-weight: 600; margin-top: 0.5rem; }}
 .design {{ border-top: 1px solid var(--edge); padding: 0.15rem 0; gap: 0.25rem; line-height: 1.3; }}
 .section {{ border: 1px solid var(--edge); border-radius: 4px; flex: none; }}
@@ -161,6 +159,6 @@ _NARROW = """
 }
 """
 STYLE = (
-    _BASE + TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + SKETCH + FOLDED
+    _BASE + TABLES + BOARD + PLAYER + CHARTS + LISTS + _COLOURS + _LAYOUT + _DARK + _NARROW + PANELS
 )  # the later rules count
 STYLE += page_colours("body.body--dark", dark=True)

@@ -1,28 +1,98 @@
-"""A document that one client has open: its entries, the latest answers, mistakes, and what is stale."""
+"""A document that one client has open: its entries and their history, latest answers, and mistakes."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from time import monotonic
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.screens.comparison import OtherDesign
 from beamdyn.common.screens.form_entries import Entries, by_field, tables_of, toml_of
-from beamdyn.common.screens.history import History
 from beamdyn.common.screens.screens import Document, KeyResult, Screen
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+_MOST = 200  # states that are kept
+_TOGETHER = 1.0  # time within which changes of the same fields are one step [s]
+
+
+class History:
+    """The states that a design has had, and which of them is shown.
+
+    Parameters
+    ----------
+    first : mapping
+        The entries at first.
+    """
+
+    def __init__(self, first: Entries) -> None:
+        self._states, self._place = [dict(first)], 0
+        self._changed: frozenset[str] = frozenset()
+        self._when = -1.0  # of the last change [s]
+
+    def record(self, entries: Mapping[str, str], now: float | None = None) -> None:
+        """Add a state, if it differs from the one shown; states after that are forgotten.
+
+        Changes of the same fields in quick succession, as of a field that is typed into, are one step.
+
+        Parameters
+        ----------
+        entries : mapping
+            The state.
+        now : float, optional
+            Time of the change [s]; now if not given.
+        """
+        changed = differing(self._states[self._place], entries)
+        if not changed:
+            return
+        when = monotonic() if now is None else now
+        if changed == self._changed and when - self._when < _TOGETHER:
+            del self._states[self._place :]
+            self._place -= 1
+            if not differing(self._states[self._place], entries):
+                return
+        self._changed, self._when = changed, when
+        self._states = [*self._states[: self._place + 1], dict(entries)][-_MOST:]
+        self._place = len(self._states) - 1
+
+    def part(self) -> None:
+        """Make the next change a step of its own, however soon it comes."""
+        self._changed = frozenset()
+
+    def go(self, steps: int) -> Entries | None:
+        """Go so many steps forward, or back if negative; return that state, None if there is none."""
+        if not 0 <= self._place + steps < len(self._states):
+            return None
+        self._place += steps
+        self.part()
+        return dict(self._states[self._place])
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a state before."""
+        return self._place > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a state after."""
+        return self._place + 1 < len(self._states)
+
+
+def differing(one: Mapping[str, str], other: Mapping[str, str]) -> frozenset[str]:
+    """Paths of the entries that differ; an empty entry counts as one that is missing."""
+    return frozenset(path for path in {*one, *other} if one.get(path, "") != other.get(path, ""))
+
+
 _OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)  # in a file, as `OpenDocument.file` writes it
 
 
 @dataclass(frozen=True)
-class Answered:
+class ShownAnswer:
     """An answer and what a screen shows of it.
 
     Parameters
@@ -46,43 +116,14 @@ class Answered:
     headline: Sequence[KeyResult] = ()
 
 
-@dataclass(frozen=True)
-class OpenEntries:
-    """Entries to be solved; it shares no mutable state, so that another thread may solve it.
+Outcome = ShownAnswer | Mapping[str, list[str]]  # an answer, or what is wrong, by field
 
-    Parameters
-    ----------
-    screen : Screen
-        The screen.
-    entries : mapping
-        The entries that its answer depends on.
-    inputs : sequence of Input
-        Descriptions of the inputs.
-    """
 
-    screen: Screen
+class OtherDesign(NamedTuple):
+    """A design that the open one is compared with: its name and entries."""
+
+    name: str
     entries: Entries
-    inputs: Sequence[Input] = field(compare=False)
-
-    def solve(self) -> Answered | Mapping[str, list[str]]:
-        """The whole answer, also what takes time, such as its model error; or what is wrong, by field."""
-        try:
-            answer = self.screen.solve(tables_of(self.entries, self.inputs, self.screen.needs))
-            tables, notes = [*self.screen.tables(answer)], [*self.screen.notes(answer)]
-            headline = [*self.screen.headline(answer)]
-        except (ValueError, ArithmeticError, NoAnswer) as error:
-            return by_field(error, self.inputs, self.entries)
-        return Answered(answer, tables, notes, self.entries, headline)
-
-    def glance(self) -> Answered | Mapping[str, list[str]]:
-        """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field."""
-        try:
-            tables = tables_of(self.entries, self.inputs, self.screen.needs)
-            answer = self.screen.solve(self.screen.coarser(tables))
-            headline = [*(self.screen.quick_headline or self.screen.headline)(answer)]
-        except (ValueError, ArithmeticError, NoAnswer) as error:
-            return by_field(error, self.inputs, self.entries)
-        return Answered(answer, (), (), self.entries, headline)
 
 
 @dataclass
@@ -97,12 +138,10 @@ class OpenDocument:
 
     document: Document
     entries: Entries = field(init=False)
-    answered: dict[str, Answered] = field(init=False, default_factory=dict)
+    answered: dict[str, ShownAnswer] = field(init=False, default_factory=dict)
     mistakes: dict[str, dict[str, list[str]]] = field(init=False, default_factory=dict)
-
     other: OtherDesign | None = field(init=False, default=None)
-    compared: dict[str, Answered] = field(init=False, default_factory=dict)
-    not_compared: dict[str, str] = field(init=False, default_factory=dict)
+    compared: dict[str, Outcome] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self.entries = dict(self.document.base_entries)
@@ -112,27 +151,22 @@ class OpenDocument:
         """Compare with another design from now on, or with none."""
         self.other = other
         self.compared.clear()
-        self.not_compared.clear()
 
     def wants_other(self, screen: Screen) -> bool:
         """Whether the other design has not been solved yet for a screen."""
-        known = screen.name in self.compared or screen.name in self.not_compared
-        return self.other is not None and not known
+        return self.other is not None and screen.name not in self.compared
 
-    def keep_other(self, screen: Screen, outcome: Answered | Mapping[str, list[str]]) -> None:
-        """Keep the other design's answer, or why there is none."""
-        if isinstance(outcome, Answered):
-            self.compared[screen.name] = outcome
-        else:
-            sentences = [each for said in outcome.values() for each in said]
-            self.not_compared[screen.name] = " ".join(sentences)
+    def other_answer(self, screen: Screen) -> ShownAnswer | None:
+        """The answer to the other design, if it has one."""
+        found = self.compared.get(screen.name)
+        return found if isinstance(found, ShownAnswer) else None
 
     def go(self, steps: int) -> bool:
         """Undo if `steps` is negative, redo if it is positive; say whether there was such a step."""
         entries = self.history.go(steps)
         if entries is None:
             return False
-        self._take(entries)
+        self._replace_entries(entries)
         return True
 
     @property
@@ -155,7 +189,7 @@ class OpenDocument:
 
     def show(self, entries: Mapping[str, str]) -> None:
         """Replace the design by entries that were kept earlier."""
-        self._take({path: str(text) for path, text in entries.items()})
+        self._replace_entries({path: str(text) for path, text in entries.items()})
         self.mistakes = {}
         self.history.part()
 
@@ -164,7 +198,7 @@ class OpenDocument:
         base = self.document.base_entries
         changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
         before = self.entries
-        self._take({path: str(text) for path, text in stored.items()} | changed)
+        self._replace_entries({path: str(text) for path, text in stored.items()} | changed)
         return self.entries != before
 
     def text(self) -> str:
@@ -179,9 +213,9 @@ class OpenDocument:
 
     def put(self, path: str, text: str) -> None:
         """Change one entry; entries of inputs that no longer exist are dropped."""
-        self._take(self.entries | {path: text})
+        self._replace_entries(self.entries | {path: text})
 
-    def _take(self, entries: Entries) -> None:
+    def _replace_entries(self, entries: Entries) -> None:
         """Replace the entries by these, as far as there are inputs for them."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
@@ -202,13 +236,33 @@ class OpenDocument:
         """Whether there is an answer, but to earlier entries."""
         return screen.name in self.answered and self.stale(screen)
 
-    def attempt(self, screen: Screen) -> OpenEntries:
-        """The present entries, to be solved."""
-        return OpenEntries(screen, self.needed(screen), self.inputs)
+    def attempt(self, screen: Screen, for_drawing: bool = False) -> Outcome:
+        """Solve the present entries, but keep neither the answer nor what is wrong.
 
-    def keep(self, screen: Screen, outcome: Answered | Mapping[str, list[str]]) -> bool:
+        Parameters
+        ----------
+        screen : Screen
+            The screen.
+        for_drawing : bool
+            Whether to solve as far as the drawing needs it, without tables and notes; else all, also what
+            takes time, such as the model error.
+        """
+        entries, inputs = self.needed(screen), self.inputs
+        try:
+            tables = tables_of(entries, inputs, screen.needs)
+            if for_drawing:
+                answer = screen.solve(screen.coarser(tables))
+                headline = (screen.quick_headline or screen.headline)(answer)
+                return ShownAnswer(answer, (), (), entries, [*headline])
+            answer = screen.solve(tables)
+            shown, notes = [*screen.tables(answer)], [*screen.notes(answer)]
+            return ShownAnswer(answer, shown, notes, entries, [*screen.headline(answer)])
+        except (ValueError, ArithmeticError, NoAnswer) as error:
+            return by_field(error, inputs, entries)
+
+    def keep(self, screen: Screen, outcome: Outcome) -> bool:
         """Keep an answer; or keep the last one and say in `mistakes` why there is no other."""
-        found = isinstance(outcome, Answered)
+        found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome
         self.mistakes[screen.name] = {} if found else dict(outcome)
@@ -216,4 +270,4 @@ class OpenDocument:
 
     def solve(self, screen: Screen) -> bool:
         """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
-        return self.keep(screen, self.attempt(screen).solve())
+        return self.keep(screen, self.attempt(screen))

@@ -4,33 +4,34 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from nicegui import background_tasks, run, ui
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens import page_writer, tasks
-from beamdyn.common.screens.browser_memory import BrowserMemory, named_designs, read_typed, refused_name
-from beamdyn.common.screens.comparison import OtherDesign
-from beamdyn.common.screens.design_link import LinkedDesign
-from beamdyn.common.screens.designs_dialog import DesignActions, DesignsDialog
-from beamdyn.common.screens.downloads import download
+from beamdyn.common.screens.browser_memory import (
+    BrowserMemory,
+    LinkedDesign,
+    named_designs,
+    read_typed,
+    refused_name,
+)
+from beamdyn.common.screens.computations import download
+from beamdyn.common.screens.dialogs import DesignsDialog, FileDialog, LinkDialog
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.header import Header
-from beamdyn.common.screens.link_dialog import LinkDialog
 from beamdyn.common.screens.look import BLUE, RED, STYLE
-from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.processes import TaskTaker
-from beamdyn.common.screens.refusals import outcome_of
+from beamdyn.common.screens.open_document import OpenDocument, OtherDesign
+from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Document, Program, Screen
+from beamdyn.common.screens.tasks import outcome_of
 
-_LARGEST = 200_000  # bytes of a file that is opened
 _CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
-_TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 # NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
 _STOPPED = """<script type="module">
 const notice = document.getElementById("popup");
@@ -47,7 +48,7 @@ def add_style_and_scripts(program: Program) -> None:
     ui.add_body_html(scripts, shared=True)
 
 
-async def open_page(program: Program, solver: TaskTaker) -> None:
+async def open_page(program: Program, solver: RunsTasks) -> None:
     """Make the page of a client when it connects: one that never does costs next to nothing.
 
     What the browser has stored is asked for first, so that nobody types into a form that is yet to change.
@@ -61,17 +62,17 @@ async def open_page(program: Program, solver: TaskTaker) -> None:
 
 
 class Page:
-    """What one client sees; nothing in it is shared with another.
+    """The page of one client; nothing in it is shared with another.
 
     Parameters
     ----------
     program : Program
         What it is.
-    solver : TaskTaker
+    solver : RunsTasks
         What makes the answers.
     """
 
-    def __init__(self, program: Program, solver: TaskTaker) -> None:
+    def __init__(self, program: Program, solver: RunsTasks) -> None:
         self.program, self.solver = program, solver
         self.works = {document.name: OpenDocument(document) for document in program.documents}
         self.panels: dict[str, ScreenView] = {}
@@ -81,53 +82,33 @@ class Page:
         self._memory = BrowserMemory(program.name)
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
-        self.header = Header(program.title, [*self.places], self._turned, self._files(), self)
-        self._bar = self.header.tabs
-        self._body()
-        ui.on("undo", self.undo)
-        ui.on("redo", self.redo)
-        ui.on("typed", lambda event: self._bar.client.run_javascript(f"heard({int(event.args)})"))
-        ui.on("narrow", lambda event: self._be_narrow(event.args is True))
-        self._bar.client.on_delete(self._close)
-
-    def _close(self) -> None:
-        """End the computations of the page, which is gone."""
-        for panel in self.panels.values():
-            panel.close()
-
-    def _files(self) -> Mapping[str, Callable[[], object]]:
-        return {
-            "Open a TOML file": self._ask,
+        files = {
+            "Open a TOML file": lambda: self._file.ask(),
             "Save as TOML": self.save,
             "Report as HTML": self.report,
             "Link to this design": self.link,
             "Back to the base case": self.reset,
         }
-
-    def _body(self) -> None:
-        with (
-            ui.tab_panels(self._bar, value=next(iter(self.places))).classes("w-full").props("animated=false")
-        ):
+        self.header = Header(program.title, [*self.places], self._turned, files, self)
+        self._bar = self.header.tabs
+        first = next(iter(self.places))
+        with ui.tab_panels(self._bar, value=first).classes("w-full").props("animated=false"):
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name) as panel:
                     panel.props["data-document"] = document.name
-                    self.panels[name] = ScreenView(
-                        self.works[document.name], screen, self._edited, self.solver
-                    )
-        self._designs = DesignsDialog(DesignActions(self._keep, self._open_design, self._compare, self._drop))
-        self._link = LinkDialog()
-        with ui.dialog() as self._dialog, ui.card():
-            ui.label("Open a TOML file, as the commands read it")
-            self._upload: Any = ui.upload(
-                label="TOML file", on_upload=self._opened, auto_upload=True, max_file_size=_LARGEST,
-                max_files=1,
-                on_rejected=lambda: self._refuse(_TOO_LARGE),
-            ).props('accept=".toml" aria-label="TOML file"')  # fmt: skip
-            self._refused: Any = (
-                ui.label().classes("mistake").props('role="alert"').style("white-space: pre-line")
-            )
-            ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
+                    self.panels[name] = ScreenView(self.works[document.name], screen, self._edited, solver)
+        self._designs = DesignsDialog(self._keep, self._open_design, self._compare, self._drop)
+        self._link, self._file = LinkDialog(), FileDialog(self.open)
         self._entered()
+        ui.on("undo", self.undo)
+        ui.on("redo", self.redo)
+        ui.on("typed", lambda event: self._run(f"heard({int(event.args)})"))
+        ui.on("narrow", lambda event: self._be_narrow(event.args is True))
+        self._bar.client.on_delete(lambda: [panel.close() for panel in self.panels.values()])
+
+    def _run(self, script: str) -> None:
+        """Run a script by the page's own client: the element whose event is handled may be gone."""
+        self._bar.client.run_javascript(script)
 
     @property
     def front(self) -> str:
@@ -152,8 +133,9 @@ class Page:
 
     def _entered(self) -> None:
         self.panels[self.front].enter()
-        self._marks()
-        self._compare_in_front()
+        self._mark()
+        if self.work.wants_other(self.current[1]):
+            background_tasks.create(self._solve_other(self.work, self.current[1]))
 
     def _edited(self) -> None:
         """Update which screens are stale after a change."""
@@ -162,24 +144,26 @@ class Page:
         if not any(panel.dragged for panel in self.panels.values()):  # a drag is one step
             for work in self.works.values():
                 work.history.record(work.entries)
-        self._marks()
+        self._mark()
         self._remember()
 
-    def _marks(self) -> None:
+    def _mark(self) -> None:
         stale = {name for name, (d, screen) in self.places.items() if self.works[d.name].outdated(screen)}
         self.header.mark(stale, self.work.history, self.work.other)
+
+    def _bring(self, document: Document) -> None:
+        """Bring a document to the front whose design has been replaced."""
+        if self.current[0] is not document:
+            self._bar.set_value(document.screens[0].name)
+        self._rebuild(document)
 
     def _rebuild(self, document: Document) -> None:
         if self.current[0] is document:  # other screens are made up to date when they come to the front
             self.panels[self.front].rebuild()
         if self._recalled:
-            self._bar.client.run_javascript(self._memory.forget_typed)
+            self._run(self._memory.forget_typed)
         self.panels[self.front].enter()
         self._edited()
-
-    def _bring(self, document: Document) -> None:
-        if self.current[0] is not document:
-            self._bar.set_value(document.screens[0].name)
 
     # Undo and redo ----------------------------------------------------------------------------------
 
@@ -193,51 +177,29 @@ class Page:
 
     def _go(self, steps: int) -> None:
         if self.work.go(steps):
-            self._bar.client.run_javascript(self._memory.forget_typed)
+            self._run(self._memory.forget_typed)
             self.panels[self.front].enter()
             self._edited()
 
     # Files ------------------------------------------------------------------------------------------
 
-    def _ask(self) -> None:
-        self._refused.set_text("")
-        self._upload.reset()
-        self._dialog.open()
-
-    async def _opened(self, event: Any) -> None:
-        name, content = event.file.name, await event.file.read()
-        if len(content) > _LARGEST:  # whatever the browser has let through
-            return self._refuse(_TOO_LARGE)
-        try:
-            text = content.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            return self._refuse(f"{name}: it is not text in UTF-8; give a TOML file")
-        self.open(text, name)
-
     def open(self, text: str, name: str) -> None:
         """Open the text of a file as the document that accepts it, or show the parser's message."""
-        document = self._kind_of(text)
-        try:
-            self.works[document.name].open(text, name)
-        except ConfigError as error:
-            return self._refuse(str(error))
-        self._bring(document)
-        self._rebuild(document)
-        self._dialog.close()
-        ui.notify(f"{name} is open")
-
-    def _kind_of(self, text: str) -> Document:
-        """The first document that accepts a text, else the one in front."""
         for document in self.program.documents:
             try:
                 document.opened(text, "")
+                break
             except ConfigError:
                 continue
-            return document
-        return self.current[0]
-
-    def _refuse(self, sentence: str) -> None:
-        self._refused.set_text(sentence)
+        else:
+            document = self.current[0]
+        try:
+            self.works[document.name].open(text, name)
+        except ConfigError as error:
+            return self._file.refuse(str(error))
+        self._bring(document)
+        self._file.close()
+        ui.notify(f"{name} is open")
 
     def save(self) -> None:
         """Download the design in front as TOML."""
@@ -246,17 +208,17 @@ class Page:
     async def report(self) -> None:
         """Download the HTML report on the document in front, when all its screens have been solved."""
         document = self.current[0]
+        sweeps = []
         for screen in document.screens:
             self.panels[screen.name].enter()
             await self.panels[screen.name].settled()
-        self._marks()
+        for screen in document.screens:
+            sweep = self.panels[screen.name].sweep
+            if sweep is not None and (shown := sweep.report()):
+                sweeps.append((screen.name, *shown))
+        self._mark()
         work = self.works[document.name]
         title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
-        sweeps = [
-            (screen.name, *made)
-            for screen in document.screens
-            if (made := self.panels[screen.name].sweep_report())
-        ]
         given = dict(work.entries), dict(work.answered), title, sweeps
         made = self.solver.submit(tasks.report, document, document.screens[0], *given)
         await download(made, f"{document.name}.html")
@@ -305,7 +267,6 @@ class Page:
         work = self.works[kind]
         work.show(work.document.base_entries | dict.fromkeys(work.entries, "") | entries)
         self._bring(work.document)
-        self._rebuild(work.document)
         ui.notify(f"{name} is open")
 
     def _compare(self, name: str, kind: str, entries: Entries) -> None:
@@ -316,23 +277,18 @@ class Page:
         """Show the design in front alone."""
         self.work.compare(None)
         for screen in self.current[0].screens:
-            self.panels[screen.name].compare()
-        self._marks()
-
-    def _compare_in_front(self) -> None:
-        """Have the other design solved for the screen in front, and show what differs when it is."""
-        screen, work = self.current[1], self.work
-        if work.wants_other(screen):
-            background_tasks.create(self._solve_other(work, screen))
+            self.panels[screen.name].show()
+        self._mark()
 
     async def _solve_other(self, work: OpenDocument, screen: Screen) -> None:
+        """Have the other design solved for a screen, and show what differs when it is."""
         other = work.other
         assert other is not None
         future = self.solver.submit(tasks.solve, work.document, screen, dict(other.entries))
         await asyncio.wait([future])
         if work.other is other:
-            work.keep_other(screen, outcome_of(future, work, screen))
-            self.panels[screen.name].compare()
+            work.compared[screen.name] = outcome_of(future, work, screen)
+            self.panels[screen.name].show()
 
     # Over a reload, or a restart of the program -----------------------------------------------------
 
@@ -343,18 +299,13 @@ class Page:
         designs = {name: work.entries for name, work in self.works.items()}
         if heard is None:
             heard = {self.current[0].name: self.panels[self.front].form.typed}
-        made = self._memory.remember({"front": self.front, "designs": designs}, heard)
-        # by the page's own client: the field that has changed may be gone, of a form that was made anew
-        self._bar.client.run_javascript(made)
+        self._run(self._memory.remember({"front": self.front, "designs": designs}, heard))
 
     def recall(self, stored: Mapping[str, Any]) -> None:
-        """Restore what the browser stored, and store every change from now on."""
-        self._restore(stored)
-        self._recalled = True
-        self._remember(stored.get("typed"))
+        """Restore what the browser stored, and store every change from now on.
 
-    def _restore(self, stored: Mapping[str, Any]) -> None:
-        """Put stored designs into the forms; a form that shows its design already is left alone."""
+        A form that shows its design already is left alone.
+        """
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
         typed, designs = stored.get("typed", {}), stored.get("designs", {})
@@ -366,6 +317,8 @@ class Page:
             self._bar.set_value(stored["front"])
         if stored.get("link"):
             self._follow(str(stored["link"]))
+        self._recalled = True
+        self._remember(stored.get("typed"))
 
     def _be_narrow(self, narrow: bool) -> None:
         for panel in self.panels.values():
@@ -380,14 +333,11 @@ class Page:
                 raise ConfigError("the link", [f"{self.program.name} has no {design.document[:40]}"])
             work.open(design.text, "the link")
         except ConfigError as error:
-            self._refuse(str(error))
-            self._dialog.open()
-            return
+            return self._file.refuse(str(error))
         for path in work.document.aside:
             work.put(path, design.options.get(path, work.entries[path]))
         self._bring(work.document)
-        self._rebuild(work.document)
 
     def keep_look(self, look: str) -> None:
         """Store whether the page is light or dark."""
-        self._bar.client.run_javascript(self._memory.keep_look(look))
+        self._run(self._memory.keep_look(look))

@@ -120,6 +120,11 @@ class PageWriter:
         client.run_javascript(f"writeChanges({json.dumps(unwritten)})")
 
 
+def toggle(element: Any, name: str, on: bool) -> None:
+    """Give an element a class, or take it away."""
+    element.classes(add=name if on else "", remove="" if on else name)
+
+
 def _do_nothing(*_: Any, **__: Any) -> None:
     pass
 

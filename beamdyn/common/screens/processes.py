@@ -31,7 +31,7 @@ class TakesTooLong(Exception):
     """An answer was given up, as it took more time or memory than allowed."""
 
 
-class TaskTaker(Protocol):
+class RunsTasks(Protocol):
     """Runs tasks: `Processes`, or the `Share` of a page in them."""
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
@@ -67,7 +67,7 @@ class Processes:
     @property
     def ids(self) -> set[int]:
         """Process ids of the present processes."""
-        return {worker.id for worker in self._all}
+        return {worker.process.pid for worker in self._all}
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
         """Start ``task(document, screen, *rest)``; cancelling the future ends the task.
@@ -130,17 +130,23 @@ class Processes:
                 place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
 
     async def _run(self, wanted: bytes) -> Any:
-        worker = await self._take()
-        spare = asyncio.get_running_loop().call_later(_SPARE, self._keep_one_idle)
+        worker = await self._idle_worker()
+        keep_one_idle = asyncio.get_running_loop().call_later(
+            _SPARE, lambda: None if self._idle else self.start()
+        )
         try:
             async with asyncio.timeout(self.longest):
                 answer = await worker.ask(wanted)
         except BaseException as error:
             await self._end(worker)
             self.start()
-            raise self._why(error) from None
+            if isinstance(error, TimeoutError):
+                raise TakesTooLong(f"it takes more than {self.longest:g} s") from None
+            if isinstance(error, EOFError | OSError):
+                raise BrokenExecutor("the process that computed it has died: out of memory?") from None
+            raise
         finally:
-            spare.cancel()
+            keep_one_idle.cancel()
         self._free(worker)
         done, result = pickle.loads(answer)
         if done:
@@ -149,22 +155,11 @@ class Processes:
             raise TakesTooLong(f"it takes more than {MEMORY} MB of memory")
         raise result
 
-    def _keep_one_idle(self) -> None:
-        if not self._idle:
-            self.start()
-
-    def _why(self, error: BaseException) -> BaseException:
-        if isinstance(error, TimeoutError):
-            return TakesTooLong(f"it takes more than {self.longest:g} s")
-        if isinstance(error, EOFError | OSError):
-            return BrokenExecutor("the process that computed it has died: out of memory?")
-        return error
-
-    async def _take(self) -> _Worker:
+    async def _idle_worker(self) -> _Worker:
         """An idle process; where there is none another is started, and the first that is free is taken."""
         while self._idle:
             worker = self._idle.pop()
-            if worker.lives:
+            if worker.process.returncode is None:
                 return worker
             await self._end(worker)
         self.start()
@@ -186,7 +181,9 @@ class Processes:
         if worker in self._all:
             self._all.remove(worker)
             self._count -= 1
-        await worker.end()
+        with suppress(ProcessLookupError):
+            worker.process.kill()
+        await worker.process.wait()
 
 
 class Share:
@@ -194,13 +191,13 @@ class Share:
 
     Parameters
     ----------
-    solver : TaskTaker
+    solver : RunsTasks
         The processes.
     most : int
         Number of tasks of the page that may be under way; others wait in their order.
     """
 
-    def __init__(self, solver: TaskTaker, most: int = _MOST - 1) -> None:
+    def __init__(self, solver: RunsTasks, most: int = _MOST - 1) -> None:
         self._solver, self._room = solver, most
         self._waiting: deque[asyncio.Future[None]] = deque()
 
@@ -247,8 +244,7 @@ class _Worker:
 
     def __init__(self, process: subprocess.Process) -> None:
         assert process.stdin is not None and process.stdout is not None
-        self._process, self._tasks, self._answers = process, process.stdin, process.stdout
-        self.id = process.pid
+        self.process, self._tasks, self._answers = process, process.stdin, process.stdout
 
     @classmethod
     async def started(cls) -> _Worker:
@@ -258,20 +254,11 @@ class _Worker:
         pipe = subprocess.PIPE
         return cls(await asyncio.create_subprocess_exec(*given, stdin=pipe, stdout=pipe, env=environment))
 
-    @property
-    def lives(self) -> bool:
-        return self._process.returncode is None
-
     async def ask(self, task: bytes) -> bytes:
         """The pickled answer to a task; `EOFError` or `OSError` if the process dies."""
         self._tasks.write(len(task).to_bytes(8, "big") + task)
         await self._tasks.drain()
         return await self._answers.readexactly(int.from_bytes(await self._answers.readexactly(8), "big"))
-
-    async def end(self) -> None:
-        with suppress(ProcessLookupError):
-            self._process.kill()
-        await self._process.wait()
 
 
 # In a worker process --------------------------------------------------------------------------------------
@@ -280,37 +267,29 @@ class _Worker:
 def serve_tasks(caller: int) -> None:
     """Run the tasks that arrive on the standard input; end with the caller, also in the middle of a task."""
     import signal
-
-    from beamdyn.common.parallel.workers import serve
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
-    if hasattr(os, "nice"):
-        os.nice(_NICE)
-    _end_with(caller)
-    serve()
-
-
-def _end_with(caller: int) -> None:
-    """End this process when its caller is gone; the closed input would be seen only between two tasks."""
     from threading import Thread
     from time import sleep
 
-    def watch() -> None:
+    from beamdyn.common.parallel.workers import serve
+
+    def end_with_caller() -> None:  # the closed input would be seen only between two tasks
         while os.name == "nt" or os.getppid() == caller:  # on Windows it stays the same
             sleep(1.0)
         os._exit(1)
 
-    Thread(target=watch, daemon=True).start()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+    Thread(target=end_with_caller, daemon=True).start()
+    serve()
 
 
 def _prepare(make: Callable[[], Program], memory: int) -> None:
-    """Import the program, and limit the memory that may be taken beyond that [MB]."""
+    """Import the program; from then on `MemoryError` is raised when so much more memory [MB] is taken.
+
+    That is on systems that can limit it.
+    """
     _screens(make)
-    _limit_memory(memory)
-
-
-def _limit_memory(memory: int) -> None:
-    """Raise `MemoryError` when so much more memory [MB] is taken, on systems that can limit it."""
     try:
         import resource
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
 from beamdyn.common.drawing.sketch import Sketcher
+from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.screens.courses import BackAndForth, Course
-from beamdyn.common.screens.folded_parts import FoldedPart
 from beamdyn.common.screens.form_entries import Entries, entries_of
 from beamdyn.common.screens.lists import Lists
 
@@ -64,15 +66,35 @@ class Slider:
         Step between positions when it is moved by hand.
     seconds : float
         Time to play it from one end to the other [s].
-    course : callable
-        ``course(last, seconds)``: its position over time when played, such as back and forth.
+    onward : bool
+        Whether it is played at a constant rate, and from 0 again after the end; else back and forth, slowly
+        at both ends.
     """
 
     label: str
     marks: tuple[str, ...]
     step: float = 0.05
     seconds: float = 2.5
-    course: Callable[[float, float], Course] = BackAndForth
+    onward: bool = False
+
+    @property
+    def last(self) -> float:
+        """Position at its end."""
+        return len(self.marks) - 1.0
+
+    def place(self, elapsed: float) -> float:
+        """Position when it has been played for a time [s]."""
+        if self.onward:
+            return self.last * (elapsed / self.seconds % 1.0)
+        return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
+
+    def elapsed(self, place: float) -> float:
+        """Time at which it is at a position when it is played, on its way there [s]."""
+        if self.onward:
+            return self.seconds * place / self.last
+        if place >= self.last:
+            return self.seconds
+        return self.seconds / math.pi * math.acos(1 - 2 * max(place, 0.0) / self.last)
 
 
 @dataclass(frozen=True)
@@ -141,6 +163,39 @@ class Handle:
 
 
 @dataclass(frozen=True)
+class FoldedPart:
+    """A further drawing or table of a screen, which folds out below its numbers, and is made only then.
+
+    Parameters
+    ----------
+    title : str
+        Title of the part.
+    on_page, in_report : callable
+        ``on_page(answer)``: the part in HTML, in the colours of the page; ``in_report(answer)``: for a page
+        that has no colours of its own.
+    """
+
+    title: str
+    on_page: Callable[[Any], str]
+    in_report: Callable[[Any], str]
+
+    @classmethod
+    def of_drawings(cls, title: str, rows: Callable[[Any], Rows]) -> FoldedPart:
+        """Make one of ``rows(answer)``: rows of drawings."""
+
+        def on_page(answer: Any) -> str:
+            drawn = rows(answer)
+            paper = Paper.of_squares(drawn)
+            return element(lay_out(drawn, paper), paper)
+
+        def in_report(answer: Any) -> str:
+            drawn = rows(answer)
+            return picture(drawing(lambda: figure_of(drawn, Paper.of_squares(drawn))), title)
+
+        return cls(title, on_page, in_report)
+
+
+@dataclass(frozen=True)
 class Screen:
     """A screen: a form, and pure functions that solve its tables and show the answer.
 
@@ -184,7 +239,7 @@ class Screen:
     headline : callable
         ``headline(answer)``: the two to four most important results, each in a few words.
     quick_headline : callable, optional
-        The same without what takes time, for use while something is held; `headline` if not given.
+        The results without those that take time, for use while something is held; `headline` if not given.
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
@@ -214,8 +269,8 @@ class Screen:
     drawings: Callable[[Any, float], Rows] = lambda *_: ()
     coarser: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda tables: tables
     lists: Lists | None = None
-    headline: Callable[[Any], Sequence[KeyResult]] = lambda _: ()
-    quick_headline: Callable[[Any], Sequence[KeyResult]] | None = None
+    headline: Callable[[Any], Iterable[KeyResult]] = lambda _: ()
+    quick_headline: Callable[[Any], Iterable[KeyResult]] | None = None
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
     branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}
@@ -224,7 +279,7 @@ class Screen:
     @property
     def last(self) -> float:
         """Position of the slider at its end."""
-        return len(self.slider.marks) - 1.0 if self.slider is not None else 0.0
+        return self.slider.last if self.slider is not None else 0.0
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
 from beamdyn.common.edge.program import examples
 
 if TYPE_CHECKING:
-    from beamdyn.common.screens.processes import TaskTaker
+    from beamdyn.common.screens.processes import RunsTasks
     from beamdyn.common.screens.screens import Program
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
@@ -59,7 +59,7 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
         serve(program, host, port, browser)
 
 
-def root_of(program: Program, solver: TaskTaker) -> Callable[[], Awaitable[None]]:
+def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
     from beamdyn.common.screens.page import open_page
     from beamdyn.common.screens.processes import Share
@@ -97,13 +97,13 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     except ImportError:
         raise ValueError(MISSING) from None
     from beamdyn.common.edge.progress import quiet
-    from beamdyn.common.screens.own_names import OwnNames
     from beamdyn.common.screens.page import add_style_and_scripts
     from beamdyn.common.screens.processes import Processes
+    from beamdyn.common.screens.request_guard import RequestGuard
 
-    _free(host, port)
+    _check_free(host, port)
     made, processes = program(), Processes(program)
-    app.add_middleware(OwnNames, host=host)
+    app.add_middleware(RequestGuard, host=host)
     add_style_and_scripts(made)
     app.config.quasar_config["loadingBar"]["skipHijack"] = True  # the bar has no name; "Computing" is said
     app.on_startup(processes.start)
@@ -123,24 +123,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
         )
 
 
-def _free(host: str, port: int) -> None:
-    """Refuse an address that cannot be listened on, before the server tries."""
-    import socket
-
-    family, address = _resolved(host, port)
-    try:
-        with socket.socket(family, socket.SOCK_STREAM) as trial:
-            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            trial.bind(address)
-    except OSError as error:
-        remedy = "give another --port" if host == _HOME else "give another --port, or leave --host out"
-        raise ValueError(
-            f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); {remedy}"
-        ) from None
-
-
-def _resolved(host: str, port: int) -> tuple[int, Any]:
-    """Family and address of a host, which is refused if it is blank or has none."""
+def _check_free(host: str, port: int) -> None:
+    """Refuse an address that is blank or unknown, or cannot be listened on, before the server tries."""
     import socket
 
     remedy = f"give an address or a name of this computer, such as {_HOME}, or leave --host out"
@@ -150,4 +134,12 @@ def _resolved(host: str, port: int) -> tuple[int, Any]:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     except (OSError, UnicodeError):  # the latter of labels that are empty or too long
         raise ValueError(f'--host = "{host}": no address is known for it; {remedy}') from None
-    return family, address
+    try:
+        with socket.socket(family, socket.SOCK_STREAM) as trial:
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(address)
+    except OSError as error:
+        remedy = "give another --port" if host == _HOME else "give another --port, or leave --host out"
+        raise ValueError(
+            f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); {remedy}"
+        ) from None

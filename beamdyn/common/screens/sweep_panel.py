@@ -8,26 +8,61 @@ import tomllib
 from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
+import numpy as np
 from nicegui import ui
 
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import InputSweep, sweep_csv
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text
 from beamdyn.common.edge.varied_inputs import Coordinate, numbers
+from beamdyn.common.plots.curves import input_words, panels_of
 from beamdyn.common.screens import tasks
 from beamdyn.common.screens.chart_board import ChartBoard
-from beamdyn.common.screens.downloads import download
-from beamdyn.common.screens.form_entries import Entries, in_unit, tables_of
+from beamdyn.common.screens.computations import download
+from beamdyn.common.screens.form_entries import Entries, in_unit, table_of, tables_of, usual_unit
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.processes import TakesTooLong, TaskTaker
+from beamdyn.common.screens.page_writer import PageWriter, toggle
+from beamdyn.common.screens.processes import RunsTasks, TakesTooLong
 from beamdyn.common.screens.screens import Screen, Sweeps
-from beamdyn.common.screens.sweep_charts import sweep_charts
 
-_USUAL = {"m": "mm", "rad": "deg"}  # units where none is given
+_FEW = 60  # most values of a sweep whose points are marked on the curves
+
+
+def sweep_charts(swept: InputSweep) -> list[Chart]:
+    """Charts of a sweep of one input, one for each unit of its results.
+
+    At their feet is marked where curves have no value.
+
+    Parameters
+    ----------
+    swept : InputSweep
+        The sweep.
+    """
+    over = input_words(swept, 0)
+    order = np.argsort(swept.values[0], kind="stable")
+    x = swept.values[0][order]
+    axis = ChartAxis(over, low=float(x[0]), high=float(x[-1])) if len(x) > 1 else ChartAxis(over)
+    charts = []
+    for heading, names, found in panels_of(swept):
+        values = np.where(np.isfinite(found), found, np.nan)[:, order]
+        named = [*zip(names, found[:, order], strict=True)]
+        curves = [ChartCurve(name, x, y, points=len(x) <= _FEW) for name, y in named]
+        foot = float(np.nanmin(values)) if np.isfinite(values).any() else 0.0
+        lacking = [
+            (place, foot, f"{name}: no answer at {place:.5g}")
+            for name, y in named
+            for place in x[~np.isfinite(y)].tolist()
+        ]
+        points = [ChartPoints("no answer", lacking)] if lacking else []
+        charts.append(Chart(f"{heading} over {over}", axis, ChartAxis(heading), curves, points))
+    return charts
+
+
 _COUNT, _AROUND = 21, 0.2  # number of values suggested for a sweep, and their range over the present value
 
 
@@ -45,11 +80,11 @@ class SweepPanel:
         Which of its screens.
     sweeps : Sweeps
         The sweeps that the screen offers.
-    solver : TaskTaker
+    solver : RunsTasks
         Runs the sweeps.
     """
 
-    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: TaskTaker) -> None:
+    def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: RunsTasks) -> None:
         self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
         self._future: asyncio.Future[tasks.Swept] | None = None  # of a sweep that is under way
         self._found: tuple[_Request, InputSweep] | None = None
@@ -73,9 +108,8 @@ class SweepPanel:
                     ui.button("Cancel", on_click=self.close).props("outline no-caps")
                 self._busy.set_visibility(False)
                 for kind in ("CSV", "SVG", "PNG"):
-                    ui.button(
-                        f"Sweep as {kind}", icon="download", on_click=getattr(self, kind.lower())
-                    ).props("flat no-caps")
+                    take = partial(self._download, kind.lower())
+                    ui.button(f"Sweep as {kind}", icon="download", on_click=take).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
             self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
             self._good: Any = ui.element("div").classes("w-full")
@@ -84,29 +118,24 @@ class SweepPanel:
 
     def state(self) -> None:
         """While it is open: update the inputs and results offered, and grey a stale sweep."""
-        if self._fold.value:
-            self._offer()
-            stale = self._shown not in (None, self.work.needed(self.screen))
-            self._late.set_visibility(stale)
-            self._good.classes(add="greyed" if stale else "", remove="" if stale else "greyed")
-
-    def _offer(self) -> None:
-        paths = [*self._inputs()]
+        if not self._fold.value:
+            return
+        paths, needed = [*self._inputs()], self.work.needed(self.screen)
         self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
         with suppress(ConfigError):  # then the screen says what is wrong
-            names = [*self.sweeps.names(self._tables())]
+            names = [*self.sweeps.names(tables_of(needed, self.work.inputs))]
             kept = [name for name in self._results.value if name in names]
             self._results.set_options(names, value=kept or names[:1])
+        stale = self._shown not in (None, needed)
+        self._late.set_visibility(stale)
+        toggle(self._good, "greyed", stale)
 
     def _inputs(self) -> dict[str, Input]:
         """The inputs that have a value, given or by default."""
         entries, needs = self.work.entries, self.screen.needs
-        known = [i for i in self.work.inputs if (i.path.partition(".")[0] if "." in i.path else "") in needs]
+        known = [i for i in self.work.inputs if table_of(i.path) in needs]
         there = [i for i in known if entries.get(i.path) or i.default is not None]
         return {entry.path: entry for entry in numbers(there)}
-
-    def _tables(self) -> dict[str, Any]:
-        return tables_of(self.work.needed(self.screen), self.work.inputs)
 
     def _suggest(self) -> None:
         """Suggest values around the present one of the input that has been chosen."""
@@ -114,45 +143,38 @@ class SweepPanel:
             self._values.set_value(around(entry, self.work.entries))
 
     async def _run(self) -> InputSweep | None:
-        """Run the sweep; None if it fails, with the reason shown."""
-        text = f"{self._input.value}={self._values.value}"
-        names = ",".join(self._results.value)
+        """Run the sweep; None if it fails, with the reason shown.  One that is under way is ended first."""
+        text, names = f"{self._input.value}={self._values.value}", ",".join(self._results.value)
         request = (self.work.needed(self.screen), text, names)
         if self._found is not None and self._found[0] == request:
             return self._found[1]
-        swept = await self._swept(text, names)
-        if isinstance(swept, str):
-            self._say(swept, "mistake")
-            return None
-        self._say("\n".join(swept.warnings), "warning")
-        self._found = request, swept
-        return swept
-
-    async def _swept(self, text: str, names: str) -> tasks.Swept:
-        """The sweep, or why there is none; one that is under way is ended first."""
         self.close()
         document, entries = self.work.document, dict(self.work.entries)
         future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
         self._busy.set_visibility(True)
+        swept: tasks.Swept
         try:
-            return await future
+            swept = await future
         except asyncio.CancelledError:
-            return "Cancelled."
+            swept = "Cancelled."
         except (TakesTooLong, BrokenExecutor) as error:
-            return f"Given up: {error}. Sweep fewer values."
+            swept = f"Given up: {error}. Sweep fewer values."
         finally:
             if self._future is future:
                 self._future = None
                 self._busy.set_visibility(False)
+        words, kind = (swept, "mistake") if isinstance(swept, str) else ("\n".join(swept.warnings), "warning")
+        self._said.set_text(words)
+        self._said.classes(add=kind if words else "", remove="mistake warning")
+        if isinstance(swept, str):
+            return None
+        self._found = request, swept
+        return swept
 
     def close(self) -> None:
         """End the sweep that is under way."""
         if self._future is not None:
             self._future.cancel()
-
-    def _say(self, words: str, kind: str) -> None:
-        self._said.set_text(words)
-        self._said.classes(add=kind if words else "", remove="mistake warning")
 
     async def show(self) -> None:
         """Show the sweep."""
@@ -169,56 +191,39 @@ class SweepPanel:
         title = f"Sweep of {self.screen.name}: {names.replace(',', ', ')} over {text}"
         return title, swept
 
-    async def csv(self) -> None:
-        """Download the rows of the sweep."""
-        if swept := await self._run():
+    async def _download(self, kind: str) -> None:
+        """Download the rows of the sweep, as "csv", or its picture, as "svg" or "png"."""
+        swept = await self._run()
+        if swept and kind == "csv":
             ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
-
-    async def svg(self) -> None:
-        """Download its picture as SVG."""
-        await self._take("svg")
-
-    async def png(self) -> None:
-        """Download its picture as PNG."""
-        await self._take("png")
-
-    async def _take(self, kind: str) -> None:
-        if swept := await self._run():
+        elif swept:
             made = self._solver.submit(tasks.sweep_file, self.work.document, self.screen, swept, kind)
             await download(made, f"sweep.{kind}")
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
-    """Values around the present one of an input, as text: start:stop:count unit."""
+    """Values around the present one of an input, or its default, as text: start:stop:count unit."""
     number, unit = _given(entry, entries)
     low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
     return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()
 
 
 def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
-    """Number and unit of a field's value, or of the default."""
-    unit, (text, default) = entry.quantity.unit, _text_and_default(entry, entries)
+    """Number and unit of the text in an input's field, or of its default."""
+    text, default, unit = entries.get(entry.path, ""), entry.default, entry.quantity.unit
+    if isinstance(entry, Coordinate):  # its part of the point's text, and of its default
+        whole: Any = entry.of.default or (0.0, 0.0)
+        default = whole[entry.place]
+        try:
+            point = tomllib.loads(f"value = {entries.get(entry.of.path, '')}")["value"]
+            text = str(point[entry.place])
+        except (ValueError, RecursionError, LookupError, TypeError):
+            text = ""
     number, _, given = text.strip().partition(" ")
     with suppress(ValueError):
         return float(number), given
     if not isinstance(default, int | float) or math.isinf(default):
         return 0.0, unit
-    usual = _USUAL.get(unit, unit)
+    usual = usual_unit(unit)
     number = in_unit(f"{default!r} {unit}", entry.quantity, usual).partition(" ")[0] if unit else default
     return float(number), usual
-
-
-def _text_and_default(entry: Input, entries: Mapping[str, str]) -> tuple[str, Any]:
-    """The text of an input's field (of a coordinate its part of the point's text), and the default."""
-    if not isinstance(entry, Coordinate):
-        return entries.get(entry.path, ""), entry.default
-    whole: Any = entry.of.default or (0.0, 0.0)
-    return _part(entries.get(entry.of.path, ""), entry.place), whole[entry.place]
-
-
-def _part(text: str, place: int) -> str:
-    """One of the parts of a list in TOML."""
-    try:
-        return str(tomllib.loads(f"value = {text}")["value"][place])
-    except (ValueError, RecursionError, LookupError, TypeError):
-        return ""

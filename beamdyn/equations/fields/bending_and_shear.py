@@ -17,15 +17,15 @@ from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Term
-from beamdyn.equations.fields.transverse import Pair, TransverseField, term_of
-from beamdyn.scene.beam import PointSpring, TipMass
+from beamdyn.equations.fields.transverse import Pair, TransverseField
+from beamdyn.scene.beam import Beam, PointSpring, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
 
 
 class Bending(TransverseField):
-    """Bending in the direction of the bending angle."""
+    """Bending in the direction of the bending angle, which every scene has."""
 
     name = "bending"
     direction = 0
@@ -36,10 +36,6 @@ class Bending(TransverseField):
         "bending stiffness": Explanation("KB q2", "always"),
         "root spring": Explanation("k D0 D0ᵀ q2", "the root turns against a spring", (why.ON_SPRINGS,)),
     }
-
-    def is_modelled(self, scene: Scene) -> bool:
-        """Every scene has this field."""
-        return True
 
     def complete(self, scene: Scene) -> Scene:
         """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
@@ -52,29 +48,34 @@ class Bending(TransverseField):
     def conditions(self, mount: Mount) -> RootConditions:
         """Clamped, or hinged where a spring holds the root."""
         at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
-        return at_root.against("bending_stiffness", self.direction)
+        return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
         """Yield bending stiffness and root spring."""
         stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
         if stiffness is not None:
-            yield term_of("bending stiffness", pair, pair.integrate(stiffness, 2))
+            if self.direction == 0 and pair.rows.scene.physics.plate:
+                stiffness = stiffness.scaled(_hindered_camber(pair.rows.scene.beam))
+            yield pair.term("bending stiffness", pair.integrate(stiffness, 2))
         spring = pair.rows.scene.mount.root_stiffnesses[self.direction]
         if pair.rows is pair.columns and math.isfinite(spring):
             slope = pair.rows.space.evaluate(np.zeros(1), 1)[:, 0] / pair.rows.beam.length
-            yield term_of("root spring", pair, spring * np.outer(slope, slope))
+            yield pair.term("root spring", spring * np.outer(slope, slope))
+
+
+def _hindered_camber(beam: Beam) -> float:
+    """Stiffness of a strip that cannot camber over that of one that does."""
+    assert beam.section is not None and beam.section.poissons_ratio is not None
+    return 1 / (1 - beam.section.poissons_ratio**2)
 
 
 class SecondBending(Bending):
-    """Bending in the direction across."""
+    """Bending in the direction across, where both planes are modelled."""
 
     name = "second bending"
     direction = 1
+    requires: ClassVar[Mapping[str, object]] = {"planes": 2}
     partners = (*Bending.partners, Bending())
-
-    def is_modelled(self, scene: Scene) -> bool:
-        """Whether both planes of bending are modelled."""
-        return scene.physics.planes == 2
 
 
 class Shear(TransverseField):
@@ -83,38 +84,28 @@ class Shear(TransverseField):
     name = "shear"
     direction = 0
     rotates = False
+    requires: ClassVar[Mapping[str, object]] = {"shear": True}
     partners = (*SecondBending.partners, SecondBending())
     explanations: ClassVar[Mapping[str, Explanation]] = {
         **TransverseField.explanations,
         "shear stiffness": Explanation("KQ q2", "shear is modelled"),
     }
 
-    def is_modelled(self, scene: Scene) -> bool:
-        """Whether `physics.shear` is set."""
-        return scene.physics.shear
-
-    def complete(self, scene: Scene) -> Scene:
-        """The scene as it is."""
-        return scene
-
     def conditions(self, mount: Mount) -> RootConditions:
         """No deflection at the root."""
-        return FIXED.against("shear_stiffness", self.direction)
+        return FIXED._replace(stiffness="shear_stiffness", direction=self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
         """Yield the shear stiffness of shear with shear."""
         stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
-        if stiffness is not None and not pair.rows.rotates:
-            yield term_of("shear stiffness", pair, pair.integrate(stiffness, 1))
+        if stiffness is not None and not pair.rows.field.rotates:
+            yield pair.term("shear stiffness", pair.integrate(stiffness, 1))
 
 
 class SecondShear(Shear):
-    """Shear deflection in the direction across."""
+    """Shear deflection in the direction across, where shear and both planes are modelled."""
 
     name = "second shear"
     direction = 1
+    requires: ClassVar[Mapping[str, object]] = {"shear": True, "planes": 2}
     partners = (*Shear.partners, Shear())
-
-    def is_modelled(self, scene: Scene) -> bool:
-        """Whether shear and both planes are modelled."""
-        return scene.physics.shear and scene.physics.planes == 2

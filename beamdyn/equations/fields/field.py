@@ -118,7 +118,8 @@ class Field(ABC):
     name it in the list `FIELDS` there:
 
     1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
-    2. `is_modelled` says whether a scene has the field.  A scene without it has no cost of it.
+    2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` says whether
+       it has.  A scene without it has no cost of it.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
        ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects
        the beam transversely, the `Deflection`.
@@ -128,7 +129,7 @@ class Field(ABC):
     5. Of two coupled fields, one supplies the coupling terms in the equations of both.
     6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its
        conditions, for `beamdyn.terms`.
-    7. Damping is added to all fields (`beamdyn.equations.damping`), under the name `damping_name`.
+    7. Damping is added to all fields (`beamdyn.equations.assembly`), under the name `damping_name`.
     8. `complete` returns a scene in which every term of the field is present, for the same list.
 
     Discretizations, modal reductions, integrators, harmonic balance and results read the list of terms
@@ -138,14 +139,15 @@ class Field(ABC):
     name: ClassVar[str]
     damping_name: ClassVar[str] = "damping"
     explanations: ClassVar[Mapping[str, Explanation]]
+    requires: ClassVar[Mapping[str, object]] = {}
 
-    @abstractmethod
     def is_modelled(self, scene: Scene) -> bool:
         """Whether the scene has this field."""
+        return all(getattr(scene.physics, name) == value for name, value in self.requires.items())
 
-    @abstractmethod
     def complete(self, scene: Scene) -> Scene:
-        """Extend the scene so that every term of this field is present."""
+        """Extend the scene so that every term of this field is present: by default it is."""
+        return scene
 
     @abstractmethod
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:

@@ -23,7 +23,7 @@ Derivation: tests/invariants/test_precone_derivation.py.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -42,6 +42,9 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
 
 _NO_BODY, _NOTHING = TipMass(0.0), ONE.scaled(0.0)
+_EULER = "Euler coupling of planes"
+_QUARTER_TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
+_ROOT_ACCELERATIONS: tuple[Quantity, Quantity] = "root_transverse", "root_across"
 
 
 @dataclass(frozen=True)
@@ -58,92 +61,65 @@ class Trial:
         The scene.
     spaces : Spaces
         Function spaces on the beam.
+    beam : Beam
+        The beam, with the modelled properties.
+    tip : TipMass
+        Rigid body at the tip.
+    conditions : RootConditions
+        Conditions at the root.
+    space : Space
+        The n trial functions.
+    rotation : ndarray, shape (n,)
+        Rotation D of the section at the tip per coordinate [1/m].
+    centre : ndarray, shape (n,)
+        Deflection t of the tip body's centre of gravity per coordinate.
     """
 
     field: TransverseField
     scene: Scene
     spaces: Spaces
+    beam: Beam
+    tip: TipMass
+    conditions: RootConditions
+    space: Space
+    rotation: np.ndarray
+    centre: np.ndarray
 
-    @property
-    def direction(self) -> int:
-        """0 for deflection along e1, 1 along e2."""
-        return self.field.direction
+    @classmethod
+    def of(cls, field: TransverseField, scene: Scene, spaces: Spaces) -> Trial:
+        """Trial functions of a field over function spaces."""
+        beam, conditions = scene.modelled_beam, field.conditions(scene.mount)
+        tip, space = beam.tip or _NO_BODY, spaces.functions(conditions)
+        slope = space.end(1) / beam.length
+        rotation = slope if field.rotates else np.zeros_like(slope)
+        centre = space.end(0) + tip.offset * rotation
+        return cls(field, scene, spaces, beam, tip, conditions, space, rotation, centre)
 
-    @property
-    def rotates(self) -> bool:
-        """Whether the sections turn with the slope of the deflection."""
-        return self.field.rotates
-
-    @cached_property
-    def conditions(self) -> RootConditions:
-        """Conditions at the root."""
-        return self.field.conditions(self.scene.mount)
-
-    @cached_property
-    def space(self) -> Space:
-        """Trial functions."""
-        return self.spaces.functions(self.conditions)
-
-    @cached_property
-    def beam(self) -> Beam:
-        """The beam, with the modelled properties."""
-        return self.scene.modelled_beam
-
-    @cached_property
-    def tip(self) -> TipMass:
-        """Rigid body at the tip."""
-        return self.beam.tip or _NO_BODY
-
-    @cached_property
-    def rotation(self) -> np.ndarray:
-        """Rotation D of the section at the tip per coordinate [1/m], shape (n,)."""
-        slope = self.space.end(1) / self.beam.length
-        return slope if self.rotates else np.zeros_like(slope)
-
-    @cached_property
-    def centre(self) -> np.ndarray:
-        """Deflection t of the tip body's centre of gravity per coordinate, shape (n,)."""
-        return self.space.end(0) + self.tip.offset * self.rotation
-
-    def tilting_load(self, direction: int) -> np.ndarray:
-        """Moment of inertia (n,) that tilts the sections, as the beam's end turns towards a direction."""
-        body = tilting_inertia(self.tip, self.beam.tip_twist)[self.direction, direction] * self.rotation
-        inertia = section_tensor(self.beam, "rotary_inertia").get((self.direction, direction))
-        if inertia is None or not self.rotates:
-            return body
-        return body + self.space.load(inertia, 1)
-
-    @cached_property
-    def first_moment(self) -> np.ndarray:
-        """Load under a transverse acceleration that is proportional to x [kg m], shape (n,)."""
-        reach = self.beam.length + self.tip.offset
-        return first_moment_by_mass(self.beam, self.space) + self.tip.mass * reach * self.centre
-
-    def toppling_load(self, n: tuple[float, float]) -> np.ndarray:
-        """Centrifugal inertia (n,) that tilts the sections [kg m], as rotation presses to the direction n."""
-        body = centrifugal_inertia(self.tip, self.beam.tip_twist)[self.direction] @ np.array(n)
-        load = body * self.rotation
-        if not self.rotates:
-            return load
-        for (i, j), inertia in section_tensor(self.beam, "rotary_inertia").items():
-            if i == self.direction:
-                load = load - n[j] * self.space.load(inertia, 1)
-        return load
-
-    @cached_property
-    def Q(self) -> np.ndarray:
-        """Load under a unit angular acceleration in the direction of the field [kg m], shape (n,)."""
-        return self.first_moment + self.tilting_load(self.direction)
-
-    @cached_property
-    def Q_across(self) -> np.ndarray:
-        """The same in the other direction, towards which oblique sections are tilted."""
-        return self.tilting_load(1 - self.direction)
-
-    @cached_property
-    def P(self) -> np.ndarray:
-        """Load under a unit root acceleration in the direction of the field [kg], shape (n,)."""
-        return load_by_mass(self.beam, self.space) + self.tip.mass * self.centre
+    def loads(self) -> tuple[Deflection, list[Load]]:
+        """The deflection with its loads under unit accelerations, and the terms of the right-hand side."""
+        beam, tip, space, i, name = self.beam, self.tip, self.space, self.field.direction, self.field.name
+        (d, n), (cosine, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
+        sections = section_tensor(beam, "rotary_inertia") if self.field.rotates else {}
+        P = load_by_mass(beam, space) + tip.mass * self.centre
+        moment = first_moment_by_mass(beam, space) + tip.mass * (beam.length + tip.offset) * self.centre
+        tilting = []  # of sections and tip body, as the beam's end turns towards either direction
+        for k, inertia in enumerate(tilting_inertia(tip, beam.tip_twist)[i]):
+            load = inertia * self.rotation
+            tilting.append(load + space.load(sections[i, k], 1) if (i, k) in sections else load)
+        Q, Q_across = moment + tilting[i], tilting[1 - i]
+        loads = [Load("angular acceleration", name, Q, "acceleration", cosine * d[i])]
+        if Q_across.any():
+            loads.append(Load("angular acceleration", name, Q_across, "acceleration", cosine * d[1 - i]))
+        if sine:
+            pressed = (centrifugal_inertia(tip, beam.tip_twist)[i] @ np.array(n)) * self.rotation
+            for (p, q), inertia in sections.items():
+                if p == i:
+                    pressed = pressed - n[q] * space.load(inertia, 1)
+            pressed = n[i] * moment + pressed
+            if pressed.any():
+                loads.append(Load("centrifugal bending", name, pressed, "speed_squared", -sine * cosine))
+        loads.append(Load("root acceleration", name, P, _ROOT_ACCELERATIONS[i], -1.0))
+        return Deflection(space, P, Q, Q_across, i), loads
 
 
 @dataclass(frozen=True)
@@ -154,20 +130,32 @@ class Pair:
     ----------
     rows, columns : Trial
         The trial functions.
+    directions : tuple of int
+        Directions of the two.
+    rotate : bool
+        Whether both turn the sections.
+    tilts : ndarray, shape (n, m)
+        Products of the rotations D at the tip [1/m2].
     """
 
     rows: Trial
     columns: Trial
+    directions: tuple[int, int]
+    rotate: bool
+    tilts: np.ndarray
 
-    @property
-    def directions(self) -> tuple[int, int]:
-        """Directions of the two."""
-        return self.rows.direction, self.columns.direction
+    @classmethod
+    def of(cls, rows: Trial, columns: Trial) -> Pair:
+        """Pair two fields."""
+        directions = rows.field.direction, columns.field.direction
+        rotate = rows.field.rotates and columns.field.rotates
+        return cls(rows, columns, directions, rotate, np.outer(rows.rotation, columns.rotation))
 
-    @property
-    def rotate(self) -> bool:
-        """Whether both turn the sections."""
-        return self.rows.rotates and self.columns.rotates
+    def term(
+        self, name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0, order: int = 0
+    ) -> Term:
+        """Term of the equations of the first field by the coordinates of the second."""
+        return Term(name, self.rows.field.name, self.columns.field.name, order, matrix, quantity, factor)
 
     def integrate(self, weight: Profile, *orders: int) -> np.ndarray:
         """Integrate over x the weight times derivatives by x of the given order, or orders, of both."""
@@ -180,6 +168,11 @@ class Pair:
             matrix = self.rows.spaces.product(weight, *conditions, (first, last))
         return matrix * length if first + last == 0 else matrix / length ** (first + last - 1)
 
+    def twist_by_bending(self, inertia: Profile) -> np.ndarray:
+        """Integrate inertia (v' w'' - v'' w') for fields v along e1 and w along e2, or w and v."""
+        matrix = self.integrate(inertia, 1, 2) - self.integrate(inertia, 2, 1)
+        return matrix if self.directions == (0, 1) else -matrix
+
     @cached_property
     def translation(self) -> np.ndarray:
         """Mass of the centres of gravity of sections, point masses and tip body [kg]."""
@@ -187,11 +180,6 @@ class Pair:
         lumps = product_at_lumps(rows.beam, rows.space, columns.space)
         by_mass = self.integrate(rows.beam.mass_per_length, 0) + lumps
         return by_mass + rows.tip.mass * np.outer(rows.centre, columns.centre)
-
-    @cached_property
-    def tilts(self) -> np.ndarray:
-        """Products of the rotations D at the tip [1/m2]."""
-        return np.outer(self.rows.rotation, self.columns.rotation)
 
 
 class TransverseField(Field):
@@ -250,98 +238,19 @@ class TransverseField(Field):
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble eq. (14) of Lee and Yoo (2019), corrected, with tip body, and what goes beyond them."""
-        own = Trial(self, scene, spaces)
-        terms = [*self._terms_with(Pair(own, own))]
+        own = Trial.of(self, scene, spaces)
+        terms = [*_terms(Pair.of(own, own))]
         for partner in self.partners:
             if partner.is_modelled(scene):
-                pair = Pair(Trial(partner, scene, spaces), own)
-                above, skew = [*self._terms_with(pair)], [*_coriolis(pair)]
-                terms += [*above, *map(_transposed, above), *skew, *map(_transposed_skew, skew)]
-        deflection = Deflection(own.space, own.P, own.Q, own.Q_across, self.direction)
+                pair = Pair.of(Trial.of(partner, scene, spaces), own)
+                for sign, above in ((1.0, [*_terms(pair)]), (-1.0, [*_coriolis(pair)])):
+                    terms += above
+                    for t in above:
+                        below = t.name, t.columns, t.rows, t.order, t.matrix.T, t.quantity
+                        terms.append(Term(*below, sign * t.factor))
+        deflection, loads = own.loads()
         turning = own.conditions.held == 1 and self.rotates
-        return FieldEquations(own.space, (*terms,), (*_loads(own),), deflection, turning)
-
-    def _terms_with(self, pair: Pair) -> Iterator[Term]:
-        yield from _mass(pair)
-        yield from self.own_stiffness(pair)
-        yield from _springs(pair)
-        yield from _tension(pair)
-        yield from _spin(pair)
-        yield from _euler_of_turned(pair)
-
-
-def term_of(
-    name: str, pair: Pair, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0
-) -> Term:
-    """Term of the stiffness of a pair of fields."""
-    return Term(name, pair.rows.field.name, pair.columns.field.name, 0, matrix, quantity, factor)
-
-
-def _transposed(term: Term) -> Term:
-    return Term(term.name, term.columns, term.rows, term.order, term.matrix.T, term.quantity, term.factor)
-
-
-def _transposed_skew(term: Term) -> Term:
-    return replace(_transposed(term), factor=-term.factor)
-
-
-def _mass(pair: Pair) -> Iterator[Term]:
-    names, (i, j) = (pair.rows.field.name, pair.columns.field.name), pair.directions
-    inertia = tilting_inertia(pair.rows.tip, pair.rows.beam.tip_twist)[i, j]
-    tilted = inertia * pair.tilts
-    yield Term("mass", *names, 2, pair.translation + tilted if i == j else tilted)
-    sections = section_tensor(pair.rows.beam, "rotary_inertia").get((i, j))
-    if pair.rotate and sections is not None:
-        yield Term("rotary inertia of sections", *names, 2, pair.integrate(sections, 1))
-
-
-def _springs(pair: Pair) -> Iterator[Term]:
-    """Stiffness of springs along the beam, against the whole deflection."""
-    if pair.rows.direction != pair.columns.direction:
-        return
-    xi, stiffness = pair.rows.beam.springs(pair.rows.direction)
-    if stiffness.size:
-        matrix = (pair.rows.space.evaluate(xi) * stiffness) @ pair.columns.space.evaluate(xi).T
-        yield term_of("point springs", pair, matrix)
-
-
-def _tension(pair: Pair) -> Iterator[Term]:
-    """Stiffness by tension, which acts on the slope of the whole deflection (Engesser)."""
-    if pair.rows.direction != pair.columns.direction:
-        return
-    tip, (n_a, n_b) = pair.rows.tip, axial_tension(pair.rows.beam)
-    reach = pair.rows.beam.length + tip.offset
-    KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
-    KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
-    cosine, _ = exact_cos_sin(pair.rows.scene.mount.precone)
-    yield term_of("centrifugal stiffening", pair, KGB, "speed_squared", cosine**2)
-    yield term_of("tension by root acceleration", pair, KGA, "root_axial", -1.0)
-
-
-def _spin(pair: Pair) -> Iterator[Term]:
-    """Work of rotation on masses that move in the plane of rotation, or tilt out of it."""
-    d, n = plane_components(pair.rows.scene)
-    cone = exact_cos_sin(pair.rows.scene.mount.precone)
-    i, j = pair.directions
-    if softening := d[i] * d[j] + cone[1] ** 2 * n[i] * n[j]:
-        yield term_of("spin softening", pair, pair.translation, "speed_squared", -softening)
-    if not pair.rotate:
-        return
-    beam = pair.rows.beam
-    body = centrifugal_inertia(pair.rows.tip, beam.tip_twist)
-    for p, q, factor in _tilting_factors(i, j, n, cone):
-        yield term_of("spin of the tip body", pair, body[p, q] * pair.tilts, "speed_squared", factor)
-        sections = section_tensor(beam, "rotary_inertia").get((p, q))
-        if sections is not None:
-            matrix = pair.integrate(sections, 1)
-            yield term_of("spin of sections", pair, matrix, "speed_squared", -factor)
-    if i != j:
-        product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
-        for (p, q), inertia in section_tensor(beam, "rotary_inertia").items():
-            product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
-        if product != _NOTHING:
-            matrix = _twist_by_bending(pair, product)
-            yield term_of("twisting by inertia", pair, matrix, "speed_squared", cone[0] ** 2 / 2)
+        return FieldEquations(own.space, (*terms,), (*loads,), deflection, turning)
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -350,28 +259,61 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
     return (c, -s), (s, c)
 
 
-def _tilting_factors(
-    i: int, j: int, n: tuple[float, float], cone: tuple[float, float]
-) -> Iterator[tuple[int, int, float]]:
-    """Coefficients of B_pq in the matrix of the spin for fields in directions i, j: p, q, factor != 0.
+def _terms(pair: Pair) -> Iterator[Term]:
+    """Yield mass and stiffness: of the sections, of springs, by tension and by rotation."""
+    rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
+    scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
+    cosine, sine = exact_cos_sin(scene.mount.precone)
+    tilted = tilting_inertia(tip, beam.tip_twist)[i, j] * pair.tilts
+    yield pair.term("mass", pair.translation + tilted if i == j else tilted, order=2)
+    if pair.rotate and (i, j) in sections:
+        yield pair.term("rotary inertia of sections", pair.integrate(sections[i, j], 1), order=2)
+    yield from columns.field.own_stiffness(pair)
+    if i == j:
+        xi, springs = beam.springs(i)
+        if springs.size:
+            held = (rows.space.evaluate(xi) * springs) @ columns.space.evaluate(xi).T
+            yield pair.term("point springs", held)
+        # Tension acts on the slope of the whole deflection (Engesser).
+        (n_a, n_b), reach = axial_tension(beam), beam.length + tip.offset
+        KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
+        KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
+        yield pair.term("centrifugal stiffening", KGB, "speed_squared", cosine**2)
+        yield pair.term("tension by root acceleration", KGA, "root_axial", -1.0)
+    yield from _spin(pair, cosine, sine)
+    if sine and pair.rotate and scene.physics.planes == 2:
+        yield from _euler_of_turned(pair, sine)
 
-    It is that of C^2 u3' (B u')_3 - S^2 u'^T B u', with the cosine and sine C, S of the precone.
-    """
-    B = np.zeros((2, 2))
+
+def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
+    """Work of rotation on masses that move in the plane of rotation, or tilt out of it, with a precone."""
+    (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
+    if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
+        yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
+    if not pair.rotate:
+        return
+    body, sections = (
+        centrifugal_inertia(pair.rows.tip, beam.tip_twist),
+        section_tensor(beam, "rotary_inertia"),
+    )
+    B = np.zeros((2, 2))  # coefficients of B_pq in the matrix of C^2 u3' (B u')_3 - S^2 u'^T B u'
     for q in range(2):
-        B[q, j] += cone[0] ** 2 * n[i] * n[q] / 2
-        B[q, i] += cone[0] ** 2 * n[j] * n[q] / 2
-    B[i, j] -= cone[1] ** 2
+        B[q, j] += cosine**2 * n[i] * n[q] / 2
+        B[q, i] += cosine**2 * n[j] * n[q] / 2
+    B[i, j] -= sine**2
     for p, q in ((0, 0), (1, 1), (0, 1)):
-        factor = B[p, q] if p == q else B[0, 1] + B[1, 0]
-        if factor:
-            yield p, q, float(factor)
-
-
-def _twist_by_bending(pair: Pair, inertia: Profile) -> np.ndarray:
-    """Integrate inertia (v' w'' - v'' w') for fields v along e1 and w along e2, or the other way round."""
-    matrix = pair.integrate(inertia, 1, 2) - pair.integrate(inertia, 2, 1)
-    return matrix if pair.directions == (0, 1) else -matrix
+        if factor := float(B[p, q] if p == q else B[0, 1] + B[1, 0]):
+            yield pair.term("spin of the tip body", body[p, q] * pair.tilts, "speed_squared", factor)
+            if (p, q) in sections:
+                matrix = pair.integrate(sections[p, q], 1)
+                yield pair.term("spin of sections", matrix, "speed_squared", -factor)
+    if i != j:
+        product = ONE.scaled(-float(np.array(d) @ body @ np.array(n)))
+        for (p, q), inertia in sections.items():
+            product = product + inertia.scaled(d[p] * n[q] * beam.length).outboard_integral()
+        if product != _NOTHING:
+            matrix = pair.twist_by_bending(product)
+            yield pair.term("twisting by inertia", matrix, "speed_squared", cosine**2 / 2)
 
 
 # What the part of the rotation about the beam adds, in both directions ----------------------------
@@ -380,67 +322,29 @@ def _twist_by_bending(pair: Pair, inertia: Profile) -> np.ndarray:
 def _coriolis(pair: Pair) -> Iterator[Term]:
     """Skew coupling of the directions, by Coriolis and Euler forces."""
     _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
-    i, j = pair.directions
+    (i, j), tip = pair.directions, pair.rows.tip
     if not sine or i == j:
         return
-    mass = pair.translation + _moment_along(pair.rows.tip) * pair.tilts
-    across = sine if i == 0 else -sine
-    yield _of_planes("Coriolis", pair, 1, mass, "speed", 2 * across)
-    yield _of_planes("Euler", pair, 0, mass, "acceleration", across)
+    # The second moment of the tip body along the beam: no matter how it is turned about it.
+    along = (tip.inertia + tip.inertia_about_bending_direction - tip.axial_inertia) / 2
+    mass, across = pair.translation + along * pair.tilts, sine if i == 0 else -sine
+    yield pair.term("Coriolis coupling of planes", mass, "speed", 2 * across, order=1)
+    yield pair.term(_EULER, mass, "acceleration", across)
 
 
-def _euler_of_turned(pair: Pair) -> Iterator[Term]:
-    """Work of Euler forces on sections and tip body that bending tilts and turns about the beam."""
-    _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
-    if not sine or not pair.rotate or pair.rows.scene.physics.planes == 1:
-        return
-    (i, j), beam, tip = pair.directions, pair.rows.beam, pair.rows.tip
-    body = _quarter_turned(centrifugal_inertia(tip, beam.tip_twist))
-    yield _of_planes("Euler", pair, 0, body[i, j] * pair.tilts, "acceleration", -sine)
+def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
+    """Work of Euler forces on sections and tip body that bending tilts and turns about the beam.
+
+    Of an inertia B it is that of the symmetric part of B T, with a quarter turn T about the beam.
+    """
+    (i, j), beam, tip, T = pair.directions, pair.rows.beam, pair.rows.tip, _QUARTER_TURN
+    turned = centrifugal_inertia(tip, beam.tip_twist) @ T
+    yield pair.term(_EULER, (turned + turned.T)[i, j] / 2 * pair.tilts, "acceleration", -sine)
     polar = ONE.scaled(tip.axial_inertia)
     for (p, q), rotary in section_tensor(beam, "rotary_inertia").items():
-        factor = sine * _quarter_turned(_unit_entry(p, q))[i, j]
-        yield _of_planes("Euler", pair, 0, pair.integrate(rotary, 1), "acceleration", factor)
+        factor = sine * float((i == p) * T[q, j] + (j == p) * T[q, i]) / 2
+        yield pair.term(_EULER, pair.integrate(rotary, 1), "acceleration", factor)
         if p == q:
             polar = polar + rotary.scaled(beam.length).outboard_integral()
     if i != j:
-        yield _of_planes("Euler", pair, 0, _twist_by_bending(pair, polar), "acceleration", -sine / 2)
-
-
-def _of_planes(
-    force: str, pair: Pair, order: int, matrix: np.ndarray, quantity: Quantity, factor: float
-) -> Term:
-    rows, columns = pair.rows.field.name, pair.columns.field.name
-    return Term(f"{force} coupling of planes", rows, columns, order, matrix, quantity, factor)
-
-
-def _moment_along(tip: TipMass) -> float:
-    """Second moment of mass of the tip body along the beam [kg m2]: no matter how it is turned about it."""
-    return (tip.inertia + tip.inertia_about_bending_direction - tip.axial_inertia) / 2
-
-
-def _quarter_turned(B: np.ndarray) -> np.ndarray:
-    """The symmetric part of B T (2, 2) with a quarter turn T about the beam."""
-    turned = B @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    return (turned + turned.T) / 2
-
-
-def _unit_entry(p: int, q: int) -> np.ndarray:
-    matrix = np.zeros((2, 2))
-    matrix[p, q] = 1.0
-    return matrix
-
-
-def _loads(trial: Trial) -> Iterator[Load]:
-    name, (d, n) = trial.field.name, plane_components(trial.scene)
-    cosine, sine = exact_cos_sin(trial.scene.mount.precone)
-    i = trial.direction
-    yield Load("angular acceleration", name, trial.Q, "acceleration", cosine * d[i])
-    if trial.Q_across.any():
-        yield Load("angular acceleration", name, trial.Q_across, "acceleration", cosine * d[1 - i])
-    if sine:
-        pressed = n[i] * trial.first_moment + trial.toppling_load(n)
-        if pressed.any():
-            yield Load("centrifugal bending", name, pressed, "speed_squared", -sine * cosine)
-    transverse: tuple[Quantity, Quantity] = "root_transverse", "root_across"
-    yield Load("root acceleration", name, trial.P, transverse[i], -1.0)
+        yield pair.term(_EULER, pair.twist_by_bending(polar), "acceleration", -sine / 2)

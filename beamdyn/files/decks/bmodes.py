@@ -86,28 +86,8 @@ def read_main_file(text: DataText) -> Blade:
     found = named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
     check_all_there(text, found, _MAIN_NAMES)
     values = {name: named_number(text, named) for name, named in found.items() if name != "secpropsfile"}
-    _check_kind(text, found, values)
-    multipliers = {name: values[plain_name(name)] for _, name in _PROPERTIES.values()}
-    sections = read_data(named_file(text, found["secpropsfile"]))
-    hub_radius = values["hubrad"]
-    blade = read_section_file(sections, values["radius"] - hub_radius, hub_radius, multipliers)
-    tip, left_out = _tip_body(values)
-    return replace(
-        blade,
-        kind="BModes main file with section properties",
-        title=text.lines[1].strip() if len(text.lines) > 1 else "",
-        sources=(text.path, *blade.sources),
-        tip=tip,
-        pitch=values["blthp"],
-        speed=_speed(values),
-        precone=values["precone"],
-        ignored=(*left_out, *blade.ignored),
-    )
 
-
-def _check_kind(text: DataText, found: dict, values: dict[str, float]) -> None:
-    """Refuse what is no cantilevered blade."""
-
+    # Refuse what is no cantilevered blade.
     def check(key: str, good: bool, wanted: str) -> None:
         check_named(text, found[key], good, wanted)
 
@@ -120,12 +100,24 @@ def _check_kind(text: DataText, found: dict, values: dict[str, float]) -> None:
     for _, multiplier in _PROPERTIES.values():
         key = plain_name(multiplier)
         check(key, values[key] > 0, "above 0")
-
-
-def _speed(values: dict[str, float]) -> float:
-    """Speed of rotation [rpm]."""
+    multipliers = {name: values[plain_name(name)] for _, name in _PROPERTIES.values()}
+    sections = read_data(named_file(text, found["secpropsfile"]))
+    hub_radius = values["hubrad"]
+    blade = read_section_file(sections, values["radius"] - hub_radius, hub_radius, multipliers)
+    tip, left_out = _tip_body(values)
+    # Speed of rotation [rpm].
     speed = values.get("rotrpm", values.get("romg", 0.0))
-    return speed * values.get("rpmmult", values.get("romgmult", 1.0))
+    return replace(
+        blade,
+        kind="BModes main file with section properties",
+        title=text.lines[1].strip() if len(text.lines) > 1 else "",
+        sources=(text.path, *blade.sources),
+        tip=tip,
+        pitch=values["blthp"],
+        speed=(speed * values.get("rpmmult", values.get("romgmult", 1.0))),
+        precone=values["precone"],
+        ignored=(*left_out, *blade.ignored),
+    )
 
 
 def _tip_body(values: dict[str, float]) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:

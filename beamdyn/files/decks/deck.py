@@ -100,7 +100,20 @@ class Deck(Result):
 
     def scene_text(self) -> str:
         """The scene as the text of a TOML file: the stations as a table, what is ignored as comments."""
-        return text_of(self.tables, self._comments())
+        names = ", ".join(Path(source).name for source in self.sources)
+        head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
+        if self.ignored:
+            head += ["", "Not in this scene:", *(f"  {entry.sentence()}" for entry in self.ignored)]
+        comments = {"": head, "beam": ["linear between stations; bending_stiffness is that of flap"]}
+        if "second_bending_stiffness" in self.blade.columns:
+            comments["beam"][0] += ", the second that of edge"
+            comments["beam"] += ["twist is added to the bending angle: minus the twist towards feather"]
+        comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
+        if self.blade.pitch:
+            comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
+        if "rotary_inertia" in self.blade.columns:
+            comments["physics"] = ["rotary_inertia = true adds that of the sections"]
+        return text_of(self.tables, comments)
 
     def write_scene(self, path: str | PathLike[str], force: bool = False) -> None:
         """Write the scene as a TOML file, which `beamdyn.load_scene` and the commands read.
@@ -120,22 +133,6 @@ class Deck(Result):
             If it cannot be written.
         """
         write_text(check_writable(Path(path), force=force), self.scene_text())
-
-    def _comments(self) -> dict[str, list[str]]:
-        names = ", ".join(Path(source).name for source in self.sources)
-        head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
-        if self.ignored:
-            head += ["", "Not in this scene:", *(f"  {entry.sentence()}" for entry in self.ignored)]
-        comments = {"": head, "beam": ["linear between stations; bending_stiffness is that of flap"]}
-        if "second_bending_stiffness" in self.blade.columns:
-            comments["beam"][0] += ", the second that of edge"
-            comments["beam"] += ["twist is added to the bending angle: minus the twist towards feather"]
-        comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
-        if self.blade.pitch:
-            comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
-        if "rotary_inertia" in self.blade.columns:
-            comments["physics"] = ["rotary_inertia = true adds that of the sections"]
-        return comments
 
 
 def read_deck(

@@ -176,9 +176,11 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
         return np.array([named_number(text, found[plain_name(name)]) for name in names])
 
     damping = numbers(*_DAMPING) / 100
+    # What the file says it is of: its second line, or that below two lines of dashes in FAST 7.
+    plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
     return Blade(
         kind="ElastoDyn blade file",
-        title=_title(text),
+        title=next(plain, ""),
         sources=(text.path,),
         length=length,
         hub_radius=hub_radius,
@@ -204,12 +206,6 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
             f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
         )
         yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
-
-
-def _title(text: DataText) -> str:
-    """What the file says it is of: its second line, or that below two lines of dashes in FAST 7."""
-    plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
-    return next(plain, "")
 
 
 def _factors(text: DataText, found: Mapping[str, NamedValue]) -> dict[str, float]:

@@ -5,29 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-import numpy as np
-
+from beamdyn.common.inputs.described import descriptions
 from beamdyn.files.decks.blade import Blade
+from beamdyn.scene.beam import PROPERTY_UNITS
+from beamdyn.scene.points import TipMass
 
-_UNITS = {
-    "twist": "deg",
-    "mass_per_length": "kg/m",
-    "bending_stiffness": "N m2",
-    "second_bending_stiffness": "N m2",
-    "axial_stiffness": "N",
-    "outer_fibre": "m",
-    "shear_stiffness": "N",
-    "second_shear_stiffness": "N",
-    "rotary_inertia": "kg m",
-    "second_rotary_inertia": "kg m",
-}
-_TIP_UNITS = {
-    "mass": "kg",
-    "offset": "m",
-    "inertia": "kg m2",
-    "transverse_inertia": "kg m2",
-    "axial_inertia": "kg m2",
-}
+_UNITS = {"twist": "deg"} | PROPERTY_UNITS
+_TIP_UNITS = {name: each.unit for name, each in descriptions(TipMass).items()}
 _DIGITS = 15  # of numbers in the file: those that a float keeps
 
 
@@ -62,15 +46,11 @@ def tables_of(blade: Blade) -> dict[str, Any]:
 
 def _rows(blade: Blade) -> list[list[Any]]:
     """Heads and rows of the stations."""
-    names = [name for name in _UNITS if name in blade.columns and _is_needed(name, blade.columns)]
+    # A twist that is zero throughout says nothing.
+    names = [n for n in _UNITS if n in blade.columns and (n != "twist" or blade.columns[n].any())]
     heads = ["x/L", *(f"{name} [{_UNITS[name]}]" for name in names)]
     columns = [blade.stations, *(blade.columns[name] for name in names)]
     return [heads, *([float(_number(value)) for value in row] for row in zip(*columns, strict=True))]
-
-
-def _is_needed(name: str, columns: Mapping[str, np.ndarray]) -> bool:
-    """Whether a column says something: a twist that is zero throughout does not."""
-    return name != "twist" or bool(columns[name].any())
 
 
 def _number(value: float) -> str:
@@ -113,20 +93,16 @@ def _commented(sentences: Iterable[str]) -> Iterator[str]:
 def _assignment(key: str, value: Any) -> Iterator[str]:
     if isinstance(value, list):
         yield f"{key} = ["
-        yield from _table(value)
+        # The rows in columns that are aligned.
+        heads, *numbers = value
+        cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        for row in cells:
+            padded = (f"{cell},".ljust(width + 1) for cell, width in zip(row, widths, strict=True))
+            yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
         yield "]"
     else:
         yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value}"
-
-
-def _table(rows: list[list[Any]]) -> Iterator[str]:
-    """The rows in columns that are aligned."""
-    heads, *numbers = rows
-    cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    for row in cells:
-        padded = (f"{cell},".ljust(width + 1) for cell, width in zip(row, widths, strict=True))
-        yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
 
 
 def _cell(value: float) -> str:

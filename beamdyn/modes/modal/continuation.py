@@ -113,7 +113,10 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
     while True:
         try:
             following, iterations = advance(problem, point, step)
-            _check_same_curve(problem, point, following, step)
+            # Stability that changes otherwise than by a turning point is that of another curve.
+            changed = abs(count_negative(problem, following) - count_negative(problem, point))
+            if changed != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
+                raise NotConverged
         except NotConverged:
             step /= 4
             if step < _SHORTEST:
@@ -121,23 +124,10 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
             continue
         point = following
         yield point
-        most = longest * _reach(problem, point)
+        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        by_angles, by_parameter = _metric(problem, point.q_rate, 0.0), 1 / (1 + abs(point.p) / problem.scale)
+        most = longest * (1 / max(by_angles, by_parameter))
         step = min(most, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
-
-
-def _reach(problem: Problem, point: Point) -> float:
-    """Arc length of a change of the slope angles by 1 or of the parameter by its size, if the larger size."""
-    by_angles = _metric(problem, point.q_rate, 0.0)
-    by_parameter = 1 / (1 + abs(point.p) / problem.scale)
-    return 1 / max(by_angles, by_parameter)
-
-
-def _check_same_curve(problem: Problem, before: Point, after: Point, step: float) -> None:
-    """Raise NotConverged if stability changes otherwise than by a turning point: on another curve."""
-    changed = abs(count_negative(problem, after) - count_negative(problem, before))
-    turned = int(after.p_rate * before.p_rate < 0)
-    if changed != turned and step > _NEAR:
-        raise NotConverged
 
 
 def count_negative(problem: Problem, point: Point) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TypeAlias
@@ -29,7 +29,8 @@ from beamdyn.scene.sections import section_tensor
 DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
-_FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
 _MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
 _FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
@@ -40,6 +41,7 @@ _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
 _ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of half as many resolves it, too
 _OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
 _MANY = 10_000  # modes, more than any discretization gives
+_NAMES = "ritz", "fem"
 _FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
@@ -144,32 +146,35 @@ def _choose(
     """Find the model of `choose_model`, and its modes at the slowest and fastest speed, if solved."""
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
-    target = max(target, least_target(discretization))
-    speed = float(np.abs(speeds).max(initial=0.0))
+    target = affordable_target(scene, discretization, target)
     split = scene
     if isinstance(discretization, str):
+        speed = float(np.abs(speeds).max(initial=0.0))
         split = split_layers(scene, speed, target if discretization == "ritz" else _OF_ELEMENTS)
     models = list_models(split, discretization, modes, target, cheapest, split is not scene)
     if not isinstance(discretization, str):
         return next(models), None
     # Some functions of a model may depend on others.
     first = next(m for m in models if m.solver.size >= modes or _refine(m) is None)
+    reached = within_reach(first.discretization, target)
     at_ends = refine(
         solve_with_error(first, ends, modes),
         partial(_solve_finer, speeds=ends, modes=modes),
-        lambda found: found.meet(within_reach(found.model.discretization, target)),
+        lambda found: found.meet(reached),
     )
     return at_ends.model, at_ends
+
+
+def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
+    """A target of the error, or the least that finite elements, or the functions of a plate, aim at."""
+    if not isinstance(discretization, str):
+        return target
+    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.physics.plate)
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
     """A target of the error, or the least at which a basis aims: moment bases state too large errors."""
     return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
-
-
-def least_target(discretization: DiscretizationChoice) -> float:
-    """Smallest target at which a discretization aims: 1e-7 for finite elements, else 0."""
-    return _FEM_TARGET if discretization == "fem" else 0.0
 
 
 def list_models(
@@ -185,30 +190,39 @@ def list_models(
     `has_layers` says whether segments are those of `end_layers`, which need several elements.
     The other parameters and what is raised are those of `choose_model`.
     """
-    segments = _count_segments(scene)
+    segments = len(scene.modelled_beam.breakpoints) - 1
     if segments > _MOST_SEGMENTS:
         raise ValueError(
             f"the beam has {segments} segments between its stations and breakpoints: at most "
             f"{_MOST_SEGMENTS}; give fewer stations, or its properties as polynomials or functions of x/L"
         )
-    if isinstance(discretization, str):
-        first = _FIRST_CANDIDATE[discretization, has_layers](scene, modes, target, cheapest)
-        model = Model(scene, _enlarge(first, scene, modes))
-    else:
-        model = Model(scene, _check_size(discretization, modes, segments))
-    return _list_from(model, isinstance(discretization, str))
+    if named := isinstance(discretization, str):
+        first = _first_ritz if discretization == "ritz" else _first_fem
+        discretization = first(scene, segments, modes, target, cheapest, has_layers)
+        while not _fits(discretization, modes, segments) and (finer := discretization.finer()) is not None:
+            discretization = finer
+    if not _fits(discretization, modes, segments):
+        most = _most_that_fit(discretization, modes, segments)
+        bound = f"{discretization} gives at most {most} modes with an estimate of their error"
+        raise InvalidValue("modes", modes, bound, "ask for fewer")
+    model = Model(scene, discretization)
+    return _refinements(model) if named else iter([model])
 
 
-def _list_from(model: Model | None, refining: bool) -> Iterator[Model]:
+def _refinements(model: Model | None) -> Iterator[Model]:
     while model is not None:
         yield model
-        model = _refine(model) if refining else None
+        model = _refine(model)
 
 
 def _refine(model: Model) -> Model | None:
     """The next finer model; None if there is none that is affordable."""
     finer = model.discretization.finer()
-    if finer is None or _count_functions(finer, _count_segments(model.scene)) > _MOST_IN_ALL:
+    if isinstance(finer, Ritz):  # finite elements have their own limit
+        segments = _count_segments(model.scene) if finer.on_each_segment else 1
+        across = 1 + finer.functions if model.scene.physics.plate else 1
+        finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
+    if finer is None:
         return None
     refined = Model(model.scene, finer)
     if refined.coarser.discretization == model.discretization:  # it is there already
@@ -216,22 +230,17 @@ def _refine(model: Model) -> Model | None:
     return refined
 
 
-def _enlarge(first: Discretization, scene: Scene, modes: int) -> Discretization:
-    """The first discretization, or a finer one, that has functions enough for the modes."""
-    segments = _count_segments(scene)
-    while not _fits(first, modes, segments) and (finer := first.finer()) is not None:
-        first = finer
-    return _check_size(first, modes, segments)
-
-
 def _count_segments(scene: Scene) -> int:
     """Number of segments of the beam between its stations and breakpoints."""
     return len(scene.modelled_beam.breakpoints) - 1
 
 
-def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Discretization:
+def _first_ritz(
+    scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
+) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    segments = _count_segments(scene)
+    if scene.physics.plate:  # as many functions across as on each segment
+        return Ritz(max(5, int(np.ceil(2 + modes - 0.6 * np.log10(target)))))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
@@ -242,27 +251,14 @@ def _first_ritz(scene: Scene, modes: int, target: float, cheapest: bool) -> Disc
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
-def _first_fem(scene: Scene, modes: int, target: float, cheapest: bool, on_each: int = 2) -> Discretization:
-    from beamdyn.equations.fem import (
-        MOST_ELEMENTS,
-        MOST_REFINED,
-        Fem,
-    )  # here, because scikit-fem is slow to import
+def _first_fem(
+    scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
+) -> Discretization:
+    """Mesh of elements enough on each segment; layers at the ends need several."""
+    from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem  # here: scikit-fem is slow to import
 
-    segments = _count_segments(scene)
-    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    least, on_each = min(16 * segments, MOST_REFINED) if cheapest else 80, _ON_LAYERS if has_layers else 2
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
-
-
-# First candidate of each kind, for beams without and with segments for layers at the ends: by scene, modes,
-# target and whether to begin with the smallest.
-_FIRST_CANDIDATE: dict[tuple[str, bool], Callable[[Scene, int, float, bool], Discretization]] = {
-    ("ritz", False): _first_ritz,
-    ("ritz", True): _first_ritz,
-    ("fem", False): _first_fem,
-    ("fem", True): partial(_first_fem, on_each=_ON_LAYERS),
-}
-_NAMES = tuple(dict.fromkeys(name for name, _ in _FIRST_CANDIDATE))
 
 
 def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
@@ -292,22 +288,6 @@ def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
     """Whether a beam of some segments has functions enough."""
     on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
     return discretization.fits(-(-modes // segments) if on_each else modes)
-
-
-def _count_functions(discretization: Discretization, segments: int) -> int:
-    """Number of assumed modes on all segments together; 0 of finite elements, which have their own limit."""
-    if not isinstance(discretization, Ritz):
-        return 0
-    return discretization.functions * (segments if discretization.on_each_segment else 1)
-
-
-def _check_size(discretization: Discretization, modes: int, segments: int) -> Discretization:
-    """Raise a ValueError that names the most modes, if there are too few functions for those asked for."""
-    most = _most_that_fit(discretization, modes, segments)
-    if most == modes:
-        return discretization
-    bound = f"{discretization} gives at most {most} modes with an estimate of their error"
-    raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
 def check_discretization(discretization: object) -> None:
@@ -342,25 +322,20 @@ def split_layers(scene: Scene, speed: float, target: float) -> Scene:
 @lru_cache(maxsize=64)
 def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
     """Lengths (EI/N)^(1/2) over L at the root and at the tip, at 1 rad/s; inf where nothing pulls."""
-    ends = np.array([0.0, 1.0])
+    ends, (n_a, n_b) = np.array([0.0, 1.0]), axial_tension(beam)
+    tension = n_b(ends) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(ends)
     profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
     stiffness = np.min([each(ends) for each in profiles if each is not None], axis=0)
     with np.errstate(divide="ignore"):
-        root, tip = np.sqrt(stiffness / np.maximum(_tension(beam, mount, ends), 0.0)) / beam.length
+        root, tip = np.sqrt(stiffness / np.maximum(tension, 0.0)) / beam.length
     return float(root), float(tip)
 
 
 def split_tip(scene: Scene) -> Scene:
     """Add breakpoints that resolve a layer at the tip at any speed, where tension makes one."""
     beam = scene.beam
-    has_layer = beam.tip is not None and _tension(beam, scene.mount, np.ones(1))[0] > 0
+    has_layer = beam.tip is not None and _lengths_at_unit_speed(beam, scene.mount)[1] < np.inf
     return _split(scene, _TOWARD_TIP) if has_layer else scene
-
-
-def _tension(beam: Beam, mount: Mount, xi: np.ndarray) -> np.ndarray:
-    """Axial force at x/L over the squared speed [kg m]; negative where the beam is pressed."""
-    n_a, n_b = axial_tension(beam)
-    return n_b(xi) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(xi)
 
 
 def _split(scene: Scene, places: Sequence[float]) -> Scene:

@@ -1,9 +1,9 @@
-"""Equilibria at steady speed of a beam that bends by any angle."""
+"""Equilibria at steady speed of a beam that bends by any angle, and its modes about them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from beamdyn.equations.elastica import QUANTITIES, DeflectedState, Elastica
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.modes.modal.continuation import (
     NotConverged,
@@ -20,6 +21,7 @@ from beamdyn.modes.modal.continuation import (
     follow,
     start_curve,
 )
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver
 from beamdyn.scene.motion import MotionSample
 
 Branch = Literal["straight", "bent"]
@@ -133,16 +135,6 @@ class Pushed:
         return self.load.elastica.at(q).inertia_of("root_transverse")
 
 
-def check_reach(load: SteadyLoad, speeds: np.ndarray) -> None:
-    """Raise NoEquilibrium for speeds [rad/s] at which the beam bends too sharply for any basis."""
-    most = _FASTEST * math.sqrt(load.scale)
-    if np.abs(speeds).max(initial=0.0) > most:
-        raise NoEquilibrium(
-            f"equilibria are sought up to {most:.4g} rad/s, {_FASTEST:g} times the first angular frequency "
-            "at rest"
-        )
-
-
 def follow_to(
     load: SteadyLoad, speeds: np.ndarray, q: np.ndarray | None = None, start: float = 0.0
 ) -> np.ndarray:
@@ -162,7 +154,12 @@ def follow_to(
     NoEquilibrium
         If the branch turns back before a speed, or a speed is too large.
     """
-    check_reach(load, speeds)
+    most = _FASTEST * math.sqrt(load.scale)
+    if np.abs(speeds).max(initial=0.0) > most:  # the beam bends too sharply for any basis
+        raise NoEquilibrium(
+            f"equilibria are sought up to {most:.4g} rad/s, {_FASTEST:g} times the first angular frequency "
+            "at rest"
+        )
     q = np.zeros(load.elastica.size) if q is None else q
     squares = speeds**2
     found = np.tile(q, (len(speeds), 1))
@@ -181,36 +178,25 @@ def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np
     """Coordinates at squared speeds in the order in which a curve meets them."""
     found, curve, towards = [], follow(load, before), np.sign(before.p_rate)
     while len(found) < len(squares):
-        after = _next(curve, before)
+        try:
+            after = next(curve)
+        except NotConverged:
+            raise NoEquilibrium(
+                f"the branch could not be followed beyond {math.sqrt(max(before.p, 0.0)):.6g} rad/s"
+            ) from None
         turning = find_turning_point(load, before, after) if after.p_rate * before.p_rate < 0 else None
         after = turning or after
         while len(found) < len(squares) and towards * (after.p - squares[len(found)]) >= 0:
-            found.append(_find_between(load, before, after, float(squares[len(found)])))
+            squared = float(squares[len(found)])
+            try:
+                found.append(find_at(load, before, after, squared))
+            except NotConverged:
+                reason = f"the equilibrium at {math.sqrt(squared):.6g} rad/s was not found to rounding"
+                raise NoEquilibrium(reason) from None
         if turning is not None and len(found) < len(squares):
-            raise NoEquilibrium(f"the branch turns back at {_speed(turning):.6g} rad/s")
+            raise NoEquilibrium(f"the branch turns back at {math.sqrt(max(turning.p, 0.0)):.6g} rad/s")
         before = after
     return np.array(found)
-
-
-def _next(curve: Iterator[Point], before: Point) -> Point:
-    """The next point of a curve."""
-    try:
-        return next(curve)
-    except NotConverged:
-        raise NoEquilibrium(f"the branch could not be followed beyond {_speed(before):.6g} rad/s") from None
-
-
-def _find_between(load: SteadyLoad, before: Point, after: Point, squared: float) -> np.ndarray:
-    """Coordinates at a squared speed between two points of a curve."""
-    try:
-        return find_at(load, before, after, squared)
-    except NotConverged:
-        speed = math.sqrt(squared)
-        raise NoEquilibrium(f"the equilibrium at {speed:.6g} rad/s was not found to rounding") from None
-
-
-def _speed(point: Point) -> float:
-    return float(np.sqrt(max(point.p, 0.0)))
 
 
 def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
@@ -231,18 +217,13 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
         bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
     except (NotConverged, NoEquilibrium):
         bent = None
-    if bent is None or _is_on_branch_from_rest(load, speed, bent):
+    with suppress(NoEquilibrium):  # the branch from rest may turn back before
+        from_rest = follow_to(load, np.array([speed]))[0] if bent is not None else None
+        if from_rest is not None and np.abs((bent - from_rest) @ load.angles).max() < _SAME:
+            bent = None
+    if bent is None:
         raise NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
     return bent
-
-
-def _is_on_branch_from_rest(load: SteadyLoad, speed: float, q: np.ndarray) -> bool:
-    """Whether an equilibrium is on the branch from rest, which may turn back before."""
-    try:
-        from_rest = follow_to(load, np.array([speed]))[0]
-    except NoEquilibrium:
-        return False
-    return bool(np.abs((q - from_rest) @ load.angles).max() < _SAME)
 
 
 def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
@@ -258,3 +239,93 @@ def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
             return None
         before = after
     return None
+
+
+class DeflectedSolver(Eigensolver):
+    """Eigensolver about the equilibrium at each speed.
+
+    Parameters
+    ----------
+    elastica : Elastica
+        Equations of motion.
+    branch : {"straight", "bent"}
+        Equilibria that are meant: those that follow from rest, or those beside them.
+    """
+
+    def __init__(self, elastica: Elastica, branch: Branch) -> None:
+        super().__init__(elastica.linear.steady())  # about the straight beam
+        self.elastica, self.branch = elastica, branch
+        self._straight = Solver(self.pencil)
+        self._found: dict[float, np.ndarray] = {}
+        self._solved: dict[tuple[float, int], Eigen] = {}
+
+    @property
+    def conservative(self) -> bool:
+        """False: a bent beam in the plane of rotation is gyroscopic."""
+        return False
+
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        return self._straight.lowest_at_rest
+
+    @cached_property
+    def load(self) -> SteadyLoad:
+        """Problem of the equilibria."""
+        return SteadyLoad(self.elastica, self.lowest_at_rest)
+
+    @property
+    def softening(self) -> float:
+        """Largest loss of stiffness of the straight beam per squared speed, as of `Solver`."""
+        return self._straight.softening
+
+    @property
+    def critical_speed(self) -> float:
+        """Lowest speed at which the straight beam buckles [rad/s]; inf where rotation bends it instead."""
+        return np.inf if self.load.transverse else self._straight.critical_speed
+
+    @property
+    def critical_rounding(self) -> float:
+        """Estimated relative rounding error of the critical speed."""
+        return self._straight.critical_rounding
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Compute the `count` lowest modes at each speed [rad/s], once each: as `Solver.solve`.
+
+        Raises
+        ------
+        NoEquilibrium
+            An ArithmeticError: if the branch of equilibria does not reach a speed.
+        """
+        missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
+        for v, equations in zip(missing.tolist(), self.equations(missing), strict=True):
+            self._solved[v, count] = Solver(equations.steady()).solve(np.array([v]), count)
+        each = [self._solved[v, count] for v in speeds.tolist()]
+        values = zip(*((e.eigenvalue, e.vector, e.rounding) for e in each), strict=True)
+        return Eigen(*map(np.concatenate, values))
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Compute linear functions of the coordinates in equilibrium: as `Solver.solve_static`."""
+        return self.equilibria(speeds) @ outputs.T
+
+    def equations(self, speeds: np.ndarray) -> list[Equations]:
+        """Equations linear about the equilibrium at each speed."""
+        return [self.elastica.at(q).linearized() for q in self.equilibria(speeds)]
+
+    def tips(self, speeds: np.ndarray) -> np.ndarray:
+        """Deflection of the tip along e in equilibrium [m], shape (S, 1)."""
+        return self.elastica.tip(self.equilibria(speeds))[:, 1:]
+
+    def equilibria(self, speeds: np.ndarray) -> np.ndarray:
+        """Coordinates (S, n) in equilibrium at each speed, each computed once."""
+        missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
+        if len(missing):
+            if not self._found and self.branch == "straight":
+                self._found[0.0] = np.zeros(self.size)
+            elif not self._found:
+                self._found[float(missing[-1])] = find_bent(self.load, float(missing[-1]))
+            known = np.array(list(self._found))
+            start = float(known[np.abs(known - missing[0]).argmin()])
+            followed = follow_to(self.load, missing, self._found[start], start)
+            self._found.update(zip(missing.tolist(), followed, strict=True))
+        return np.array([self._found[abs(v)] for v in speeds])

@@ -7,10 +7,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import BASES_OF_FIELDS, SLOW_BASES
+from beamdyn.accuracy.margins import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
 from beamdyn.scene.scene import Scene
@@ -27,6 +27,8 @@ _ROUNDING = 1.5  # of rounding errors: two models with the same matrices have th
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
+# Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
+_ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
 _ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
@@ -52,11 +54,6 @@ class EstimatedModes:
     model: Model
     eigen: Eigen
     error: np.ndarray
-
-    @property
-    def coarse(self) -> Model:
-        """The coarser model that the modes are compared with."""
-        return self.model.coarser
 
     def meet(self, tolerance: float) -> bool:
         """Whether all errors are below the tolerance or at the level of rounding."""
@@ -87,7 +84,10 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    _check_size(model, modes)
+    if model.solver.size < modes:  # of moments some may depend on others
+        bound = f"{model.discretization} has {model.solver.size} functions for this beam"
+        raise InvalidValue("modes", modes, bound, "ask for fewer")
+    scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
@@ -104,29 +104,38 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         if order is not None:
             before = coarse**2 - _coarsest_squares(model, speeds, compared)
             noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
-            noise += _rounding_of_elements(model, fine.vector[:, :, :compared])
-            least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
+            K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
+            # Short elements have stiff entries, of which the rounding is random.
+            noise += _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", v, K, v, optimize=True))
+            least = LEAST_RATIO if len(scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
             left = extrapolation_error(distance, before, noise, least)
             truncation = (left + noise) / (2 * np.abs(squared))
-            truncation = _not_below_lower_modes(truncation, np.abs(squared) / model.solver.lowest_at_rest)
+            # Elements resolve lower modes better, but for coincidences; a small square has a larger error.
+            size = np.abs(squared) / model.solver.lowest_at_rest
+            known = (size > 0) & np.isfinite(truncation)
+            of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
+            truncation = np.maximum(truncation, np.maximum.accumulate(of_lower, axis=1))
         else:
-            truncation = _ritz_error_of(model, fine, distance, squared)
+            # A first mode's quotient at rest bounds the lowest square there from above.
+            pencil, first = model.solver.pencil, fine.vector[:, :, 0]
+            stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
+            are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift)
+            lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
+            margin = SLOW_BASES.factor if scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
+            parts = parts_of_distances(scene, model.discretization)
+            truncation = _ritz_error(distance, squared, lowest, margin, parts)
     error = truncation + _ROUNDING * fine.rounding[:, :compared] + model.discretization.rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
-    neutral = (s == 0) & _is_free_to_turn(model, speeds)[:, None]
+    # But for rotation, nothing holds a root without a spring, or on the axis: a frequency within rounding of
+    # 0 is 0 then.
+    free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
+    neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
     resolved |= neutral
     resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
     stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
     lacking = np.full((len(speeds), modes - compared), np.inf)
     return EstimatedModes(model, fine, np.concatenate([stated, lacking], axis=1))
-
-
-def _check_size(model: Model, modes: int) -> None:
-    """Refuse more modes than the model has functions: of moments some may depend on others."""
-    if model.solver.size < modes:
-        bound = f"{model.discretization} has {model.solver.size} functions for this beam"
-        raise InvalidValue("modes", modes, bound, "ask for fewer")
 
 
 def extrapolation_error(
@@ -158,21 +167,6 @@ def extrapolation_error(
     left = np.where(ratio < _FALLING, ratio / (1 - np.minimum(ratio, _FALLING)), np.inf)
     left = np.where(size <= _OF_NOISE * noise, size, size * np.where(size > 0, left, 0.0))
     return np.maximum(left, np.nan_to_num(np.abs(before)) / _LEAST_OF_BEFORE)
-
-
-def _not_below_lower_modes(error: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Raise errors (S, k) to those of lower modes: elements resolve these better, but for coincidences.
-
-    `size` are the squares over the lowest at rest: a small one has a larger relative error.
-    """
-    of_lower = np.where((size > 0) & np.isfinite(error), error * np.minimum(size, 1.0), 0.0)
-    return np.maximum(error, np.maximum.accumulate(of_lower, axis=1))
-
-
-def _rounding_of_elements(model: Model, v: np.ndarray) -> np.ndarray:
-    """Rounding error (S, k) of squared eigenvalues of modes (S, n, k): short elements have stiff entries."""
-    K, size = np.abs(model.solver.pencil.K0), np.abs(v)
-    return _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", size**2, K**2, size**2, optimize=True))
 
 
 def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
@@ -233,16 +227,10 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
     """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
     if not discretization.converges_regularly:
         return _IRREGULAR
+    if scene.physics.plate:
+        across = discretization.spaces(scene.modelled_beam).across
+        return BASES_OF_PLATES.factor * max(1.0, across / _ACROSS_MEASURED), _OTHERS_OF_PLATES, np.inf
     return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS
-
-
-def _is_free_to_turn(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Whether nothing holds a root that turns without a spring: then a frequency within rounding of 0 is 0.
-
-    At speed, shape (S,), rotation holds it, or turns it over, unless the root is on the axis.
-    """
-    mount, planes = model.scene.mount, model.scene.physics.planes
-    return (0.0 in mount.root_stiffnesses[:planes]) & ((speeds == 0) | (mount.radius == 0))
 
 
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -260,21 +248,6 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest
-
-
-def _ritz_error_of(model: Model, fine: Eigen, distance: np.ndarray, squared: np.ndarray) -> np.ndarray:
-    """The error `_ritz_error` of a model, by its basis and by what it may lack."""
-    margin = SLOW_BASES.factor if model.scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
-    parts = parts_of_distances(model.scene, model.discretization)
-    lowest = 0.0 if _are_above_rest(model, fine, squared) else model.solver.lowest_at_rest
-    return _ritz_error(distance, squared, np.asarray(lowest), margin, parts)
-
-
-def _are_above_rest(model: Model, fine: Eigen, squared: np.ndarray) -> bool:
-    """Whether no square is below the lowest at rest: a first mode's quotient there bounds that from above."""
-    pencil, first = model.solver.pencil, fine.vector[:, :, 0]
-    stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
-    return bool(np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift))
 
 
 def _ritz_error(

@@ -11,21 +11,14 @@ from contextlib import suppress
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.common.triangular import solve_lower, solve_lower_transposed
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.modes.modal.eigen import (
-    LEAST_STIFFNESS,
-    Solver,
-    explained,
-    forward_error,
-    rounding_of_scene,
-    select_lowest,
-)
-from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
-from beamdyn.modes.modal.one_speed import rounding_of_factored
+from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS, forward_error, rounding_of_scene
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver, explained, rounding_of_factored
+from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
+from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
@@ -37,17 +30,13 @@ class LargeSolver(Eigensolver):
 
     Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
     `Solver` does.
-
-    Parameters
-    ----------
-    pencil : SteadyPencil
-        Equations at steady speed.
     """
 
-    def __init__(self, pencil: SteadyPencil) -> None:
-        self.pencil = pencil
+    @cached_property
+    def _at_rest(self) -> np.ndarray:
+        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
         with explained():
-            self._at_rest = np.linalg.cholesky(pencil.K0 + pencil.shift * pencil.M)
+            return np.linalg.cholesky(self.pencil.K0 + self.pencil.shift * self.pencil.M)
 
     @cached_property
     def dense(self) -> Solver:
@@ -58,17 +47,17 @@ class LargeSolver(Eigensolver):
     def lowest_at_rest(self) -> float:
         """By the iteration."""
         with suppress(ArpackNoConvergence):
-            return float(1 / self._largest(self._transformed(self._at_rest, self.pencil.M), 1)[0][0])
+            return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """That of `dense`."""
+        """By full matrices."""
         return self.dense.softening
 
     @property
     def critical_rounding(self) -> float:
-        """That of `dense`."""
+        """By full matrices."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
@@ -78,17 +67,7 @@ class LargeSolver(Eigensolver):
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """Speed by speed, by a factorization of the stiffness."""
-        return np.array([self._static(speed, outputs) for speed in speeds])
-
-    def _static(self, speed: float, outputs: np.ndarray) -> np.ndarray:
-        try:
-            factor = cho_factor(self._stiffness(speed))
-        except LinAlgError:
-            return np.full(len(outputs), np.nan if speed else 0.0)
-        return outputs @ cho_solve(factor, speed**2 * self.pencil.f2)
-
-    def _stiffness(self, speed: float) -> np.ndarray:
-        return self.pencil.K0 + speed**2 * self.pencil.K2
+        return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
@@ -104,44 +83,37 @@ class LargeSolver(Eigensolver):
     def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Lowest modes without damping and gyroscopic terms; None if the stiffness is not safely positive."""
         try:
-            L = np.linalg.cholesky(self._stiffness(speed)) if speed else self._at_rest
+            L = np.linalg.cholesky(self.pencil.K0 + speed**2 * self.pencil.K2) if speed else self._at_rest
         except np.linalg.LinAlgError:
             return None
-        mu, x = self._largest(self._transformed(L, self.pencil.M), count)
+        mu, x = self._largest(L, count)
         if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
             return None
-        v = solve_lower_transposed(L, x) / np.sqrt(mu)
-        size, squared = np.abs(v), 1 / mu
-        found = squared[None], size[None], rounding_of_factored(self.pencil, speed, squared, v, size)[None]
+        v, squared = solve_lower_transposed(L, x) / np.sqrt(mu), 1 / mu
+        by_matrices = rounding_of_factored(self.pencil, speed, squared, v)
+        found = squared[None], np.abs(v)[None], by_matrices[None]
         rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)[0]
         return 1j / np.sqrt(mu), v, rounding
 
-    def _transformed(self, L: np.ndarray, A: np.ndarray) -> LinearOperator:
-        """The operator L^-1 A L^-T."""
+    def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Largest eigenvalues (k,) of L^-1 M L^-T, descending, and their vectors (n, k)."""
 
         def product(x: np.ndarray) -> np.ndarray:
             half = solve_lower_transposed(L, x.reshape(len(L), -1))
-            return solve_lower(L, A @ half).reshape(x.shape)
+            return solve_lower(L, self.pencil.M @ half).reshape(x.shape)
 
-        return self._operator(product, self.size)
-
-    def _largest(self, operator: LinearOperator, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Largest eigenvalues (k,), descending, and their vectors (n, k)."""
         start = np.random.default_rng(0).standard_normal(self.size)
+        operator = _operator(product, self.size)
         mu, x = eigsh(operator, count, which="LA", v0=start, tol=0, maxiter=_RESTARTS)
         order = np.argsort(-mu)
         return mu[order], x[:, order]
-
-    @staticmethod
-    def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearOperator:
-        return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
 
     # Gyroscopic and damped equations -----------------------------------------------------------------
 
     def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Lowest modes of M q'' + C q' + K q = 0, by the largest 1/s."""
         n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
-        factor = cho_factor(self._stiffness(speed))
+        factor = cho_factor(self.pencil.K0 + speed**2 * self.pencil.K2)
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
 
         def product(y: np.ndarray) -> np.ndarray:
@@ -151,10 +123,13 @@ class LargeSolver(Eigensolver):
 
         start = np.random.default_rng(0).standard_normal(2 * n)
         sought = 2 * (count + _MORE)
-        inverse, y = eigs(
-            self._operator(product, 2 * n), sought, which="LM", v0=start, tol=0, maxiter=_RESTARTS
-        )
+        operator = _operator(product, 2 * n)
+        inverse, y = eigs(operator, sought, which="LM", v0=start, tol=0, maxiter=_RESTARTS)
         s, q = select_lowest(inverse * time, y[:n], count)
         mass = np.sqrt(np.einsum("nk,nk->k", q.conj(), M @ q).real)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + self.size)
         return s, q / mass, rounding
+
+
+def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearOperator:
+    return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]

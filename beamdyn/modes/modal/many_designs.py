@@ -21,16 +21,16 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.rounding import BACKWARD
-from beamdyn.modes.modal.eigen import (
+from beamdyn.equations.equations_of_motion import BACKWARD
+from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,
-    explained,
     inverse_squares,
     rounding_of_matrices,
-    select_lowest,
     solve_diagonal,
 )
+from beamdyn.modes.modal.eigenproblem import explained
 from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_modes
+from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
 _MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
@@ -85,7 +85,7 @@ class ManyModes:
 class StackedSolver:
     """Eigensolver of a stack, in coordinates in which the stiffness of each is diagonal at every speed.
 
-    It does for each design what `beamdyn.modes.modal.eigen.Solver` does for one.
+    It does for each design what `beamdyn.modes.modal.eigenproblem.Solver` does for one.
 
     Parameters
     ----------
@@ -94,15 +94,16 @@ class StackedSolver:
     """
 
     def __init__(self, stack: PencilStack) -> None:
-        self.stack = stack
+        self.stack, K0, one = stack, stack.K0, np.eye(stack.K0.shape[-1])
         with explained():
-            inverse = _inverse_factor(stack.K0)
-        with explained():
-            self.growth, turned = np.linalg.eigh(
-                _symmetric(inverse @ stack.K2 @ np.swapaxes(inverse, -1, -2))
-            )
+            L = np.linalg.cholesky(K0)
+            one = np.broadcast_to(one, K0.shape)
+            inverse = solve_lower(L, one) if K0.ndim == 2 else np.linalg.solve(L, one)
+            turning = inverse @ stack.K2 @ np.swapaxes(inverse, -1, -2)
+            self.growth, turned = np.linalg.eigh((turning + np.swapaxes(turning, -1, -2)) / 2)
         self.basis = np.swapaxes(inverse, -1, -2) @ turned
-        self.mass = _symmetric(np.swapaxes(self.basis, 1, 2) @ stack.M @ self.basis)
+        mass = np.swapaxes(self.basis, 1, 2) @ stack.M @ self.basis
+        self.mass = (mass + np.swapaxes(mass, -1, -2)) / 2
 
     @cached_property
     def lowest_at_rest(self) -> np.ndarray:
@@ -115,8 +116,8 @@ class StackedSolver:
         terms = 1 + spin * np.abs(self.growth)[design]
         stiffness = 1 + spin * self.growth[design]
         with explained():
-            found = solve_diagonal(self.mass[design], stiffness, count, self.lowest_at_rest[design])
-        squared, z, rounding = found
+            lowest = self.lowest_at_rest[design]
+            squared, z, rounding = solve_diagonal(self.mass[design], stiffness, count, lowest)
         size = np.abs(self.basis[design] @ z)
         rounding = rounding + rounding_of_matrices(terms, squared, z, size, np.abs(self.stack.M)[design])
         return squared, np.where(squared == 0, np.inf, rounding)
@@ -141,8 +142,11 @@ class StackedSolver:
         time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]  # a unit in which frequencies are some 1
         stiffness = (1 + spin * self.growth[design])[:, :, None]
         n = stiffness.shape[1]
+        # Square roots of the mass: damping at a ratio of 1/2, as the stiffness at rest is 1.
+        value, vector = np.linalg.eigh(self.mass)
+        root = (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
         B = np.zeros((len(design), 2 * n, 2 * n))
-        B[:, :n, :n] = -2 * ratio[design, None, None] * self._root_of_mass[design] / (time * stiffness)
+        B[:, :n, :n] = -2 * ratio[design, None, None] * root[design] / (time * stiffness)
         B[:, :n, n:] = -self.mass[design] / (time**2 * stiffness)
         B[:, n:, :n] = np.eye(n)
         with explained():
@@ -150,12 +154,6 @@ class StackedSolver:
         s = np.array([select_lowest(each, np.empty((0, 2 * n)), count)[0] for each in inverse])
         terms = (1 + spin * np.abs(self.growth)[design]).max(axis=1) / np.abs(stiffness[:, :, 0]).min(axis=1)
         return s, 8 * _EPS * (np.abs(s) * np.abs(inverse).max(axis=1)[:, None] + terms[:, None])
-
-    @cached_property
-    def _root_of_mass(self) -> np.ndarray:
-        """Square roots (N, n, n) of the mass: damping at a ratio of 1/2, as the stiffness at rest is 1."""
-        value, vector = np.linalg.eigh(self.mass)
-        return (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
 
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
@@ -311,16 +309,6 @@ def speeds_of_meeting(
     return np.where(exists, np.sqrt(squared), np.inf), np.where(exists, error, np.inf), relative
 
 
-def _inverse_factor(K: np.ndarray) -> np.ndarray:
-    """The inverse of the lower Cholesky factor of K (n, n), or of each (N, n, n)."""
-    L, one = np.linalg.cholesky(K), np.eye(K.shape[-1])
-    return solve_lower(L, one) if K.ndim == 2 else np.linalg.solve(L, np.broadcast_to(one, K.shape))
-
-
 def _rows(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Design (N S,) and squared speed (N S, 1) of each problem."""
     return np.repeat(np.arange(len(speeds)), speeds.shape[1]), speeds.reshape(-1, 1) ** 2
-
-
-def _symmetric(A: np.ndarray) -> np.ndarray:
-    return (A + np.swapaxes(A, -1, -2)) / 2

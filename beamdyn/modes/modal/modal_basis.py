@@ -7,13 +7,14 @@ speed together reproduce the frequencies at both, and nearly those between.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import count
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modes.modal.eigen import Solver
+from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.scene.motion import Motion
 
 FEWEST_MODES = 2  # size of the first basis where no number is given
@@ -81,14 +82,10 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
     for names in equations.coupled:
         places = equations.places(names)
         shapes = span_modes(pencil.part(places).undamped(), count, basis.speeds)
-        bases[names] = shapes * _signs(equations.tips[:, places] @ shapes)
+        tips = equations.tips[:, places] @ shapes
+        larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
+        bases[names] = shapes * np.where(larger < 0, -1.0, 1.0)
     return equations.reduced(bases)
-
-
-def _signs(tips: np.ndarray) -> np.ndarray:
-    """Signs (m,) by which the larger of the tip deflections (directions, m) becomes positive."""
-    larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
-    return np.where(larger < 0, -1.0, 1.0)
 
 
 def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
@@ -120,22 +117,14 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
 
 def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """Combine shapes in columns to as many as are independent, orthonormal in the mass."""
-    try:
+    with suppress(np.linalg.LinAlgError):
         L = np.linalg.cholesky(M)
-    except np.linalg.LinAlgError:
-        return _orthonormal_of_massless(M, shapes)
-    pivots = np.diag(L) ** 2
-    if pivots.min() < _MASSLESS * pivots.max():
-        return _orthonormal_of_massless(M, shapes)
-    directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
-    return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
-
-
-def _orthonormal_of_massless(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """The same for a mass that is singular, as that of bending and shear without rotary inertia is.
-
-    The mass does not tell how much of a deflection is shear: only combinations of the given shapes do.
-    """
+        pivots = np.diag(L) ** 2
+        if pivots.min() >= _MASSLESS * pivots.max():
+            directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
+            return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
+    # The mass is singular, as that of bending and shear without rotary inertia: it does not tell how much of
+    # a deflection is shear, only combinations of the given shapes do.
     values, vectors = np.linalg.eigh(M)
     root = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
     _, size, weights = np.linalg.svd(root @ shapes, full_matrices=False)

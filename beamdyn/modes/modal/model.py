@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.equations_of_motion import Equations, assemble_equations
-from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.uncoupled import solver_of, solver_over
+from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
     from beamdyn.equations.elastica import Elastica
-    from beamdyn.modes.modal.deflected import DeflectedSolver
+    from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
 
 @dataclass(frozen=True)
@@ -43,17 +44,17 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam."""
-        return assemble_equations(self.scene, self.discretization)
+        return assemble_over(self.scene, self.discretization.spaces(self.scene.modelled_beam))
 
     @cached_property
     def solver(self) -> Eigensolver:
         """Solver of the eigenproblem at steady speeds."""
-        return solver_of(self.equations) if self.elastica is None else self._deflected
+        return self._deflected if self.scene.physics.large_deflection else solver_of(self.equations)
 
     @cached_property
     def _deflected(self) -> DeflectedSolver:
-        """That of equations for deflections of any size."""
-        from beamdyn.modes.modal.deflected import (
+        """Solver of equations for deflections of any size."""
+        from beamdyn.modes.modal.equilibrium import (
             DeflectedSolver,  # here, for the time that it takes to import
         )
 
@@ -72,9 +73,9 @@ class Model(FieldsOnly):
     @cached_property
     def coarse_solver(self) -> Eigensolver:
         """Solver of the coarser model: where functions of this one span its own, over these."""
-        if self.elastica is not None or self.equations.coarse is None:
+        if self.scene.physics.large_deflection or self.equations.coarse is None:
             return self.coarser.solver
-        return solver_over(self.equations, self.equations.coarse)
+        return solver_of(self.equations, self.equations.coarse)
 
     @property
     def exceeds_coarser(self) -> bool:
@@ -91,13 +92,13 @@ class Model(FieldsOnly):
 
     def equations_at(self, speed: float) -> Equations:
         """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
-        if self.elastica is None:
+        if not self.scene.physics.large_deflection:
             return self.equations
         return self._deflected.equations(np.array([speed]))[0]
 
     def static_tips(self, speeds: np.ndarray) -> np.ndarray:
         """Static deflections of the tip at steady speeds [rad/s] in each direction [m], shape (S, planes)."""
-        if self.elastica is None:
+        if not self.scene.physics.large_deflection:
             return self.solver.solve_static(speeds, self.equations.tips)
         return self._deflected.tips(speeds)
 
@@ -118,12 +119,9 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     """
     if equations.planes == 1:
         return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
-    energy = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
-    by_plane = [energy[:, _coordinates(equations, direction)].sum(axis=1) for direction in (0, 1)]
-    total = by_plane[0] + by_plane[1]
-    return np.stack(by_plane, axis=2) / np.where(total == 0, 1.0, total)[..., None]
-
-
-def _coordinates(equations: Equations, direction: int) -> np.ndarray:
-    """Indices of the coordinates, before a reduction, that deflect the beam in a direction."""
-    return equations.places(n for n, d in equations.deflections.items() if d.direction == direction)
+    energy, planes = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors)), [[], []]
+    for name, deflection in equations.deflections.items():
+        planes[deflection.direction].append(name)
+    first, second = (energy[:, equations.places(names)].sum(axis=1) for names in planes)
+    total = first + second
+    return np.stack([first, second], axis=2) / np.where(total == 0, 1.0, total)[..., None]

@@ -8,13 +8,13 @@ rounding, there are more points, and then the interval is halved, down to a few 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from beamdyn.common.assignment import assign
-from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 
 _FEW = 160  # speeds that are solved each
 _INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
@@ -28,6 +28,8 @@ Solve = Callable[[np.ndarray], Eigen]  # modes at given speeds
 
 def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
     """Compute the `count` lowest modes at speeds (S,) [rad/s], as `Eigensolver.solve` does."""
+    if len(speeds) <= _FEW or solver.pencil.C.any():
+        return solver.solve(speeds, count)
     return _solve_over(solver, speeds, lambda some: solver.solve(some, count))
 
 
@@ -35,30 +37,26 @@ def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int)
     """Compute the eigenvalues of the `count` lowest modes at speeds (S,), shape (S, count)."""
     if len(speeds) <= _FEW:
         return solver.eigenvalues(speeds, count)
-    return _solve_over(solver, speeds, lambda some: _without_modes(solver.solve(some, count))).eigenvalue
 
+    def solve(some: np.ndarray) -> Eigen:
+        found = solver.solve(some, count)
+        return Eigen(found.eigenvalue, found.vector[:, :0], found.rounding)
 
-def _without_modes(eigen: Eigen) -> Eigen:
-    """The same eigenvalues with modes of no coordinates."""
-    return Eigen(eigen.eigenvalue, eigen.vector[:, :0], eigen.rounding)
+    return (solve(speeds) if solver.pencil.C.any() else _solve_over(solver, speeds, solve)).eigenvalue
 
 
 def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    if len(speeds) <= _FEW or solver.pencil.C.any():
-        return solve(speeds)
-    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
-    found = _solve_ascending(solver, sizes, solve)
-    if len(sizes) < len(speeds) or (speeds < 0).any():
-        found = Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
-    return _turn_round(found, speeds, solve) if np.iscomplexobj(found.vector) else found
+    """Modes of an undamped beam: gyroscopic ones have the conjugate vectors in the other sense of rotation.
 
-
-def _turn_round(found: Eigen, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Gyroscopic modes at speeds of either sign, by those at their sizes: the other sense has the conjugate.
-
-    Of a mode that grows it has the one that decays, which was not found: such speeds are solved each.
+    Of a mode that grows the other sense has the one that decays, which was not found: such speeds are solved
+    each.
     """
-    backwards = speeds < 0
+    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
+    found, backwards = _solve_ascending(solver, sizes, solve), speeds < 0
+    if len(sizes) < len(speeds) or backwards.any():
+        found = Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
+    if not np.iscomplexobj(found.vector):
+        return found
     vector = np.where(backwards[:, None, None], found.vector.conj(), found.vector)
     turned = Eigen(found.eigenvalue.copy(), vector, found.rounding.copy())
     growing = backwards & (np.real(found.eigenvalue) != 0).any(axis=1)
@@ -70,30 +68,30 @@ def _turn_round(found: Eigen, speeds: np.ndarray, solve: Solve) -> Eigen:
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """The same at ascending speeds of 0 or more."""
+    """Modes at ascending speeds of 0 or more, by ever more Chebyshev points: each time half are known.
+
+    Without gyroscopic terms modes are smooth functions of the squared speed, else of the speed.
+    """
     if len(speeds) <= _FEW:
         return solve(speeds)
-    for eigen in _solve_at_nodes(speeds[0], speeds[-1], _power(solver), solve):
-        if (found := _interpolate(solver, eigen, speeds)) is not None:
+    power = 2 if solver.conservative else 1
+    known, (low, high) = None, speeds[[0, -1]] ** power
+    for intervals in _INTERVALS:
+        nodes = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
+        if known is None:
+            known = solve(nodes)
+        else:
+            between, places = solve(nodes[1::2]), np.arange(1, len(known.eigenvalue))
+            known = Eigen(
+                np.insert(known.eigenvalue, places, between.eigenvalue, axis=0),
+                np.insert(known.vector, places, between.vector, axis=0),
+                np.insert(known.rounding, places, between.rounding, axis=0),
+            )
+        if (found := _interpolate(solver, known, speeds, power)) is not None:
             return found
     parts = [_solve_ascending(solver, part, solve) for part in np.array_split(speeds, 2)]
     joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
     return Eigen(*map(np.concatenate, joined))
-
-
-def _solve_at_nodes(slowest: float, fastest: float, power: int, solve: Solve) -> Iterator[Eigen]:
-    """Solve at ever more Chebyshev points, of which each time half are known."""
-    known: Eigen | None = None
-    low, high = slowest**power, fastest**power
-    for intervals in _INTERVALS:
-        speeds = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
-        known = solve(speeds) if known is None else _interleave(known, solve(speeds[1::2]))
-        yield known
-
-
-def _power(solver: Eigensolver) -> int:
-    """Power of the speed of which the modes are smooth functions."""
-    return 2 if solver.conservative else 1
 
 
 def _nodes(intervals: int) -> np.ndarray:
@@ -101,27 +99,19 @@ def _nodes(intervals: int) -> np.ndarray:
     return -np.cos(np.pi * np.arange(intervals + 1) / intervals)
 
 
-def _interleave(first: Eigen, between: Eigen) -> Eigen:
-    """Put the modes at speeds between others in their places."""
-    places = np.arange(1, len(first.eigenvalue))
-    return Eigen(
-        np.insert(first.eigenvalue, places, between.eigenvalue, axis=0),
-        np.insert(first.vector, places, between.vector, axis=0),
-        np.insert(first.rounding, places, between.rounding, axis=0),
-    )
-
-
-def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen | None:
+def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: int) -> Eigen | None:
     """The modes at ascending speeds by those at Chebyshev points; None where these are too few."""
     if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter
         return None
-    power, (points, count) = _power(solver), eigen.eigenvalue.shape
+    points, count = eigen.eigenvalue.shape
     (low, high), t = speeds[[0, -1]] ** power, _nodes(points - 1)
     squared, vector = np.real(-(eigen.eigenvalue**2)), _align(eigen.vector, solver.pencil.M)
     at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     series = np.linalg.solve(chebyshev.chebvander(t, points - 1), at_nodes)
     misfit = np.abs(series[-(points // _HIGHEST) :]).sum(axis=0)
-    of_squares = _divide(misfit[:count], np.abs(squared).min(axis=0))
+    # Relative misfits: 0 of what is 0 at all speeds; inf of what is 0 at one of them and misses others.
+    size, of_squares = np.abs(squared).min(axis=0), np.where(misfit[:count] > 0, np.inf, 0.0)
+    np.divide(misfit[:count], size, out=of_squares, where=size > 0)
     of_modes = misfit[count:].max(initial=0.0) <= _MISFIT_OF_MODES * np.abs(vector).max(initial=0.0)
     if not (of_modes and (of_squares <= _MISFIT + eigen.rounding.min(axis=0)).all()):
         return None
@@ -133,11 +123,6 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray) -> Eigen
         vector=values[:, count:].reshape(len(speeds), -1, count),
         rounding=np.tile(_LEBESGUE * eigen.rounding.max(axis=0) + of_squares, (len(speeds), 1)),
     )
-
-
-def _divide(misfit: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Relative misfits: 0 of what is 0 at all speeds; inf of what is 0 at one of them and misses others."""
-    return np.divide(misfit, size, out=np.where(misfit > 0, np.inf, 0.0), where=size > 0)
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
@@ -173,12 +158,16 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
         is certain, 0 or less a guess.
     """
     weighted = mass @ vectors
-    squares = _squared_norms(vectors, weighted)
+    squares = np.einsum("snk,snk->sk", vectors.conj(), weighted).real
+    squares = np.where(np.abs(squares - 1) < _NORMALIZED, 1.0, squares)
     mac = np.abs(np.swapaxes(vectors[:-1].conj(), 1, 2) @ weighted[1:]) ** 2
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = _assign(mac)
+    successor = mac.argmax(axis=2)  # of each mode, with the largest sum of MACs
+    unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
+    for s in np.flatnonzero(~unique):
+        successor[s] = assign(-mac[s])
     for s in np.flatnonzero((successor != np.arange(k)).any(axis=1)):
         order[s + 1 :] = successor[s][order[s]]  # holds until the next exchange
     matched = np.take_along_axis(mac, successor[:, :, None], axis=2)[:, :, 0]
@@ -187,18 +176,3 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     margin = matched - others.max(axis=2, initial=0.0)
     confidence[1:] = np.take_along_axis(margin, order[:-1], axis=1)
     return order, confidence
-
-
-def _squared_norms(vectors: np.ndarray, weighted: np.ndarray) -> np.ndarray:
-    """Squared norms (S, k) by the mass of vectors that are not mass-normalised to rounding; else 1."""
-    squares = np.einsum("snk,snk->sk", vectors.conj(), weighted).real
-    return np.where(np.abs(squares - 1) < _NORMALIZED, 1.0, squares)
-
-
-def _assign(mac: np.ndarray) -> np.ndarray:
-    """Assign to each mode (row) its successor (column) at the next speed, by the largest sum of MACs."""
-    best = mac.argmax(axis=2)
-    unique = (np.sort(best, axis=1) == np.arange(mac.shape[2])).all(axis=1)
-    for s in np.flatnonzero(~unique):
-        best[s] = assign(-mac[s])
-    return best

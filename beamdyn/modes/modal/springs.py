@@ -10,8 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.triangular import solve_lower
-from beamdyn.equations.equations_of_motion import SteadyPencil
-from beamdyn.equations.rounding import BACKWARD, ROUNDING_SIZE
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
 _LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
@@ -55,21 +54,18 @@ def remove_shift(
     quotient = np.einsum("snk,snk->sk", v, K @ v)
     count = max(1.0, len(K[0]) / ROUNDING_SIZE)
     lost = count * BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
-    # The quotient has the error of the vector squared.
-    lost += pencil.shift * (count * BACKWARD + _EPS * _graded_condition(pencil)) ** 2
+    # The quotient has the error of the vector squared, which the condition of the shifted stiffness at rest
+    # with a unit diagonal magnifies: large with many elements.
+    shifted = pencil.K0 + pencil.shift * pencil.M
+    scale = 1 / np.sqrt(np.diag(shifted))
+    values = np.linalg.eigvalsh(scale[:, None] * shifted * scale)
+    condition = float(values[-1] / max(values[0], _EPS))
+    lost += pencil.shift * (count * BACKWARD + _EPS * condition) ** 2
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
     removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
-
-
-def _graded_condition(pencil: SteadyPencil) -> float:
-    """Condition number of the shifted stiffness at rest with a unit diagonal: large with many elements."""
-    K = pencil.K0 + pencil.shift * pencil.M
-    scale = 1 / np.sqrt(np.diag(K))
-    values = np.linalg.eigvalsh(scale[:, None] * K * scale)
-    return float(values[-1] / max(values[0], _EPS))
 
 
 def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -109,12 +105,6 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
     """
     damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
     return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
-
-
-def leave_out_slowest(inverse: np.ndarray, y: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
-    """Leave out a number of the smallest eigenvalues of 1/s (m,) and vectors (n, m)."""
-    kept = np.sort(np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - number])
-    return inverse[kept], y[:, kept]
 
 
 def insert_free_turns(
@@ -184,7 +174,9 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
     squared = 1 / np.abs(growth).max()
     while squared > _SMALLEST_TRIAL / np.abs(growth).max():
         stiffness = at_rest + squared * spin
-        if lowest := _lowest_if_definite(stiffness):
+        values = np.linalg.eigvalsh(stiffness)
+        lowest = float(values[0])
+        if lowest > len(growth) * _EPS * values[-1]:  # definite beyond rounding
             loss = float(scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1])
             lost = 2 * BACKWARD * float(np.abs(growth).max()) / lowest
             if loss <= lost:
@@ -194,12 +186,6 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
     turn = np.linalg.eigh(at_rest)[1][:, 0]
     softened = turn @ spin @ turn < -len(growth) * _EPS * np.abs(growth).max()
     return (np.inf, 0.0) if softened else (0.0, np.inf)
-
-
-def _lowest_if_definite(A: np.ndarray) -> float:
-    """Lowest eigenvalue of a symmetric matrix; 0 if it is not positive beyond rounding."""
-    values = np.linalg.eigvalsh(A)
-    return float(values[0]) if values[0] > len(A) * _EPS * values[-1] else 0.0
 
 
 def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float] | None:
@@ -232,17 +218,3 @@ def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
     except np.linalg.LinAlgError:
         return np.full(len(K), np.nan if speed else 0.0)
     return scipy.linalg.cho_solve(factor, speed**2 * pencil.f2)
-
-
-def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
-
-    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
-    """
-    n, zero = len(M), np.zeros_like(M)
-    A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
-    s, y = scipy.linalg.eig(A, B)
-    finite = np.isfinite(s)
-    s, y = s[finite], y[:, finite]
-    least = _EPS * np.abs(s).max()
-    return 1 / np.where(np.abs(s) < least, 1j * least, s), y

@@ -8,31 +8,22 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modes.modal.eigen import Solver
-from beamdyn.modes.modal.eigensolver import Eigen, Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver
 
 LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
 
-def solver_of(equations: Equations) -> Eigensolver:
-    """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart."""
-    return _solver_of_parts(equations.steady(), _parts(equations))
+def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Eigensolver:
+    """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart.
 
-
-def solver_over(equations: Equations, coordinates: np.ndarray) -> Eigensolver:
-    """Eigensolver of the same equations over some, ascending, of their coordinates: the others are 0."""
-    place = np.full(equations.size, -1)
-    place[coordinates] = np.arange(len(coordinates))
-    remaining = [places[places >= 0] for places in (place[part] for part in _parts(equations))]
-    return _solver_of_parts(equations.steady().part(coordinates), remaining)
-
-
-def _parts(equations: Equations) -> list[np.ndarray]:
-    """Coordinates of each uncoupled part."""
-    return [equations.places(names) for names in equations.connected]
-
-
-def _solver_of_parts(pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> Eigensolver:
+    Where some coordinates, ascending, are given, the others are 0.
+    """
+    pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
+    if coordinates is not None:
+        place = np.full(equations.size, -1)
+        place[coordinates] = np.arange(len(coordinates))
+        parts = [places[places >= 0] for places in (place[part] for part in parts)]
+        pencil = pencil.part(coordinates)
     return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
 
 
@@ -47,7 +38,7 @@ def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
 
 
 class UncoupledSolver(Eigensolver):
-    """Eigensolver that solves the parts of a pencil apart.
+    """Eigensolver that solves parts of a pencil apart, such as two planes of a straight beam.
 
     Parameters
     ----------
@@ -58,9 +49,8 @@ class UncoupledSolver(Eigensolver):
     """
 
     def __init__(self, pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> None:
-        self.pencil = pencil
-        self.parts = tuple(parts)
-        self.solvers = tuple(_solver_of_part(pencil.part(part)) for part in parts)
+        super().__init__(pencil)
+        self.parts, self.solvers = tuple(parts), tuple(_solver_of_part(pencil.part(part)) for part in parts)
 
     @cached_property
     def lowest_at_rest(self) -> float:
@@ -69,22 +59,22 @@ class UncoupledSolver(Eigensolver):
 
     @property
     def softening(self) -> float:
-        """That of the softest part."""
-        return self._softest.softening
+        """The largest of all parts."""
+        return max(solver.softening for solver in self.solvers)
 
     @property
     def critical_rounding(self) -> float:
-        """That of the softest part."""
-        return self._softest.critical_rounding
-
-    @property
-    def _softest(self) -> Eigensolver:
-        return max(self.solvers, key=lambda solver: solver.softening)
+        """Rounding error of the softest part."""
+        return max(self.solvers, key=lambda solver: solver.softening).critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """The lowest of the modes of all parts."""
         found = [solver.solve(speeds, min(count, solver.size)) for solver in self.solvers]
-        vectors = [self._embed(part, eigen.vector) for part, eigen in zip(self.parts, found, strict=True)]
+        vectors = []
+        for part, eigen in zip(self.parts, found, strict=True):
+            embedded = np.zeros((len(speeds), self.size, eigen.vector.shape[2]), dtype=eigen.vector.dtype)
+            embedded[:, part] = eigen.vector
+            vectors.append(embedded)
         eigenvalue, rounding, vector = (
             np.concatenate(values, axis=-1)
             for values in ([e.eigenvalue for e in found], [e.rounding for e in found], vectors)
@@ -106,12 +96,6 @@ class UncoupledSolver(Eigensolver):
         """The sums of what the parts contribute."""
         each = zip(self.parts, self.solvers, strict=True)
         return np.sum([solver.solve_static(speeds, outputs[:, part]) for part, solver in each], axis=0)
-
-    def _embed(self, part: np.ndarray, vector: np.ndarray) -> np.ndarray:
-        """Vectors (S, n, k) over all coordinates, from those over a part."""
-        embedded = np.zeros((len(vector), self.size, vector.shape[2]), dtype=vector.dtype)
-        embedded[:, part] = vector
-        return embedded
 
 
 def _order(eigenvalue: np.ndarray) -> np.ndarray:

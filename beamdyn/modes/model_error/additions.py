@@ -82,19 +82,14 @@ def _assume_shear(beam: Beam) -> Beam | None:
 
     The shear stiffness of a rectangle lies within 28 % of that assumed, for Poisson's ratios from 0 to 0.5.
     """
-    if beam.shear_stiffness is not None or beam.axial_stiffness is None or not _is_rectangular(beam):
+    if beam.shear_stiffness is not None or beam.axial_stiffness is None or beam.outer_fibre is None:
+        return None
+    xi = np.linspace(0, 1, 33)  # of rectangles of outer fibre h/2, EI = EA h^2 / 12
+    gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
+    if not np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0):
         return None
     stiffness = shear_stiffness_of_rectangle(beam.axial_stiffness, ASSUMED_POISSONS_RATIO)
     return replace(beam, shear_stiffness=stiffness, second_shear_stiffness=stiffness)
-
-
-def _is_rectangular(beam: Beam) -> bool:
-    """Whether stiffnesses and outer fibre h/2 are those of rectangles: EI = EA h^2 / 12."""
-    if beam.axial_stiffness is None or beam.outer_fibre is None:
-        return False
-    xi = np.linspace(0, 1, 33)
-    gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
-    return bool(np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0))
 
 
 def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:

@@ -25,8 +25,13 @@ from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.static_load import bends
 from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.left_out_changes import (
+    EXCLUDED,
+    left_out_of_modes,
+    vibrate,
+    without_large_deflection,
+)
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.of_modes import EXCLUDED, left_out_of_modes, vibrate, without_large_deflection
 from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
@@ -109,7 +114,7 @@ def choose_physics(
             candidate.physics.large_deflection
         ):  # then others are judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        return judged_by(candidate, effects, counts, _rough_size(found.model, some))
+        return _judged_by(candidate, effects, counts, _rough_size(found.model, some))
 
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
@@ -134,12 +139,15 @@ def plain_physics(scene: Scene) -> Scene:
     return replace(scene, physics=Physics()) if scene.chooses_physics else scene
 
 
-def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
+def _judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
     """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
 
     An effect that turns modes into others can be added: that its size is not known is no reason against it.
     """
-    sizes = {name: _size(change, counts) for name, change in effects.changes.items()}
+    sizes = {}  # inf if one of the values that count is not known, nan if none counts
+    for name, change in effects.changes.items():
+        counted = np.abs(change[np.broadcast_to(counts, change.shape)])
+        sizes[name] = float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
     sizes |= {name: math.nan for name in effects.not_known if name not in sizes}
     if _BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[_BENDING])):
         sizes[_BENDING] = rough
@@ -151,12 +159,6 @@ def judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: 
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return EffectSizes(sizes, nothing | assumed | refused)
-
-
-def _size(change: np.ndarray, counts: np.ndarray) -> float:
-    """Largest change of the values that count; inf if one is not known, nan if none counts."""
-    counted = np.abs(change[np.broadcast_to(counts, change.shape)])
-    return float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
 
 
 def _rough_size(model: Model, speeds: np.ndarray) -> float:
@@ -270,14 +272,12 @@ class _Candidate:
         """
         scene = add_effects(self.scene, [NAMED[name]])
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
-        left_out = {o: self._judged_again(o, judged) for o in self.left_out if o not in included}
+        left_out = {}
+        for other in (name for name in self.left_out if name not in included):
+            size = judged.sizes.get(other, math.nan)  # as before where it is not known any more
+            rough = other == _BENDING and other in judged.reasons
+            left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
-
-    def _judged_again(self, name: str, judged: EffectSizes) -> float:
-        """Size of an effect, as before where it is not known any more."""
-        size = judged.sizes.get(name, math.nan)
-        rough = name == _BENDING and name in judged.reasons
-        return self.left_out[name] if rough or math.isnan(size) else size
 
 
 def choose_by(
@@ -314,7 +314,9 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            best = min(best, _bent(start, judge, tolerance), key=lambda candidate: candidate.model_error)
+            bent = start.add(_BENDING, judge)  # and what it is combined with
+            bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
+            best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
@@ -333,12 +335,6 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
             candidate = candidate.without(largest, reason_of(error))
 
 
-def _bent(start: _Candidate, judge: Judge, tolerance: float) -> _Candidate:
-    """The scene with large deflection and what that is combined with; raises what `add` does."""
-    bent = start.add(_BENDING, judge)
-    return _grow(bent, judge, tolerance, {name for name in bent.left_out if not NAMED[name].bends})
-
-
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
@@ -347,23 +343,23 @@ def _describe(
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without
     together = _cost(best.scene, solve) / without if len(costs) > 1 else [*costs.values(), np.ones(2)][0]
+
+    def by_size(effect: JudgedEffect) -> tuple[bool, float]:
+        """The largest first, those of unknown size last."""
+        return math.isnan(effect.size), -effect.size
+
     included = [JudgedEffect(n, size, True, "", *costs[n].tolist()) for n, size in best.included.items()]
     left_out = [JudgedEffect(n, s, False, _why(n, best, tolerance)) for n, s in best.left_out.items()]
     return PhysicsChoice(
         physics=best.scene.physics,
         tolerance=tolerance,
         speeds=tuple(speeds.tolist()),
-        effects=(*_by_size(included), *_by_size(left_out)),
+        effects=(*sorted(included, key=by_size), *sorted(left_out, key=by_size)),
         model_error=best.model_error,
         time=float(together[0]),
         coordinates=float(together[1]),
         not_modelled=list_effects(plain)[2],
     )
-
-
-def _by_size(effects: list[JudgedEffect]) -> list[JudgedEffect]:
-    """The largest first, those of unknown size last."""
-    return sorted(effects, key=lambda effect: (math.isnan(effect.size), -effect.size))
 
 
 def _why(name: str, best: _Candidate, tolerance: float) -> str:

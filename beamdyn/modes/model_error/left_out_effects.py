@@ -86,21 +86,18 @@ class LeftOutEffects:
         parts: list[str] = [
             joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
         ]
-        if self.not_known:
-            parts.append(Words("not known: ", joined(", ", self._say_not_known(where, speeds))))
-        if self.not_modelled:
-            parts.append(f"not modelled: {', '.join(self.not_modelled)}")
-        begin = ("left out ", where) if where else ("left out",)
-        return Words(*begin, ": ", joined("; ", parts))
-
-    def _say_not_known(self, where: str, speeds: np.ndarray | None) -> Iterator[str]:
-        """The effects that are not known, those of one reason together."""
-        reasons: dict[str, list[str]] = {}
+        reasons: dict[str, list[str]] = {}  # effects of one reason are named together
         for name, why in self.not_known.items():
             place = self.where_unknown(name, speeds)
             full = why if not place or place == where else Words(why, "; ", place)
             reasons.setdefault(full, []).append(name)
-        yield from (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
+        if reasons:
+            said = (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
+            parts.append(Words("not known: ", joined(", ", said)))
+        if self.not_modelled:
+            parts.append(f"not modelled: {', '.join(self.not_modelled)}")
+        begin = ("left out ", where) if where else ("left out",)
+        return Words(*begin, ": ", joined("; ", parts))
 
     def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
         """The speeds at which a change is not known; empty if these are not given, or none is known."""
@@ -110,27 +107,22 @@ class LeftOutEffects:
         unknown = np.asarray(np.isnan(change).reshape(len(change), -1).any(axis=1))
         return Words("at ", list_speeds(speeds, unknown)) if unknown.any() else ""
 
-    def _where_largest(self, name: str, speeds: np.ndarray | None) -> str:
-        change = self.changes[name]
-        if speeds is None or abs(_largest(change)) < _NEGLIGIBLE:
-            return ""
-        first = int(np.nanargmax(np.abs(change))) // (change.size // len(change))
-        return Words("at ", Speeds(speeds[first]))
-
     def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
+        """The largest change by each effect, with the number of its value and the speed."""
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
-            place = self._where_largest(name, speeds)
-            notes = [self._say_mode(name, what), place if place != where else "", self.assumed.get(name, "")]
-            note = joined(", ", filter(None, notes))
-            said = f"{name} {say_change(_largest(known[name]))}"
+            change, notes = known[name], []
+            if abs(_largest(change)) >= _NEGLIGIBLE:
+                first = int(np.nanargmax(np.abs(change)))
+                if what and change.ndim and change.shape[-1] > 1:
+                    notes.append(f"{what} {first % change.shape[-1] + 1}")
+                place = ""
+                if speeds is not None:
+                    place = Words("at ", Speeds(speeds[first // (change.size // len(change))]))
+                notes.append(place if place != where else "")
+            note = joined(", ", filter(None, [*notes, self.assumed.get(name, "")]))
+            said = f"{name} {say_change(_largest(change))}"
             yield Words(said, " (", note, ")") if note else said
-
-    def _say_mode(self, name: str, what: str) -> str:
-        change = self.changes[name]
-        if not what or change.ndim == 0 or change.shape[-1] == 1 or abs(_largest(change)) < _NEGLIGIBLE:
-            return ""
-        return f"{what} {np.nanargmax(np.abs(change)) % change.shape[-1] + 1}"
 
     def warnings(
         self,
@@ -153,7 +145,12 @@ class LeftOutEffects:
         at_least = float(self.total_of_known.max(initial=0.0))
         if at_least > limit:
             begin = (where, " the model error") if where else ("the model error",)
-            said = *begin, f", {self._say_total(at_least)}, exceeds {say_size(limit)}: {self._say_largest()}"
+            partial = np.isnan(self.total[self.total_of_known == at_least]).any()
+            size = f"{'at least ' if partial else ''}{say_size(at_least)}, exceeds {say_size(limit)}"
+            largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
+            change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
+            said = f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
+            said = *begin, f", {size}: {said}"
             yield Statement(*said, kind=MODEL_ERROR, quantity="model error", value=at_least, limit=limit)
             return
         unknown: dict[tuple[str, str], list[str]] = {}
@@ -167,15 +164,6 @@ class LeftOutEffects:
                 why,
             )
             yield Statement(*begin, *end, kind=MODEL_ERROR, quantity="model error", limit=limit)
-
-    def _say_total(self, size: float) -> str:
-        where = self.total_of_known == size
-        return f"{'at least ' if np.isnan(self.total[where]).any() else ''}{say_size(size)}"
-
-    def _say_largest(self) -> str:
-        largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
-        change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
-        return f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
 
 
 def _largest(change: np.ndarray) -> float:

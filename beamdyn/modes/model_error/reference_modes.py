@@ -18,16 +18,20 @@ import scipy.linalg
 from scipy.linalg.lapack import zgetrf, zgetrs
 
 from beamdyn.common.assignment import assign
+from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
-from beamdyn.equations.equations_of_motion import Equations, SteadyPencil, assemble_over
-from beamdyn.modes.modal.eigen import Eigen
-from beamdyn.modes.modal.eigensolver import Eigensolver
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 _MOST = 160  # coordinates of a model: an estimate of a change needs no more
-_EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
+_APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
+_STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
+_CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
+KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
+EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 
 
 @dataclass(frozen=True)
@@ -62,10 +66,6 @@ class BaseEquations:
             return cls(model.scene, spaces, model.equations)
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
-    def pencil(self) -> SteadyPencil:
-        """The equations at steady speed."""
-        return self.equations.steady()
-
     def extend(self, scene: Scene) -> Equations:
         """The equations of the scene with an effect, over the same spaces."""
         return assemble_over(scene, self.spaces)
@@ -83,11 +83,10 @@ class BaseEquations:
 
     def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Eigenvalues (m,) and modes (n, m) of these equations, each the nearest to one that is given."""
-        count = min(len(eigenvalue) + _EXTRA_MODES, self._solver.size)
-        found: Eigen = self._solver.solve(np.array([speed]), count)
-        s, v = found.eigenvalue[0], found.vector[0]
-        order = assign(np.abs(eigenvalue[:, None] - s[None, :]))
-        return s[order], v[:, order]
+        count = min(len(eigenvalue) + EXTRA_MODES, self._solver.size)
+        found = self._solver.solve(np.array([speed]), count)
+        order = assign(np.abs(eigenvalue[:, None] - found.eigenvalue[0][None, :]))
+        return found.eigenvalue[0][order], found.vector[0][:, order]
 
 
 def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: int) -> np.ndarray:
@@ -110,22 +109,12 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
         Eigenvalues [1/s]; nan where no mode has more than half of the given one.
     """
     M, solver = equations.steady().M, solver_of(equations)
-    found: Eigen = solver.solve(np.array([speed]), min(count, solver.size))
+    found = solver.solve(np.array([speed]), min(count, solver.size))
     s, within = found.eigenvalue[0], found.vector[0]
     product = np.abs(vectors.conj().T @ M @ within) ** 2
-    kept = product / np.outer(_squares(M, vectors), _squares(M, within))
+    squares = (np.einsum("nm,nm->m", v.conj(), M @ v).real for v in (vectors, within))
+    kept = product / np.outer(*squares)
     return np.where(kept.max(axis=1) > KEPT, s[kept.argmax(axis=1)], np.nan)
-
-
-def _squares(M: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Squared sizes (m,) of modes (n, m) by mass."""
-    return np.einsum("nm,nm->m", vectors.conj(), M @ vectors).real
-
-
-_APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
-_STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
-_CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
-KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
 
 
 def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -160,7 +149,13 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
     """The eigenvalue next to s, of mode x without the effect."""
     y, z, at = x.conj(), x, s
     for _ in range(_STEPS):
-        y, z = _improve(M, C, K, at * (1 + _APART), y, z)
+        # One step of inverse iteration of the left and the right vector; not finite where D is singular.
+        near = at * (1 + _APART)
+        derivative = 2 * near * M + C
+        factors, pivots, _ = zgetrf(near * near * M + near * C + K, overwrite_a=True)
+        z, _ = zgetrs(factors, pivots, derivative @ z)
+        y, _ = zgetrs(factors, pivots, derivative.T @ y, trans=1)
+        y, z = y / np.linalg.norm(y), z / np.linalg.norm(z)
         before, at = at, _root_near(s, *(complex(y @ A @ z) for A in (M, C, K)))
         if abs(at - before) <= _CONVERGED * abs(at - s) + _ROUNDING * abs(s):
             break
@@ -168,17 +163,6 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
             return complex(np.nan)
     kept = abs(x.conj() @ M @ z) ** 2 / abs((x.conj() @ M @ x) * (z.conj() @ M @ z))
     return at if kept > KEPT else complex(np.nan)
-
-
-def _improve(
-    M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, y: np.ndarray, z: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """One step of inverse iteration of the left and the right vector at s; not finite where D is singular."""
-    derivative = 2 * s * M + C
-    factors, pivots, _ = zgetrf(s * s * M + s * C + K, overwrite_a=True)
-    z, _ = zgetrs(factors, pivots, derivative @ z)
-    y, _ = zgetrs(factors, pivots, derivative.T @ y, trans=1)
-    return y / np.linalg.norm(y), z / np.linalg.norm(z)
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:

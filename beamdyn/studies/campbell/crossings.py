@@ -61,11 +61,6 @@ class LineCrossing:
     plane_share: tuple[float, float]
     operating: bool
 
-    @property
-    def second_mode(self) -> None:
-        """There is none: a line meets one frequency."""
-        return None
-
 
 @dataclass(frozen=True)
 class _Root:

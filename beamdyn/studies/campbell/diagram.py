@@ -20,12 +20,12 @@ from beamdyn.equations.directions import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.of_modes import nothing_known
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
-from beamdyn.steady.excitation_phases import distinct_lines, excitation_lines, periodic_system
-from beamdyn.steady.left_out_of_resonances import left_out_of_crossings
+from beamdyn.steady.crossings import left_out_of_crossings
+from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell.crossings import (
     LineCrossing,
     Margin,
@@ -132,9 +132,10 @@ class Campbell(StatesModelError):
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
             modes = locus.frequency.shape[1]
-            effects.append(
-                left_out_of_crossings(locus.model, own, modes) if own else nothing_known(locus.scene)
-            )
+            speeds = np.array([c.speed for c in own])
+            pairs = 2 * np.pi * np.array([[c.frequency] * 2 for c in own])  # of a single mode twice
+            known = left_out_of_crossings(locus.model, speeds, pairs, modes) if own else None
+            effects.append(known or nothing_known(locus.scene))
             sizes.append(len(own))
         if not sum(sizes):
             return effects[0]

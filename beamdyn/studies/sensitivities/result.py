@@ -238,7 +238,7 @@ class Sensitivities(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative change of each answer over that of each number, the most important on top."""
-        from beamdyn.common.plots.plots_over_inputs import plot_bars
+        from beamdyn.common.plots.curves import plot_bars
 
         names = [each.name for each in self.inputs]
         return plot_bars(names, self.relative, self.answers, "relative change over that of the number", ax)

@@ -6,8 +6,9 @@ estimated as those of frequencies are, by the same derivatives of the coarser mo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from beamdyn.modes.critical import critical_point
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.scene.numbers import SPEED
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
@@ -34,7 +36,6 @@ from beamdyn.studies.sensitivities.changes import (
 )
 from beamdyn.studies.sensitivities.result import SceneNumber, Sensitivities, check_names, numbers_of
 
-SPEED = "speed"
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
 _HZ = 1 / (2 * np.pi)
 
@@ -83,33 +84,27 @@ def frequency_sensitivities(
     >>> found.relative[:, 0].round(6)  # f ~ h / L^2
     array([-2.,  1.])
     """
-    start = perf_counter()
-    with_speed, names = _split_speed(inputs)
+    start, names = perf_counter(), check_names(inputs)
     with unannounced():
         found = natural_modes(scene, speed, modes, discretization, tolerance)
     model = _linear(found.model)
-    numbers = numbers_of(model.scene, names)
+    numbers = numbers_of(model.scene, names and [name for name in names if name != SPEED])
     changes = changes_of(model, numbers)
-    fine, coarse = _modes_of(model, found.speed, modes)
-    derivative, error = _frequency_derivatives(fine, coarse, changes)
-    if with_speed:
+    fine, _ = both = _modes_of(model, found.speed, modes)
+    derivative, error = _compared(changes, lambda k, dP: both[k].derivatives(dP), fine.scales(), np.imag, _HZ)
+    if names is None or SPEED in names:
         numbers = (*numbers, SceneNumber(SPEED, "rad/s", found.speed, 0.0))
-        by_speed, its_error = _speed_derivatives(fine, coarse, found)
-        derivative, error = np.vstack([derivative, by_speed]), np.vstack([error, its_error])
+        rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
+        with np.errstate(invalid="ignore"):  # of a mode that does not vibrate
+            of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
+        derivative = np.vstack([derivative, rate])
+        error = np.vstack([error, np.abs(rate - other) + of_shapes])
     lost, words = _without_derivative(found)
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)  # as derivatives are over the frequency
     derivative[:, lost], error[:, lost] = np.nan, np.inf
-    return Sensitivities(
-        answers=tuple(f"mode {k}" for k in range(1, modes + 1)),
-        unit="Hz",
-        value=found.frequency,
-        inputs=numbers,
-        derivative=derivative,
-        error=error,
-        warnings=(*found.warnings, *words, *changes.refusals),
-        provenance=_provenance(model, start),
-        scene=model.scene,
-    )
+    answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
+    warnings = (*found.warnings, *words, *changes.refusals)
+    return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
 
 
 def critical_speed_sensitivities(
@@ -158,23 +153,12 @@ def critical_speed_sensitivities(
     model = _linear(found.model)
     numbers = numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
-    pencils, speeds = _pencils(model), (model.solver.critical_speed, model.coarse_solver.critical_speed)
-    fine, coarse = (
-        _critical_derivatives(pencil, speed, of)
-        for pencil, speed, of in zip(pencils, speeds, changes.of, strict=True)
-    )
-    missed = np.abs(_critical_derivatives(pencils[0], speeds[0], changes.missed))
-    return Sensitivities(
-        answers=("critical speed",),
-        unit="rad/s",
-        value=np.array([found.speed]),
-        inputs=numbers,
-        derivative=fine,
-        error=np.abs(fine - coarse) + missed + changes.rounding[:, None] * found.speed,
-        warnings=(*found.warnings, *changes.refusals),
-        provenance=_provenance(model, start),
-        scene=model.scene,
-    )
+    speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
+    each = [(P, at, critical_vector(P, at)) for P, at in zip(_pencils(model), speeds, strict=True)]
+    derivative, error = _compared(changes, lambda k, dP: critical_derivative(*each[k], dP), found.speed)
+    answer = ["critical speed"], "rad/s", np.array([found.speed])
+    warnings = (*found.warnings, *changes.refusals)
+    return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
 
 
 def crossing_sensitivities(
@@ -226,34 +210,38 @@ def crossing_sensitivities(
     start, names = perf_counter(), check_names(inputs)
     with unannounced():
         crossings = resonance_speeds(scene, top_speed, modes, order, discretization)
-    scene = crossings.scene.undamped
-    model = _resolved(scene, top_speed, modes + 1, discretization)
+        scene = crossings.scene.undamped
+        model = _linear(natural_modes(scene, top_speed, modes + 1, discretization).model)
     numbers = numbers_of(scene, names)
     changes = changes_of(model, numbers)
-    rates = [_crossing_derivatives(model, changes, crossing, modes) for crossing in crossings]
-    derivative, error = (np.array([r[i] for r in rates]).reshape(len(rates), len(numbers)).T for i in (0, 1))
-    return Sensitivities(
-        answers=tuple(_name(crossing) for crossing in crossings),
-        unit="rad/s",
-        value=np.array([crossing.speed for crossing in crossings]),
-        inputs=numbers,
-        derivative=derivative,
-        error=error,
-        warnings=(*crossings.warnings, *changes.refusals),
-        provenance=_provenance(model, start),
-        scene=scene,
-    )
+    none = np.zeros((len(numbers), 0))
+    columns = [(none, none), *(_crossing_derivatives(model, changes, c, modes) for c in crossings)]
+    derivative, error = (np.hstack(parts) for parts in zip(*columns, strict=True))
+    answers = (label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings)
+    answer = answers, "rad/s", np.array([c.speed for c in crossings])
+    warnings = (*crossings.warnings, *changes.refusals)
+    return _result(start, model, scene, *answer, numbers, derivative, error, warnings)
+
+
+def _result(
+    start: float,
+    model: Model,
+    scene: Scene,
+    answers: Iterable[str],
+    unit: str,
+    value: np.ndarray,
+    numbers: tuple[SceneNumber, ...],
+    derivative: np.ndarray,
+    error: np.ndarray,
+    warnings: tuple[str, ...],
+) -> Sensitivities:
+    names = str(model.discretization), str(model.coarser.discretization)
+    provenance = Provenance(__version__, *names, perf_counter() - start)
+    of = tuple(answers), unit, value
+    return Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
 
 
 # Frequencies --------------------------------------------------------------------------------------
-
-
-def _split_speed(inputs: Sequence[str] | None) -> tuple[bool, Sequence[str] | None]:
-    """Whether the speed is one of the inputs, and the others."""
-    names = check_names(inputs)
-    if names is None:
-        return True, None
-    return SPEED in names, [name for name in names if name != SPEED]
 
 
 def _linear(model: Model) -> Model:
@@ -278,28 +266,32 @@ def _pencils(model: Model) -> tuple[SteadyPencil, SteadyPencil]:
     return steady_pencils(model, model.equations.coarse)
 
 
-def _frequency_derivatives(
-    fine: PerturbedModes, coarse: PerturbedModes, changes: Changes
+def _compared(
+    changes: Changes,
+    rate: Callable[[int, PencilChange], Any],
+    scale: np.ndarray | float,
+    part: Callable[[np.ndarray], np.ndarray] = np.real,
+    unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of frequencies [Hz / unit of the number] and their errors, shape (n, k)."""
-    rates = [
-        np.array([np.imag(modes.derivatives(change)) * _HZ for change in changes.of[k]])
-        for k, modes in enumerate((fine, coarse))
-    ]
-    rates.append(np.array([np.abs(fine.derivatives(change)) * _HZ for change in changes.missed]))
-    shape = len(changes.of[0]), len(fine.eigenvalue)
-    found, other, missed = (rate.reshape(shape) for rate in rates)
-    return found, np.abs(found - other) + missed + changes.rounding[:, None] * fine.scales() * _HZ
+    """Derivatives of k answers by each number and their errors, shape (n, k).
 
-
-def _speed_derivatives(
-    fine: PerturbedModes, coarse: PerturbedModes, found: Modes
-) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of frequencies by the speed [Hz s/rad] and their errors, shape (k,)."""
-    rate, other = (np.imag(modes.speed_derivatives()) * _HZ for modes in (fine, coarse))
-    with np.errstate(invalid="ignore"):  # of a mode that does not vibrate
-        of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
-    return rate, np.abs(rate - other) + of_shapes
+    Parameters
+    ----------
+    changes : Changes
+        Those of the matrices by n numbers.
+    rate : callable
+        The change of the answers by the model, 0, or by the coarser one, 1, where their matrices change.
+    scale : ndarray, shape (k,), or float
+        By how much a relative change of the matrices changes the answers.
+    part, unit : callable, float
+        What of a change is that of the answers, and in which unit.
+    """
+    shape, of_models = (len(changes.rounding), np.size(scale)), (*enumerate(changes.of), (0, changes.missed))
+    fine, coarse, missed = (
+        np.array([rate(k, change) for change in each]).reshape(shape) for k, each in of_models
+    )
+    found, other = part(fine) * unit, part(coarse) * unit
+    return found, np.abs(found - other) + np.abs(missed) * unit + changes.rounding[:, None] * scale * unit
 
 
 def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
@@ -317,42 +309,22 @@ def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
     return crossing | silent, words
 
 
-# Critical speed and crossings ---------------------------------------------------------------------
-
-
-def _critical_derivatives(pencil: SteadyPencil, speed: float, changes: Sequence[PencilChange]) -> np.ndarray:
-    """Derivatives of the critical speed of a model [rad/s / unit of the number], shape (n, 1)."""
-    shape = critical_vector(pencil, speed)
-    return np.array([[critical_derivative(pencil, speed, shape, change)] for change in changes])
-
-
-def _resolved(scene: Scene, top: float, modes: int, discretization: DiscretizationChoice) -> Model:
-    with unannounced():
-        return _linear(natural_modes(scene, top, modes, discretization).model)
-
-
 def _crossing_derivatives(
     model: Model, changes: Changes, crossing: Crossing, modes: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of the speed of a crossing, and their errors, shape (n,).
+    """Derivatives of the speed of a crossing, and their errors, shape (n, 1).
 
     A line m omega meets the sum of the angular frequencies lambda of one mode or two:
     d omega = -sum d lambda / (sum d lambda / d omega - m).
     """
-    fine, coarse = _modes_of(model, crossing.speed, modes)
-    found, other, missed = (
-        _crossing_rates(of_model, of, crossing)
-        for of_model, of in ((fine, changes.of[0]), (coarse, changes.of[1]), (fine, changes.missed))
+    both = _modes_of(model, crossing.speed, modes)
+    sums = [_sums(np.imag(each.eigenvalue), crossing) for each in both]
+    slopes = [
+        np.imag(m.speed_derivatives()) @ n - crossing.line.multiple for m, n in zip(both, sums, strict=True)
+    ]
+    return _compared(
+        changes, lambda k, dP: -(np.imag(both[k].derivatives(dP)) @ sums[k]) / slopes[k], crossing.speed
     )
-    return found, np.abs(found - other) + np.abs(missed) + changes.rounding * crossing.speed
-
-
-def _crossing_rates(found: PerturbedModes, changes: Sequence[PencilChange], crossing: Crossing) -> np.ndarray:
-    """Changes of the speed of a crossing where the matrices of a model change, shape (n,)."""
-    sums = _sums(np.imag(found.eigenvalue), crossing)
-    by_speed = np.imag(found.speed_derivatives()) @ sums
-    by_number = np.array([np.imag(found.derivatives(change)) @ sums for change in changes])
-    return -by_number / (by_speed - crossing.line.multiple)
 
 
 def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
@@ -364,12 +336,3 @@ def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
         second = crossing.line.multiple * crossing.speed - first
         sums[np.abs(angular - second).argmin()] += 1
     return sums
-
-
-def _name(crossing: Crossing) -> str:
-    return label_crossing(crossing.line, crossing.kind, crossing.mode, crossing.second_mode)
-
-
-def _provenance(model: Model, start: float) -> Provenance:
-    names = str(model.discretization), str(model.coarser.discretization)
-    return Provenance(__version__, *names, perf_counter() - start)

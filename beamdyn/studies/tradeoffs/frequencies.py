@@ -27,13 +27,11 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.measurements import (
     Diagram,
     Family,
-    Measurement,
     Setting,
     measure_families,
     number_of,
 )
 
-Basis = Literal["legendre", "eigenfunctions"]
 Mesh = Literal["graded", "uniform"]
 
 _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
@@ -105,7 +103,7 @@ def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
 
 def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes, with as many Ritz functions as resolve them."""
-    segments = len(scene.modelled_beam.breakpoints) - 1
+    segments = _segments(scene)
     for functions in _REFERENCES[:-1]:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
         if solution.error.max() <= _RESOLVED:
@@ -140,10 +138,9 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     """All families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
-    segments = len(scene.modelled_beam.breakpoints) - 1
-    least = -(-modes // segments)  # Legendre functions are counted per segment
-    yield _ritz_family(scene, speeds, modes, "legendre", [n for n in _LEGENDRE if n >= least])
-    yield _ritz_family(scene, speeds, modes, "eigenfunctions", [n for n in _EIGENFUNCTIONS if n >= modes])
+    segments, bases = _segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
+    for basis, sizes in bases.items():
+        yield Family(f"Ritz, {basis}", _basis_settings(scene, speeds, modes, basis, sizes, segments))
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
@@ -154,12 +151,21 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
         yield Family("tolerance=", tuple(cases))
 
 
-def _ritz_family(scene: Scene, speeds: np.ndarray, modes: int, basis: Basis, sizes: Sequence[int]) -> Family:
-    """Family of a Ritz basis, over its number of functions."""
-    segmented = basis == "legendre" and len(scene.modelled_beam.breakpoints) > 2
-    each = "functions a segment" if segmented else "functions"
-    cases = (Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes)) for n in sizes)
-    return Family(f"Ritz, {basis}", tuple(cases))
+def _segments(scene: Scene) -> int:
+    return len(scene.modelled_beam.breakpoints) - 1
+
+
+def _basis_settings(
+    scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
+) -> tuple[Setting, ...]:
+    """Computations by a Ritz basis, the fewest functions first: of Legendre functions on each segment."""
+    per_segment = segments if basis == "legendre" else 1
+    each = "functions a segment" if per_segment > 1 else "functions"
+    return tuple(
+        Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes))
+        for n in sizes
+        if n >= -(-modes // per_segment)
+    )
 
 
 def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
@@ -268,26 +274,26 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
         return Diagram.make(title, what, "", 0.0, (), skipped or ("no effect that can be added changes it",))
     full = choices[-1]
     true = pick(full.frequency, given.frequency[:modes])
+    speeds, segments = np.array([speed]), _segments(scene)
     families = [
-        Family(c.name, tuple(_settings(c.scene, speed, modes, _segments(scene)))) for c in (given, *choices)
+        Family(
+            c.name,
+            _basis_settings(c.scene, speeds, _count(c.scene, modes), "legendre", _FUNCTIONS, segments),
+        )
+        for c in (given, *choices)
     ]
     resolved = float(full.solution.error.max())
-    measurements, left_out = measure_families(
-        families, lambda found: float(np.abs(pick(found, true) / true - 1).max()), resolved, budget
-    )
+
+    def error(found: np.ndarray) -> float:
+        return float(np.abs(pick(sizes_of_eigenvalues(found)[0], true) / true - 1).max())
+
+    measurements, left_out = measure_families(families, error, resolved, budget)
     of_model = float(np.abs(given.frequency[:modes] / true - 1).max())
-    left_out = [*_say_cut(measurements, of_model, _names(choices)), *left_out]
+    if min((m.error for m in measurements), default=inf) > _BETTER * of_model:
+        said = f"{_names(choices)}: the budget does not last for enough functions; {AS_GIVEN} the model is "
+        left_out = [f"{said}{percent(of_model)} off, with any setting", *left_out]
     reference = f"{full.solution.model.discretization} with {_names(choices)}"
     return Diagram.make(title, what, reference, resolved, measurements, [*skipped, *left_out])
-
-
-def _say_cut(measurements: Sequence[Measurement], of_model: float, names: str) -> Iterator[str]:
-    """Say it where the budget does not last for what would make the error smaller than that of the model."""
-    if min((m.error for m in measurements), default=inf) > _BETTER * of_model:
-        yield (
-            f"{names}: the budget does not last for enough functions; {AS_GIVEN} the model is "
-            f"{percent(of_model)} off, with any setting"
-        )
 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -307,23 +313,6 @@ def _list_choices(
     scene: Scene, speed: float, modes: int, given: Choice
 ) -> tuple[list[Choice], tuple[str, ...]]:
     """The effects of the set that changes most, one by one and then together; why others are missing."""
-    alone, not_known = _solve_additions(scene, speed, modes)
-    alone = [c for c in alone if _change(c, given, modes) > _NOTHING]
-    if not alone:
-        return [], tuple(not_known)
-    bent = [c for c in alone if c.name == LARGE_DEFLECTION.name]
-    straight = [c for c in alone if c.name != LARGE_DEFLECTION.name]
-    with_bent = [*bent, *(c for c in straight if _combined(scene, [*bent, c]) is not None)] if bent else []
-    kept = max(with_bent, straight, key=lambda s: max((_change(c, given, modes) for c in s), default=0.0))
-    apart = [f"{c.name}: it cannot be combined with the others" for c in alone if c not in kept]
-    together = _combined(scene, kept)
-    assert together is not None
-    everything = [_solve_choice(ALL, together, speed, modes)] if len(kept) > 1 else []
-    return [*kept, *everything], (*not_known, *apart)
-
-
-def _solve_additions(scene: Scene, speed: float, modes: int) -> tuple[list[Choice], list[str]]:
-    """The scene with each effect that it leaves out, solved; and what keeps others away."""
     additions, missing, _ = list_effects(scene)
     scenes = {a.name: a.scene for a in additions if a.name not in _COMPARED}
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]
@@ -332,7 +321,25 @@ def _solve_additions(scene: Scene, speed: float, modes: int) -> tuple[list[Choic
             scenes[LARGE_DEFLECTION.name] = _with(scene, large_deflection=True)
         except InvalidValue as error:
             not_known.append(f"{LARGE_DEFLECTION.name}: {error}")
-    return [_solve_choice(name, added, speed, modes) for name, added in scenes.items()], not_known
+
+    def change(choice: Choice) -> float:
+        """Largest relative change of the frequencies by a choice."""
+        wanted = given.frequency[:modes]
+        return float(np.abs(pick(choice.frequency, wanted) / wanted - 1).max())
+
+    solved = [_solve_choice(name, added, speed, modes) for name, added in scenes.items()]
+    alone = [c for c in solved if change(c) > _NOTHING]
+    if not alone:
+        return [], tuple(not_known)
+    bent = [c for c in alone if c.name == LARGE_DEFLECTION.name]
+    straight = [c for c in alone if c.name != LARGE_DEFLECTION.name]
+    with_bent = [*bent, *(c for c in straight if _combined(scene, [*bent, c]) is not None)] if bent else []
+    kept = max(with_bent, straight, key=lambda s: max(map(change, s), default=0.0))
+    apart = [f"{c.name}: it cannot be combined with the others" for c in alone if c not in kept]
+    together = _combined(scene, kept)
+    assert together is not None
+    everything = [_solve_choice(ALL, together, speed, modes)] if len(kept) > 1 else []
+    return [*kept, *everything], (*not_known, *apart)
 
 
 def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
@@ -359,31 +366,3 @@ def _solve_choice(name: str, scene: Scene, speed: float, modes: int) -> Choice:
 def _count(scene: Scene, modes: int) -> int:
     """Modes among which those wanted are: those of a second plane stand between them."""
     return 2 * modes + 2 if scene.physics.planes == 2 else modes
-
-
-def _change(choice: Choice, given: Choice, modes: int) -> float:
-    """Largest relative change of the frequencies by a choice."""
-    wanted = given.frequency[:modes]
-    return float(np.abs(pick(choice.frequency, wanted) / wanted - 1).max())
-
-
-# Sizes --------------------------------------------------------------------------------------------
-
-
-def _segments(scene: Scene) -> int:
-    return len(scene.modelled_beam.breakpoints) - 1
-
-
-def _settings(scene: Scene, speed: float, modes: int, segments: int) -> Iterator[Setting]:
-    """Computations by Legendre functions, the fewest first."""
-    count = _count(scene, modes)
-    least = -(-count // segments)
-    each = "functions a segment" if segments > 1 else "functions"
-    for n in _FUNCTIONS:
-        if n >= least:
-            yield Setting(f"{n} {each}", n, _computation(scene, Ritz(n), speed, count))
-
-
-def _computation(scene: Scene, basis: Ritz, speed: float, count: int) -> Callable[[float], np.ndarray]:
-    speeds = np.array([speed])
-    return lambda deadline: sizes_of_eigenvalues(Model(scene, basis).solver.eigenvalues(speeds, count))[0]

@@ -175,7 +175,7 @@ class Diagram(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw error against time, one line per family, and the front."""
-        from beamdyn.common.plots.plots import plot_work_precision
+        from beamdyn.common.plots.curves import plot_work_precision
 
         lines: dict[str, list[tuple[float, float]]] = {}
         for m in self.measurements:

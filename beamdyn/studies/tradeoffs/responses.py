@@ -265,14 +265,7 @@ def _diagram(
     cases = tuple(Setting(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
     resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
     left = remaining_budget(budget, start)
-    measurements, skipped = measure_families([Family(what, cases)], _error(exact), resolved, left)
-    if not exact.stable.all():
-        skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
-    return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", resolved, measurements, skipped)
-
-
-def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
-    """Error measure: largest difference of the tip over the phases, over the bound, where both are stable."""
+    # Error measure: largest difference of the tip over the phases, over the bound, where both are stable.
     phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
     rotation, road = np.meshgrid(phase, phase)
     true = [exact.tip(rotation, road, direction) for direction in (0, 1)]
@@ -283,4 +276,7 @@ def _error(exact: SteadyResponse) -> Callable[[SteadyResponse], float]:
         difference = np.hypot(along, across).max(axis=(1, 2))
         return float((difference[both] / exact.bound[both]).max(initial=0.0))
 
-    return error
+    measurements, skipped = measure_families([Family(what, cases)], error, resolved, left)
+    if not exact.stable.all():
+        skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
+    return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", resolved, measurements, skipped)

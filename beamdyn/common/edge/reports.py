@@ -1,0 +1,46 @@
+"""Reports of `reproduce`: headings of papers, notes, and pictures drawn into a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+
+from beamdyn.common.results.pictures import save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def print_heading(screen: Console, paper: Mapping[str, Any], between: str = ", ") -> None:
+    """Print the title of a published file, and its authors, journal and year, as far as it has them."""
+    people = between.join(paper.get("authors", ()))
+    parts = people, paper.get("journal", ""), str(paper["year"])
+    screen.print(f"{paper['title']}\n{', '.join(filter(None, parts))}", style="bold")
+
+
+def print_notes(screen: Console, notes: Iterable[str]) -> None:
+    """Print paragraphs, each with an empty line below."""
+    for note in notes:
+        screen.print(f"{note}\n")
+
+
+def draw_pictures(screen: Console, folder: Path, pictures: Mapping[str, Callable[[], Axes | Figure]]) -> None:
+    """Draw pictures into a folder, which is made if needed, and print the path of each.
+
+    Parameters
+    ----------
+    screen : Console
+        Where to print.
+    folder : Path
+        Folder; files of the same names are replaced.
+    pictures : mapping
+        Functions that draw, by the names of the files without their ending.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, draw in pictures.items():
+        path = save_figure(draw(), folder / f"{name}.png", force=True)
+        screen.print(f"drawn: {path}", soft_wrap=True)

@@ -1,0 +1,83 @@
+"""Tables in TOML files: a row of heads with units, such as "twist [deg]", then rows of plain numbers."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.units import InvalidInput, usual_unit
+
+_HEAD = re.compile(r"\s*([^\s\[\]]+)\s*(?:\[([^\[\]]*)\]\s*)?")
+
+
+def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[str, list[Any]]:
+    """Read the columns of a table.
+
+    Parameters
+    ----------
+    place : str
+        Key of the table, for messages.
+    rows : list of list
+        The heads, then the numbers of each row.
+    known : mapping
+        Quantities that columns may have, by name.
+
+    Returns
+    -------
+    dict
+        Values in SI by name, as the quantity converts them.
+
+    Raises
+    ------
+    InvalidInput
+        At the first mistake; its field is the place, such as "stations[2][0]", counted from 0.
+    """
+    if not isinstance(rows, list) or len(rows) < 2:
+        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        raise InvalidInput(place, rows, remedy)
+    for r, row in enumerate(rows):
+        if not isinstance(row, list) or not row:
+            raise InvalidInput(f"{place}[{r}]", row, "give a row in brackets")
+        if len(row) != len(rows[0]):
+            raise InvalidInput(f"{place}[{r}]", row, f"{len(row)} cells under {len(rows[0])} heads")
+    units: dict[str, str] = {}
+    for c, head in enumerate(rows[0]):
+        name, unit = _read_head(f"{place}[0][{c}]", head, known)
+        if name in units:
+            raise InvalidInput(f"{place}[0][{c}]", head, "a second column of this name")
+        units[name] = unit
+    columns: dict[str, list[Any]] = {name: [] for name in units}
+    for r, row in enumerate(rows[1:], 1):
+        for c, ((name, unit), cell) in enumerate(zip(units.items(), row, strict=True)):
+            at = f"{place}[{r}][{c}]"
+            if isinstance(cell, bool) or not isinstance(cell, int | float) or not math.isfinite(cell):
+                raise InvalidInput(at, cell, f"give a finite number{f', in {unit}' if unit else ''}")
+            try:
+                columns[name].append(known[name].parse(f"{cell!r} {unit}" if unit else cell))
+            except InvalidInput as error:
+                raise replace(error, field=at, value=cell) from None
+    return columns
+
+
+def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
+    """Name and unit of a column."""
+    match = _HEAD.fullmatch(head) if isinstance(head, str) else None
+    name = match[1] if match else ""
+    if match is None or name not in known:
+        near = difflib.get_close_matches(name, known, n=1)
+        remedy = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
+        raise InvalidInput(place, head, "unknown column", remedy)
+    unit, wanted = (match[2] or "").strip(), known[name].unit
+    try:
+        if bool(unit) == bool(wanted):
+            known[name].convert(f"1 {unit}" if unit else 1)
+            return name, unit
+    except InvalidInput:
+        pass
+    example = f'"{name} [{usual_unit(wanted)}]"' if wanted else f'it without a unit, "{name}"'
+    raise InvalidInput(place, head, f"give {example}")

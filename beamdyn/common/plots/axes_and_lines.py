@@ -1,0 +1,159 @@
+"""Axes of plots, lines on them that differ in colour and dashes, and notes below a figure."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
+
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend
+
+_LETTERS = 15.0  # of a note, in an inch
+_COLOUR = "#5a4200"  # of notes
+
+
+def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
+    """Label the axes, new ones if none are given, with a grid and plain numbers."""
+    ax = new_axes() if ax is None else ax
+    ax.set_xlabel(xlabel, fontsize=12)
+    ax.set_ylabel(ylabel, fontsize=12)
+    ax.tick_params(labelsize=11)
+    for axis in (ax.xaxis, ax.yaxis):
+        if isinstance(
+            formatter := axis.get_major_formatter(), ScalarFormatter
+        ):  # not of axes drawn on before
+            formatter.set_useOffset(False)
+    ax.margins(x=0.02)
+    ax.grid(color="0.85", linewidth=0.7)
+    ax.set_axisbelow(True)
+    return ax
+
+
+def new_axes() -> Axes:
+    """Axes of a new figure, which matplotlib keeps to show it."""
+    from matplotlib import pyplot
+
+    return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
+
+
+def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
+    """Replace axes by several that share their place, two in a row.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    ax : Axes, optional
+        Whose place they take; that of a new figure if not given.
+
+    Returns
+    -------
+    Axes
+        Those whose place is taken.
+    list of Axes
+        The new ones, in reading order.
+    """
+    columns = min(2, count)
+    rows = -(-count // columns)
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.subplots(figsize=(6.5 * columns, 4.5 * rows), layout="constrained")[1]
+    place, figure = ax.get_subplotspec(), ax.get_figure()
+    if place is None or figure is None:
+        raise ValueError("ax: give axes made by subplots: their place is divided")
+    ax.set_axis_off()
+    grid = place.subgridspec(rows, columns)
+    return ax, [figure.add_subplot(grid[divmod(i, columns)]) for i in range(count)]
+
+
+def speed_label(units: DisplayUnits) -> str:
+    """Name of an axis of speeds."""
+    return f"angular speed [{units.speed_unit().name}]"
+
+
+def position_label(units: DisplayUnits) -> str:
+    """Name of an axis of positions along the beam."""
+    return f"position along the beam [{units.length_unit('m').name}]"
+
+
+def draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
+    """Draw lines that differ in colour and, when the colours are used up, in their dashes."""
+    for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
+        _draw_line(ax, x, y, label=label, linewidth=1.8, **line_style(i))
+
+
+def line_style(i: int) -> dict[str, Any]:
+    """Colour and dashes of line i."""
+    cycle, colour = divmod(i, len(COLOURS))
+    return {"color": COLOURS[colour], "linestyle": DASHES[cycle % len(DASHES)]}
+
+
+def _draw_line(
+    ax: Axes, x: np.ndarray, y: np.ndarray, isolated: np.ndarray | None = None, **style: Any
+) -> None:
+    """Draw a line, with a marker at each value between gaps, which the line alone does not show."""
+    (line,) = ax.plot(x, y, **style)
+    isolated = _is_isolated(y) if isolated is None else isolated
+    if isolated.any():
+        line.set(marker=".", markevery=isolated)
+
+
+def _is_isolated(y: np.ndarray) -> np.ndarray:
+    known = np.pad(np.isfinite(y), 1)
+    return known[1:-1] & ~known[:-2] & ~known[2:]
+
+
+def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
+    """Draw a line whose dashes change from sample to sample; its pieces meet at a sample."""
+    starts, isolated = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()], _is_isolated(y)
+    for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
+        piece, dashes = slice(start, stop), "-" if solid[start] else "--"
+        _draw_line(ax, x[piece], y[piece], isolated[piece], linestyle=dashes, **style)
+
+
+def style_by_plane(i: int) -> dict[str, Any]:
+    """Colour of line i, and its width, which changes when the colours are used up."""
+    cycle, colour = divmod(i, len(COLOURS))
+    return {"color": COLOURS[colour], "linewidth": max(1.8 - 0.6 * cycle, 0.6)}
+
+
+def name_colour(ax: Axes, label: str, i: int) -> None:
+    """Name line i in the legend by its colour, as its dashes may change."""
+    style = style_by_plane(i)
+    ax.plot([], [], label=label, color=style["color"], linewidth=3 * style["linewidth"])
+
+
+def name_planes(ax: Axes, words: Sequence[str]) -> Axes:
+    """Name solid and dashed lines in the legend, and add that."""
+    for dashes, text in zip(("-", "--"), words, strict=True):
+        ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=text)
+    return add_legend(ax)
+
+
+def note_below(figure: Figure, sentences: Sequence[str]) -> Figure:
+    """Write sentences below the axes of a figure with constrained layout, which makes room for them.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    sentences : sequence of str
+        A paragraph each; nothing is written if there are none.
+
+    Returns
+    -------
+    Figure
+        The same.
+    """
+    width = int(_LETTERS * figure.get_size_inches()[0])
+    lines = [line for sentence in sentences for line in textwrap.wrap(sentence, width)]
+    if lines:
+        figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=9, color=_COLOUR)
+    return figure

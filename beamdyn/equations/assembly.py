@@ -1,0 +1,124 @@
+"""Assembly of the equations of motion of a scene, field by field, with its damping."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import scipy.linalg
+
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.equations.discretization import Discretization, Spaces
+from beamdyn.equations.equations_of_motion import BACKWARD, Equations, Shape, SteadyPencil, place_blocks
+from beamdyn.equations.fields import FIELDS
+from beamdyn.equations.fields.field import Term
+from beamdyn.scene.scene import Scene
+
+
+def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
+    """Assemble the equations of motion of a scene in a discretization: see `assemble_over`."""
+    return assemble_over(scene, discretization.spaces(scene.modelled_beam))
+
+
+def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
+    """Assemble the equations of motion of a scene over function spaces, field by field.
+
+    Parameters
+    ----------
+    scene : Scene
+        Beam, mount, damping and gravity.
+    spaces : Spaces
+        Function spaces on the beam.
+
+    Returns
+    -------
+    Equations
+        Without the terms whose factor or matrix is zero in the scene.
+    """
+    fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
+    blocks = place_blocks({name: field.space.size for name, field in fields.items()})
+    coarse = [field.space.coarse for field in fields.values()]
+    starts = (place.start for place in blocks.values())
+    within = [start + places for start, places in zip(starts, coarse, strict=True) if places is not None]
+    equations = Equations(
+        blocks=blocks,
+        terms=tuple(t for field in fields.values() for t in field.terms if t.factor and t.matrix.any()),
+        loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
+        mount=scene.mount,
+        gravity=scene.gravity,
+        shapes={name: Shape(name, np.eye(field.space.size)) for name, field in fields.items()},
+        deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
+        coarse=np.concatenate(within) if len(within) == len(coarse) else None,
+    )
+    if turning := [blocks[name].start for name, field in fields.items() if field.turns_at_root]:
+        pencil, clamped = equations.steady(), np.delete(np.arange(equations.size), turning)
+        K, M = (A[np.ix_(clamped, clamped)] for A in (pencil.K0, pencil.M))
+        equations = replace(equations, shift=float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1]))
+    if not scene.is_damped:
+        return equations
+    return replace(equations, terms=(*equations.terms, *_damping(equations, scene)))
+
+
+def _damping(equations: Equations, scene: Scene) -> Iterator[Term]:
+    """Yield the terms of all that damps a scene."""
+    names, damping = {field.name: field.damping_name for field in FIELDS}, scene.damping
+    if scene.damping_ratio or any(damping.ratios):
+        for part, C in _damping_of_modes(equations, scene):
+            ends = np.cumsum([equations.blocks[name].stop - equations.blocks[name].start for name in part])
+            for row, blocks in zip(part, np.split(C, ends[:-1]), strict=True):
+                for column, block in zip(part, np.split(blocks, ends[:-1], axis=1), strict=True):
+                    yield Term(names[row], row, column, 1, block, factor=scene.damping_ratio or 1.0)
+    factors = {2: damping.mass_factor, 0: damping.stiffness_factor}
+    for term in equations.terms:
+        if term.quantity == "unity" and factors.get(term.order):
+            name, factor = names[term.rows], factors[term.order] * term.factor
+            yield replace(term, name=name, order=1, factor=factor)
+    if damping.tip_damper:  # it acts against the whole deflection in each direction
+        tips = {name: (d.direction, d.space.end(0)) for name, d in equations.deflections.items()}
+        for row, (direction, tip) in tips.items():
+            for column, (other, tip_of_other) in tips.items():
+                if direction == other:
+                    matrix = np.outer(tip, tip_of_other)
+                    yield Term(names[row], row, column, 1, matrix, factor=damping.tip_damper)
+
+
+def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
+    """Yield sets of blocks, and matrices that give their modes at rest a damping ratio of 1, or each its own.
+
+    Own ratios are given in order of the frequencies of all sets together.
+    """
+    pencil, sets = equations.steady(), equations.coupled
+    parts = [pencil.part(equations.places(names)) for names in sets]
+    if not scene.damping.ratios:
+        yield from ((names, _modal_damping(part)) for names, part in zip(sets, parts, strict=True))
+        return
+    compliance = [
+        scipy.linalg.eigh(part.M, part.K0 + part.shift * part.M, eigvals_only=True)[::-1] for part in parts
+    ]
+    rank = np.argsort(np.argsort(-np.concatenate(compliance), kind="stable"))
+    ratios = np.array(scene.damping.ratios_of(equations.size))[rank]
+    of_parts = np.split(ratios, np.cumsum([len(each) for each in compliance])[:-1])
+    for names, part, own in zip(sets, parts, of_parts, strict=True):
+        yield names, _modal_damping(part, own)
+
+
+def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.ndarray:
+    """Damping matrix [kg/s] with which every mode at rest has a damping ratio of 1, or its own (n,).
+
+    C = 2 L (B - shift B^2)^(1/2) L^T with K + shift M = L L^T and B = L^-1 M L^-T; the shift [1/s2] makes
+    a singular stiffness positive definite.
+    """
+    M, K, shift = part.M, part.K0, part.shift
+    L = np.linalg.cholesky(K + shift * M if shift else K)
+    compliance = solve_lower(L, solve_lower(L, M).T)
+    mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
+    unshifted: np.ndarray | float = 1.0
+    if shift:  # v^T K v, 0 within rounding: 1 - shift mu, without its loss of digits on soft springs
+        v = solve_lower_transposed(L, U)
+        quotient = np.einsum("nk,nk->k", v, K @ v)
+        lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
+        unshifted = np.where(quotient > lost, quotient, 0.0)
+    of_modes = 1.0 if ratios is None else ratios[::-1]  # mu ascends as frequencies descend
+    root = (U * (of_modes * np.sqrt(np.maximum(mu * unshifted, 0)))) @ U.T
+    return 2 * L @ root @ L.T

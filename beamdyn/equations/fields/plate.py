@@ -1,0 +1,408 @@
+"""The strip as a plate: its sections twist and camber, as far as the clamped root lets them.
+
+The deflection of a thin rectangular section of width b and thickness t is
+
+    w(x, y) = sum_k u_k(x) p_k(eta),    eta = 2 y/b,    p_k = (2 k + 1)^(1/2) P_k (Legendre),
+
+with bending u_0, the mean over the width, torsion (odd k) and camber (even k from 2).  The strain energy of
+a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
+
+    1/2 int int D [w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) c w_xy^2] dy dx.
+
+The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
+Saint-Venant's.  Rotation at the speed omega about the unit vector a adds
+
+    omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
+    N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
+
+where T is the tension of the beam per width, and a1, a2 are the components of a in the directions of bending
+and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y pulls the
+width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also twists the
+strip, by the load omega^2 a1 a2 rho t y per area.  In a tapered strip d/dx at constant y is
+d/dx - eta (b'/b) d/d eta.
+
+Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
+a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and
+tests/invariants/test_plates.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from beamdyn.common.legendre import gauss_rule
+from beamdyn.equations import explanations as why
+from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spaces
+from beamdyn.equations.explanations import Condition, Explanation
+from beamdyn.equations.fields.bending_and_shear import Bending
+from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
+from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
+from beamdyn.scene.profile import ONE, Profile, combine
+from beamdyn.scene.rectangle import Rectangle
+from beamdyn.scene.scene import Scene
+
+_SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all terms
+_ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
+
+_IS_OBLIQUE = Condition(
+    lambda s: min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
+    "the strip stands along or across the plane of rotation",
+)
+
+
+class Part(NamedTuple):
+    """A part of a derivative of the deflection: a factor times a derivative of u_k times a function of eta.
+
+    Parameters
+    ----------
+    factor : Profile
+        Factor along the beam.
+    order : int
+        Order of the derivative of u_k by x.
+    across : ndarray, shape (k, q)
+        Functions of eta, for each k, at the Gauss points across.
+    """
+
+    factor: Profile
+    order: int
+    across: np.ndarray
+
+
+class Deflection:
+    """Deflection of a strip by functions across its width: its derivatives, as sums of parts.
+
+    Parameters
+    ----------
+    section : Rectangle
+        The section.
+    length : float
+        Length of the beam [m].
+    field : str
+        Name of the field.
+    numbers : sequence of int
+        Numbers k of its functions across.
+    conditions : RootConditions
+        Conditions at the root of its functions along.
+    points : int
+        Number of Gauss points across.
+    """
+
+    def __init__(
+        self,
+        section: Rectangle,
+        length: float,
+        field: str,
+        numbers: Sequence[int],
+        conditions: RootConditions,
+        points: int,
+    ) -> None:
+        self.field, self.conditions = field, conditions
+        eta, _ = gauss_rule(points)
+        norm = np.sqrt(2 * np.array(numbers) + 1)
+        p, dp, ddp = (
+            np.array([legendre.legval(eta, legendre.legder(np.eye(k + 1)[k], order)) for k in numbers])
+            * norm[:, None]
+            for order in range(3)
+        )
+        self.tip = norm  # value of each function at the edge eta = 1
+        half = _power(section.width, -1).scaled(2.0)  # d eta/dy
+        self.w, self.w_y, self.w_yy = [Part(ONE, 0, p)], [Part(half, 0, dp)], [Part(half * half, 0, ddp)]
+        self.w_x, self.w_xx, self.w_xy = [Part(ONE, 1, p)], [Part(ONE, 2, p)], [Part(half, 1, dp)]
+        if section.width.degree:
+            slope, change = _relative_slopes(section.width, length)
+            turned = dp + eta * ddp
+            self.w_x.append(Part(slope.scaled(-1.0), 0, eta * dp))
+            self.w_xx.append(Part(slope.scaled(-2.0), 1, eta * dp))
+            self.w_xx.append(Part(change.scaled(-1.0), 0, eta * dp))
+            self.w_xx.append(Part(slope * slope, 0, eta * turned))
+            self.w_xy.append(Part((half * slope).scaled(-1.0), 0, turned))
+
+
+@lru_cache(maxsize=64)
+def _power(b: Profile, power: int) -> Profile:
+    return combine(lambda width: (width**power)[None], b)[0]
+
+
+@lru_cache(maxsize=64)
+def _relative_slopes(b: Profile, length: float) -> tuple[Profile, Profile]:
+    """Relative slope b'/b of the width [1/m] and its derivative [1/m2], over x/L."""
+    first, second = b.derivative(), b.derivative().derivative()
+    beta, change = combine(lambda b, d, dd: np.stack([d / b, dd / b - (d / b) ** 2]), b, first, second)
+    return beta.scaled(1 / length), change.scaled(1 / length**2)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A strip, and integrals over its area.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, whose beam has a rectangular section.
+    spaces : Spaces
+        Function spaces along the beam.
+    """
+
+    scene: Scene
+    spaces: Spaces
+
+    @property
+    def section(self) -> Rectangle:
+        """The section."""
+        assert self.scene.beam.section is not None, "a scene of a plate has a section"
+        return self.scene.beam.section
+
+    @property
+    def points(self) -> int:
+        """Number of Gauss points across, which integrate products of two functions and a parabola."""
+        return self.spaces.across + 3
+
+    @property
+    def rotary_inertia(self) -> Profile:
+        """Rotary inertia of the thickness per length [kg m], with which sections that twist turn."""
+        t = self.section.thickness
+        return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
+
+    def deflection(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> Deflection:
+        """The deflection by functions of some numbers across."""
+        return Deflection(self.section, self.scene.beam.length, field.name, numbers, conditions, self.points)
+
+    def integrate(
+        self,
+        weight: Profile,
+        rows: tuple[Deflection, str],
+        columns: tuple[Deflection, str],
+        across: np.ndarray | float = 1.0,
+    ) -> np.ndarray:
+        """Integrate over x a weight times the mean over the width of two derivatives and a factor across.
+
+        Each derivative is given by its deflection and its name, such as "w_xx".
+        """
+        (first, a), (second, b) = rows, columns
+        _, of_points = gauss_rule(self.points)
+        L, total = self.scene.beam.length, 0.0
+        for p in getattr(first, a):
+            for q in getattr(second, b):
+                averages = (p.across * (of_points / 2 * across)) @ q.across.T
+                scale = np.abs(p.across).max(initial=0.0) * np.abs(q.across).max(initial=0.0)
+                averages[np.abs(averages) <= _ZERO * scale] = 0.0
+                if averages.any():
+                    of_x = weight * p.factor * q.factor, first.conditions, second.conditions
+                    along = self.spaces.product(*of_x, (p.order, q.order))
+                    total = total + np.kron(averages, along * L ** (1 - p.order - q.order))
+        return np.atleast_2d(total)
+
+    def stiffness(self, rows: Deflection, columns: Deflection, warping: Profile = ONE) -> np.ndarray:
+        """Stiffness of the plate [N/m], with a factor of its bending along the beam by warping."""
+        section, EI = self.section, self.scene.beam.bending_stiffness
+        nu, D = section.poissons_ratio, plate_stiffness(self.scene.beam)
+        bend, cross = self.integrate, (D * _root(warping)).scaled(nu)
+        GJ = (EI * section.torsion_factor).scaled(2 / (1 + nu))
+        return (
+            bend(D * warping, (rows, "w_xx"), (columns, "w_xx"))
+            + bend(D, (rows, "w_yy"), (columns, "w_yy"))
+            + bend(cross, (rows, "w_xx"), (columns, "w_yy"))
+            + bend(cross, (rows, "w_yy"), (columns, "w_xx"))
+            + bend(GJ, (rows, "w_xy"), (columns, "w_xy"))
+        )
+
+
+def _root(factor: Profile) -> Profile:
+    return combine(lambda values: np.sqrt(values)[None], factor)[0]
+
+
+def plate_stiffness(beam: Beam) -> Profile:
+    """Stiffness D b = E I/(1 - nu^2) of a strip that cannot camber [N m2]."""
+    assert beam.section is not None and beam.section.poissons_ratio is not None
+    return beam.bending_stiffness.scaled(1 / (1 - beam.section.poissons_ratio**2))
+
+
+@dataclass(frozen=True)
+class StackedSpace:
+    """The functions along the beam, once for each function across.
+
+    Parameters
+    ----------
+    along : Space
+        Functions along the beam.
+    across, fewer : int
+        Number of functions across, and of those of the coarser discretization.
+    """
+
+    along: Space
+    across: int
+    fewer: int
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates; those of the first function across come first."""
+        return self.along.size * self.across
+
+    @property
+    def coarse(self) -> np.ndarray | None:
+        """Indices of the coordinates of the coarser discretization; None where it has others."""
+        kept = self.along.coarse
+        if kept is None:
+            return None
+        return (self.along.size * np.arange(self.fewer)[:, None] + kept).ravel()
+
+
+class SectionField(Field):
+    """Deformation of the sections of a strip: torsion, which is odd across, or camber, which is even."""
+
+    first: ClassVar[int]  # number k of the first function across; the others follow in steps of two
+
+    def is_modelled(self, scene: Scene) -> bool:
+        """Whether the strip is modelled as a plate."""
+        return scene.physics.plate
+
+    def complete(self, scene: Scene) -> Scene:
+        """Model the strip as a plate, flat and with a Poisson's ratio, if its section is rectangular."""
+        section = scene.beam.section
+        if section is None:
+            return scene
+        given = replace(section, poissons_ratio=section.poissons_ratio or _SOME_RATIO)
+        beam = replace(scene.beam, twist=None).with_section(given)
+        return replace(scene, beam=beam, physics=replace(scene.physics, plate=True))
+
+    def numbers(self, count: int) -> range:
+        """Numbers k of the functions of this field among `count` functions beyond the mean."""
+        return range(self.first, count + 1, 2)
+
+    def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
+        """Assemble the energy of the plate, with what couples it to bending."""
+        strip = Strip(scene, spaces)
+        numbers = self.numbers(spaces.across)
+        space = StackedSpace(spaces.functions(CLAMPED), len(numbers), len(self.numbers(spaces.fewer_across)))
+        if not numbers:
+            return FieldEquations(space, (), ())
+        own = strip.deflection(self, numbers, CLAMPED)
+        terms = [*self._terms(strip, own, own), *self._of_body(strip, own, space.along)]
+        bending = Bending()
+        mean = strip.deflection(bending, (0,), bending.conditions(scene.mount))
+        coupling = [t for t in self._terms(strip, mean, own) if t.matrix.any()]
+        mirrored = [replace(t, rows=t.columns, columns=t.rows, matrix=t.matrix.T) for t in coupling]
+        return FieldEquations(space, (*terms, *coupling, *mirrored), (*self._loads(strip, own, space.along),))
+
+    def _terms(self, strip: Strip, rows: Deflection, columns: Deflection) -> Iterator[Term]:
+        scene, names = strip.scene, (rows.field, columns.field)
+        beam, c1, c2 = scene.beam, *_axis(scene)
+        mass, (n_a, n_b) = beam.mass_per_length, axial_tension(beam)
+        eta, _ = gauss_rule(strip.points)
+
+        def stiffness(
+            name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0
+        ) -> Term:
+            return Term(f"{name} of {self.name}", *names, 0, matrix, quantity, factor)
+
+        inertia = strip.integrate(mass, (rows, "w"), (columns, "w"))
+        yield Term(f"mass of {self.name}", *names, 2, inertia)
+        if self.first == 1:
+            tilt = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y"))
+            yield Term(f"rotary inertia of {self.name}", *names, 2, tilt)
+            yield stiffness("spin of sections", tilt, "speed_squared", c2**2 - c1**2)
+        warping = strip.section.warping_factor if self.first == 1 else ONE
+        yield stiffness("stiffness", strip.stiffness(rows, columns, warping))
+        slopes = (rows, "w_x"), (columns, "w_x")
+        cosine, _ = exact_cos_sin(scene.mount.precone)
+        yield stiffness("centrifugal stiffening", strip.integrate(n_b, *slopes), "speed_squared", cosine**2)
+        yield stiffness("tension by root acceleration", strip.integrate(n_a, *slopes), "root_axial", -1.0)
+        width = strip.section.width
+        pull = strip.integrate(
+            (mass * width * width).scaled(1 / 8), (rows, "w_y"), (columns, "w_y"), 1 - eta**2
+        )
+        yield stiffness("pull across", pull, "speed_squared", 1 - c2**2)
+        yield stiffness("spin softening", inertia, "speed_squared", -(1 - c1**2))
+
+    def _of_body(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Term]:
+        """Yield what a body at the tip adds; none where the mean over the width does not twist."""
+        return iter(())
+
+    def _loads(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Load]:
+        """Yield the loads; none by what acts on the mean over the width."""
+        return iter(())
+
+
+def _axis(scene: Scene) -> tuple[float, float]:
+    """Components of the axis of rotation in the directions of bending and of the width."""
+    (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
+    return cosine * s, cosine * c
+
+
+def _explanations(name: str) -> dict[str, Explanation]:
+    """Explanations of the terms that torsion and camber share."""
+    return {
+        f"mass of {name}": Explanation("Mkk qk''", "the strip is a plate"),
+        f"stiffness of {name}": Explanation("Kk qk", "the strip is a plate"),
+        f"centrifugal stiffening of {name}": Explanation("ω² KGBk qk", "the carrier turns", (why.TURNS,)),
+        f"tension by root acceleration of {name}": Explanation(
+            "-aO1 KGAk qk", why.say_tension, (why.TENSIONED,)
+        ),
+        f"pull across of {name}": Explanation(
+            "ω² KNk qk", "rotation pulls the width apart", (why.TURNS, why.TILTED)
+        ),
+        f"spin softening of {name}": Explanation(
+            "-ω² c² Mkk qk", why.say_softening, (why.TURNS, why.SOFTENED)
+        ),
+        f"damping of {name}": Explanation("C qk'", "the beam is damped", (why.DAMPED,)),
+    }
+
+
+class Torsion(SectionField):
+    """Torsion of a strip: the deflections that are odd across its width."""
+
+    name = "torsion"
+    damping_name = "damping of torsion"
+    first = 1
+    explanations: ClassVar[Mapping[str, Explanation]] = {
+        **_explanations("torsion"),
+        "rotary inertia of torsion": Explanation("Rkk qk''", "sections turn"),
+        "spin of sections of torsion": Explanation("ω² (c² - s²) Rkk qk", "the carrier turns", (why.TURNS,)),
+        "mass of the tip body in torsion": Explanation(
+            "Jp r rᵀ qk''", "a body at the tip turns", (why.TIP_BODY,)
+        ),
+        "spin of the tip body in torsion": Explanation(
+            "-ω² (c² - s²) (J1 - J2) r rᵀ qk", "a body at the tip turns", (why.TIP_BODY, why.TURNS)
+        ),
+        "twisting by rotation": Explanation(
+            "-ω² c s Qk", "rotation turns the strip into its plane", (why.TURNS, _IS_OBLIQUE)
+        ),
+    }
+
+    def _of_body(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Term]:
+        tip = strip.scene.beam.tip
+        if tip is None:
+            return
+        width = float(strip.section.width(np.ones(1))[0])
+        turn = np.kron(own.tip * 2 / width, along.end(0))  # mean twist of the section at the tip
+        turns, (c1, c2) = np.outer(turn, turn), _axis(strip.scene)
+        yield Term("mass of the tip body in torsion", self.name, self.name, 2, tip.axial_inertia * turns)
+        spin = (tip.inertia_about_bending_direction - tip.inertia) * turns
+        yield Term(
+            "spin of the tip body in torsion", self.name, self.name, 0, spin, "speed_squared", c1**2 - c2**2
+        )
+
+    def _loads(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Load]:
+        c1, c2 = _axis(strip.scene)
+        beam = strip.scene.beam
+        of_first = along.load((beam.mass_per_length * strip.section.width).scaled(beam.length / np.sqrt(12)))
+        vector = np.concatenate([of_first, np.zeros(along.size * (len(own.tip) - 1))])
+        yield Load("twisting by rotation", self.name, vector, "speed_squared", -c1 * c2)
+
+
+class Camber(SectionField):
+    """Camber of a strip: the deflections that are even across its width, but for their mean."""
+
+    name = "camber"
+    damping_name = "damping of camber"
+    first = 2
+    explanations: ClassVar[Mapping[str, Explanation]] = _explanations("camber")

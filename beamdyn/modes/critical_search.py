@@ -1,0 +1,90 @@
+"""Search for a critical speed with finer and finer models, each compared with one of about half its size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.accuracy.refinement import refine
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
+from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
+from beamdyn.modes.modal.model import Model
+from beamdyn.scene.scene import Scene
+
+_SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
+_NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
+_OF_SHORTEST = 4 * float(np.finfo(float).eps)  # rounding error times the cube of an element's length over L
+_TO_HALF = 4  # steps from a basis to one of about half its size
+
+
+@dataclass(frozen=True)
+class FoundSpeed:
+    """Critical speed of a model [rad/s], its relative error by a coarser model, and rounding's part in it."""
+
+    model: Model
+    coarse: Model
+    speed: float
+    error: float
+    rounding: float
+
+
+def models_of_critical_speed(
+    scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
+) -> Iterator[Model]:
+    """List the models in which a critical speed is sought; see `list_models`."""
+    named = isinstance(discretization, str)
+    modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
+    return list_models(split, discretization, modes, target, cheapest, split is not scene)
+
+
+def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
+    """Refine until the error meets the target or rounding, or the models end."""
+
+    def finer(found: FoundSpeed) -> FoundSpeed | None:
+        with suppress(
+            np.linalg.LinAlgError, StopIteration
+        ):  # rounding of so many functions: the last is best
+            return compare_critical_speeds(next(models))
+        return None
+
+    def meets(found: FoundSpeed) -> bool:
+        return bool(np.isfinite(found.speed)) and found.error <= max(target, 3 * found.rounding)
+
+    return refine(compare_critical_speeds(next(models)), finer, meets)
+
+
+def compare_critical_speeds(model: Model) -> FoundSpeed:
+    """Compare a model with one of about half its size.
+
+    A basis that lacks a few functions only would differ too little where convergence is slow: where the error
+    falls as a power p >= 1 of the size, it is at most the distance from the basis of half the size.
+    """
+    discretization, solver = model.discretization, model.solver
+    order, noise = discretization.order, discretization.rounding
+    if order is None:
+        for _ in range(_TO_HALF):
+            discretization = discretization.coarser()
+        coarse = Model(model.scene, discretization)
+    else:
+        coarse = model.coarser
+        ends = discretization.cells(model.scene.modelled_beam).ends
+        shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
+        noise = max(noise, _OF_SHORTEST * shortest**-3)  # of elements, by the integrals
+    fine_softening, coarse_softening = solver.softening, coarse.solver.softening
+    distance = fine_softening - coarse_softening
+    softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
+    if not 0 < softening < np.inf:  # False for nan, too
+        return FoundSpeed(model, coarse, np.inf, np.inf, np.inf)
+    rounding = solver.critical_rounding
+    noise, left = rounding + noise, abs(distance)
+    if order is not None:  # short segments may keep a mesh from being half of another
+        half = coarse.coarser.solver
+        before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
+        left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
+    error = left / (2 * softening) + noise
+    resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
+    error = float(error) if resolved else np.inf
+    return FoundSpeed(model, coarse, float(softening**-0.5), error, rounding)

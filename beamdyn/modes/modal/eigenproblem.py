@@ -1,0 +1,364 @@
+"""Eigenvalues and modes of the equations at steady speed, for a batch of speeds.
+
+The inverse problem M v = mu K v is solved: the lowest modes are those of the largest eigenvalues mu, which
+keep all digits whatever the size of the basis.  At one speed that is done by a factorization of the stiffness
+there.  For many, coordinates are used in which the stiffness is diagonal at every speed; they cost an
+eigenproblem of their own, which at one speed would be most of the work (`diagonal_stiffness`).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
+
+from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
+from beamdyn.modes.modal.diagonal_stiffness import (
+    LEAST_STIFFNESS,
+    above_rounding,
+    forward_error,
+    inverse_squares,
+    rounding_of_matrices,
+    rounding_of_scene,
+    solve_diagonal,
+)
+from beamdyn.modes.modal.quadratic_eigenproblem import (
+    condense,
+    has_massless,
+    select_lowest,
+    solve_first_order,
+    solve_general,
+    solve_gyroscopic,
+)
+from beamdyn.modes.modal.springs import (
+    factor_graded,
+    find_free_turns,
+    insert_free_turns,
+    part_free_turns,
+    remove_shift,
+    softening_of_graded,
+    softening_on_springs,
+    solve_definite,
+)
+
+_EPS = np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class Eigen:
+    """The k lowest modes at each of S speeds.
+
+    Parameters
+    ----------
+    eigenvalue : ndarray, shape (S, k)
+        Eigenvalues s of q = v exp(s t) [1/s]: of each conjugate pair the one with Im s > 0, of each real
+        pair the larger.
+    vector : ndarray, shape (S, n, k)
+        Mass-normalised eigenvectors v; real if the equations are conservative.
+    rounding : ndarray, shape (S, k)
+        Estimated relative rounding error of |s|.
+    """
+
+    eigenvalue: np.ndarray
+    vector: np.ndarray
+    rounding: np.ndarray
+
+
+class Eigensolver(ABC):
+    """Eigensolver of the equations at any steady speed.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations at steady speed, of n coordinates and modes.
+    """
+
+    def __init__(self, pencil: SteadyPencil) -> None:
+        self.pencil, self.size = pencil, len(pencil.M)
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the equations have neither damping nor gyroscopic terms: then modes are real."""
+        return self.pencil.conservative
+
+    @cached_property
+    @abstractmethod
+    def lowest_at_rest(self) -> float:
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+
+    @property
+    @abstractmethod
+    def softening(self) -> float:
+        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+
+    @property
+    def critical_speed(self) -> float:
+        """Lowest speed at which the stiffness is singular [rad/s]; inf if there is none."""
+        return self.softening**-0.5 if self.softening else np.inf
+
+    @property
+    @abstractmethod
+    def critical_rounding(self) -> float:
+        """Estimated relative rounding error of the critical speed."""
+
+    @abstractmethod
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Compute the `count` lowest modes at each speed [rad/s].
+
+        Raises
+        ------
+        LinAlgError
+            A ValueError: if stiffness and mass span more digits than double precision has.
+        """
+
+    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Compute the eigenvalues of the `count` lowest modes at each speed [rad/s], shape (S, count)."""
+        return self.solve(speeds, count).eigenvalue
+
+    @abstractmethod
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+
+        Parameters
+        ----------
+        speeds : ndarray, shape (S,)
+            Speeds [rad/s].
+        outputs : ndarray, shape (d, n)
+            The functions per coordinate, such as the tip deflections.
+
+        Returns
+        -------
+        ndarray, shape (S, d)
+            nan from the critical speed on.
+        """
+
+
+class Solver(Eigensolver):
+    """Eigensolver by full matrices, for all modes.
+
+    For many speeds it has coordinates of its own, in which K = diag(1 + speed^2 growth), minus `pencil.shift`
+    times the mass.
+    """
+
+    @cached_property
+    def _at_rest(self) -> np.ndarray:
+        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
+        K0, M, shift = self.pencil.K0, self.pencil.M, self.pencil.shift
+        with explained():
+            return np.linalg.cholesky(K0 + shift * M if shift else K0)
+
+    @cached_property
+    def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Growth (n,), coordinates of the pencil per coordinate of these (n, n), and mass (n, n) in these."""
+        L = self._at_rest
+        K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
+        growth, Q = np.linalg.eigh(K2)
+        return growth, solve_lower_transposed(L, Q), _symmetric(Q.T @ M @ Q)
+
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """By the largest eigenvalue of the inverse problem."""
+        return float(1 / _largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
+
+    @property
+    def softening(self) -> float:
+        """By the lowest growth of the stiffness; on springs, without that of the shift."""
+        return self._softening[0]
+
+    @property
+    def critical_rounding(self) -> float:
+        """By that of the softening, which is relative to the largest growth."""
+        return self._softening[1]
+
+    @cached_property
+    def _softening(self) -> tuple[float, float]:
+        if self.pencil.shift:
+            if (found := softening_of_graded(self.pencil)) is not None:
+                return found
+            growth, _, mass = self._diagonal
+            return softening_on_springs(mass, growth, self.pencil.shift)
+        growth = self._diagonal[0]
+        lowest, lost = -float(growth[0]), 2 * BACKWARD * np.abs(growth).max()
+        return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
+
+    def factor(self, speeds: np.ndarray) -> np.ndarray | None:
+        """Cholesky factor L (n, n) of the stiffness of conservative equations at one speed [rad/s].
+
+        None for more speeds, and where a deflection has less than `LEAST_STIFFNESS` of its stiffness at rest.
+        """
+        if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
+            return None
+        K0, spin = self.pencil.K0, speeds[0] ** 2 * self.pencil.K2
+        upper, failed = dpotrf((K0 + spin).T)
+        return None if failed or dpotrf(((1 - LEAST_STIFFNESS) * K0 + spin).T)[1] else upper.T
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Conservative equations for all speeds at once, others speed by speed."""
+        with explained():
+            if not self.pencil.conservative:
+                modes = [self._solve_coupled(speed, count) for speed in speeds]
+                return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
+            if (L := self.factor(speeds)) is None:
+                return self._solve_diagonal(speeds, count)
+            A = transformed(L, self.pencil.M)
+            mu, y, _, _, failed = dsyevr(A, range="I", il=self.size - count + 1, iu=self.size)
+            if failed:
+                raise np.linalg.LinAlgError
+            mu = above_rounding(mu[:count][::-1])
+            v, squared = solve_lower_transposed(L, y[:, ::-1]) / np.sqrt(mu), 1 / mu
+            by_matrices = rounding_of_factored(self.pencil, speeds[0], squared, v)
+            found = squared[None], np.abs(v)[None], by_matrices[None]
+            rounding = forward_error(mu) + rounding_of_scene(self.pencil, speeds, *found)
+            return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
+
+    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
+        """Without vectors where the equations are conservative, and stiff at each speed."""
+        if (L := self.factor(speeds)) is not None:
+            mu = above_rounding(_largest_values(transformed(L, self.pencil.M), count))
+            return 1j / np.sqrt(mu)[None]
+        growth, _, mass = self._diagonal
+        stiffness = 1 + speeds[:, None] ** 2 * growth
+        if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
+            return self.solve(speeds, count).eigenvalue
+        return 1j / np.sqrt(inverse_squares(mass, stiffness, count))
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """By a factorization at one speed, else in the coordinates of the solver: each is by itself."""
+        if self.pencil.shift:
+            return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
+        if (L := self.factor(speeds)) is not None:
+            load = speeds[0] ** 2 * self.pencil.f2
+            return (outputs @ solve_lower_transposed(L, solve_lower(L, load[:, None]))[:, 0])[None]
+        growth, basis, _ = self._diagonal
+        stiffness = 1 + speeds[:, None] ** 2 * growth
+        with np.errstate(divide="ignore", invalid="ignore"):
+            q = (basis.T @ self.pencil.f2) * speeds[:, None] ** 2 / stiffness
+        values = np.stack([q @ (basis.T @ output) for output in outputs], axis=1)
+        return np.where(stiffness.min(axis=1, keepdims=True) > 0, values, np.nan)
+
+    def _solve_diagonal(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Modes of conservative equations, in coordinates in which the stiffness is diagonal."""
+        growth, basis, mass = self._diagonal
+        spin = speeds[:, None] ** 2
+        squared, z, rounding = solve_diagonal(mass, 1 + spin * growth, count, self.lowest_at_rest)
+        vector = basis @ z
+        terms, size = 1 + spin * np.abs(growth), np.abs(vector)
+        by_matrices = rounding_of_matrices(terms, squared, z, size, np.abs(self.pencil.M))
+        rounding += rounding_of_scene(self.pencil, speeds, squared, size, by_matrices)
+        if self.pencil.shift:
+            squared, rounding = remove_shift(self.pencil, speeds, squared, vector, rounding)
+            vector = part_free_turns(self.pencil, squared, vector)
+        root = np.sqrt(np.abs(squared))
+        eigenvalue = np.where(squared > 0, 1j * root, root)
+        return Eigen(eigenvalue, vector, np.where(squared == 0, np.inf, rounding))
+
+    # Gyroscopic and damped equations ----------------------------------------------------------------
+
+    @cached_property
+    def _has_massless(self) -> bool:
+        return has_massless(self._diagonal[2])
+
+    def _solve_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        pencil, n = self.pencil, self.size
+        on_springs = pencil.shift and not pencil.C.any() and not self._has_massless
+        if on_springs and (graded := factor_graded(pencil, speed)):
+            return self._solve_graded(speed, count, *graded)
+        growth, T, mass = self._diagonal
+        stiffness = 1 + speed**2 * growth
+        damping = T.T @ (pencil.C + speed * pencil.G) @ T
+        time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
+        if pencil.shift or self._has_massless:
+            K = np.diag(stiffness) - pencil.shift * mass
+            R = condense(mass, K) if self._has_massless else np.eye(n)
+            inverse, y = solve_first_order(*(R.T @ A @ R for A in (mass / time**2, damping / time, K)))
+            y = R @ y[: R.shape[1]]
+        else:
+            gyroscopic = not pencil.C.any() and stiffness.min() > 0
+            solve = solve_gyroscopic if gyroscopic else solve_general
+            inverse, y = solve(mass / time**2, damping / time, stiffness)
+        turns = np.empty((n, 0))  # about hinges on which neither stiffness nor damping acts
+        if pencil.shift:
+            undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
+            turns = find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
+        if turns.size:  # each turn has 0 twice
+            slowest = np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - 2 * turns.shape[1]]
+            inverse, y = inverse[np.sort(slowest)], y[:, np.sort(slowest)]
+        s, z = select_lowest(inverse * time, y[:n], count)
+        norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), mass, z).real, 0.0))
+        condition = (1 + speed**2 * np.abs(growth)).max() / np.abs(stiffness).min()
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
+        lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
+        modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
+        return insert_free_turns(turns, *modes, count) if turns.size else modes
+
+    def _solve_graded(
+        self, speed: float, count: int, basis: np.ndarray, condition: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Modes of gyroscopic equations on springs, in coordinates in which the stiffness is 1."""
+        M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
+        time = np.sqrt(np.trace(M) / len(M))
+        inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
+        s, z = select_lowest(inverse * time, y[: len(M)], count)
+        norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
+        return s, basis @ (z / norm), rounding
+
+
+@contextmanager
+def explained() -> Iterator[None]:
+    """Say what a factorization that fails means."""
+    try:
+        yield
+    except np.linalg.LinAlgError as error:
+        raise np.linalg.LinAlgError(
+            "stiffness, mass and speed span more digits than double precision has: give a lower speed, "
+            "a smaller tip inertia, or properties and breakpoints that vary less"
+        ) from error
+
+
+def transformed(L: np.ndarray, A: np.ndarray) -> np.ndarray:
+    """Compute L^-1 A L^-T for triangular L and symmetric A, symmetric but for rounding."""
+    return solve_lower(L, solve_lower(L, A).T)
+
+
+def _symmetric(A: np.ndarray) -> np.ndarray:
+    return (A + A.T) / 2
+
+
+def _largest_values(A: np.ndarray, count: int) -> np.ndarray:
+    """Compute the largest eigenvalues (k,), descending, of a symmetric matrix."""
+    values, _, failed = dsyevd(A, compute_v=0)
+    if failed:
+        raise np.linalg.LinAlgError
+    return values[: -count - 1 : -1]
+
+
+def rounding_of_factored(
+    pencil: SteadyPencil, speed: float, squared: np.ndarray, v: np.ndarray
+) -> np.ndarray:
+    """Relative error (k,) of frequencies of a clamped beam by rounding of its matrices.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Equations of which the stiffness was factored at a speed.
+    speed : float
+        The speed [rad/s].
+    squared : ndarray, shape (k,)
+        Squared frequencies.
+    v : ndarray, shape (n, k)
+        Mass-normalised modes.
+    """
+    size = np.abs(v)
+    spin = speed**2 * (size * (np.abs(pencil.K2) @ size)).sum(axis=0)
+    by_terms = ((v * (pencil.K0 @ v)).sum(axis=0) + spin) / squared
+    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 without cancellation
+    growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding adds up over the functions
+    return growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)

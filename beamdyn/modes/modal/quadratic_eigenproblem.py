@@ -1,0 +1,80 @@
+"""Quadratic eigenproblems M q'' + C q' + K q = 0 of gyroscopic and damped equations, at one speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+_EPS = np.finfo(float).eps
+_REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: rounding of a double root
+_MASSLESS = 16 * _EPS  # eigenvalue of a mass matrix, over the largest, that is 0 within rounding
+
+
+def solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve as `solve_general` for skew-symmetric C and positive d, by a Hermitian eigenproblem."""
+    n, scale = len(d), 1 / np.sqrt(d)
+    mu, U = np.linalg.eigh(scale[:, None] * M * scale)
+    root = np.sqrt(np.maximum(mu, 0))
+    half = U * root
+    W = np.zeros((2 * n, 2 * n), dtype=complex)
+    W[:n, :n], W[:n, n:], W[n:, :n] = -1j * (scale[:, None] * C * scale), -1j * half, 1j * half.T
+    theta, y = np.linalg.eigh(W)
+    return theta / 1j, y * np.concatenate([scale, np.ones(n)])[:, None]
+
+
+def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve M q'' + C q' + diag(d) q = 0, d without zeros: 1/s (2 n,) and vectors (2 n, 2 n) with q first."""
+    n = len(d)
+    B = np.zeros((2 * n, 2 * n))
+    B[:n, :n], B[:n, n:], B[n:, :n] = -C / d[:, None], -M / d[:, None], np.eye(n)
+    return np.linalg.eig(B)
+
+
+def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
+
+    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
+    """
+    n, zero = len(M), np.zeros_like(M)
+    A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
+    s, y = scipy.linalg.eig(A, B)
+    finite = np.isfinite(s)
+    s, y = s[finite], y[:, finite]
+    least = _EPS * np.abs(s).max()
+    return 1 / np.where(np.abs(s) < least, 1j * least, s), y
+
+
+def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Select the lowest modes from 1/s: Im s > 0, real s > 0, and of each real pair s < 0 the slower."""
+    inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
+    inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
+    s = 1 / inverse
+    oscillating = np.flatnonzero(s.imag > 0)
+    growing = np.flatnonzero((s.imag == 0) & (s.real > 0))
+    decaying = np.flatnonzero((s.imag == 0) & (s.real < 0))
+    decaying = decaying[np.argsort(-s[decaying].real)]
+    slower = decaying[: max(0, (len(decaying) - len(growing)) // 2)]
+    modes = np.concatenate([oscillating, growing, slower])
+    squared = np.where(np.isin(modes, growing), -1, 1) * np.abs(s[modes]) ** 2
+    modes = modes[np.argsort(squared, kind="stable")][:count]
+    return s[modes], z[:, modes]
+
+
+# Coordinates without mass, such as shear against bending where sections have no rotary inertia ------
+
+
+def has_massless(mass: np.ndarray) -> bool:
+    """Whether some combination of coordinates has no mass within rounding, for a mass (n, n)."""
+    values = np.linalg.eigvalsh(mass)
+    return bool(values[0] < _MASSLESS * values[-1])
+
+
+def condense(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    """Coordinates (n, r) in which the mass is regular: those without mass follow in equilibrium.
+
+    Neither damping nor gyroscopic terms may act on what has no mass.
+    """
+    values, V = np.linalg.eigh(mass)
+    massless = values < _MASSLESS * values[-1]
+    V0, V1 = V[:, massless], V[:, ~massless]
+    return V1 - V0 @ np.linalg.solve(V0.T @ stiffness @ V0, V0.T @ stiffness @ V1)

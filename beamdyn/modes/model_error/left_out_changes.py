@@ -1,0 +1,319 @@
+"""What the effects that a model leaves out would change: in frequencies, critical speeds, or any answer.
+
+In frequencies and critical speeds most effects are estimated from the reference modes; large deflection, and
+what changes in any other answer, is solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from beamdyn.common.assignment import assign
+from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.model_error.reference_modes import (
+    EXTRA_MODES,
+    BaseEquations,
+    buckling_mode,
+    match_modes,
+    shift_critical_speed,
+    shift_eigenvalues,
+)
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.scene import Scene
+
+# Why large deflection cannot be added, by the field of the refusal where there is one.
+_TWO_PLANES = "it is solved in one plane of bending"
+_HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
+_REFUSED = {
+    "mount.bending_angle": "it is solved where the bending angle is a multiple of 90 deg",
+    "mount.precone": "it is solved without precone",
+}
+EXCLUDED = _TWO_PLANES, _HINGED, *_REFUSED.values()
+_NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
+_BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
+_NOT_FOUND = "the equilibrium was not found"
+_LOST = "it turns a mode into others"
+_UNSTABLE = "it is judged on the straight beam, which is unstable"
+_STRAIGHT = "as of the straight beam"
+_AMONG = 4  # modes with the effect for each one without, among which that is sought
+_REAL = 1e-8  # growth rate relative to the frequency, that is rounding
+_ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
+
+Change: TypeAlias = Callable[[Equations, Callable[[np.ndarray], np.ndarray]], np.ndarray]
+
+
+# Frequencies --------------------------------------------------------------------------------------
+
+
+def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
+    """Estimate what the effects that a model leaves out would change in frequencies at some speeds.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    speeds : ndarray, shape (S,)
+        Speeds [rad/s].
+    eigenvalue : ndarray of complex, shape (S, m)
+        Eigenvalues of the modes [1/s].
+
+    Returns
+    -------
+    LeftOutEffects
+        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
+        with it.
+    """
+    base = BaseEquations.of(without_large_deflection(model), eigenvalue.shape[1])
+    references = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+
+    def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        each = zip(speeds.tolist(), references, strict=True)
+        return np.array([_change_of_frequencies(equations, speed, s, embed(v)) for speed, (s, v) in each])
+
+    bent, reason = None, ""
+    if not model.scene.physics.large_deflection:
+        bent, reason = _large_deflection_change(model, speeds, eigenvalue)
+        bent = np.where(vibrate(eigenvalue), bent, np.nan)
+    found = _gather(model.scene, base, change, bent, reason, eigenvalue.shape)
+    judged_on, not_known = np.array([vibrate(s) for s, _ in references]), found.not_known
+    for modes, why in ((judged_on, _LOST), (vibrate(eigenvalue) & ~judged_on, _UNSTABLE)):
+        lost = {name: why for name, change in found.changes.items() if np.isnan(change[modes]).any()}
+        not_known = lost | not_known
+    return replace(found, not_known=not_known)
+
+
+def vibrate(s: np.ndarray) -> np.ndarray:
+    """Whether modes have a frequency, and do not grow but by rounding."""
+    return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))
+
+
+def _change_of_frequencies(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) by equations with an effect."""
+    known = vibrate(s)
+    shifted = np.full(len(s), np.nan, dtype=complex)
+    shifted[known] = shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
+    lost = known & np.isnan(shifted)
+    if lost.any():  # a step of inverse iteration may lead to a neighbour
+        shifted[lost] = match_modes(equations, speed, v[:, lost], _AMONG * len(s))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
+
+
+def _large_deflection_change(
+    model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
+) -> tuple[np.ndarray, str]:
+    """Find what large deflection changes in frequencies (S, m), nan if it is not known, and why it is not.
+
+    What it cannot be combined with is left out of both beams that are compared: the change is then to first
+    order.  Modes of a beam in one plane keep their order.  At rest, and where the straight beam is in
+    equilibrium, it changes nothing.
+    """
+    if not bends(model):
+        unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
+        change = np.where(unstable, np.nan, np.zeros(eigenvalue.shape))
+        return change, _BUCKLED if unstable.any() else ""
+    unknown = np.where((speeds == 0)[:, None], 0.0, np.full(eigenvalue.shape, np.nan))
+    if model.scene.physics.planes == 2:
+        return unknown, _TWO_PLANES
+    try:
+        straight, bent = (Model(scene, model.discretization) for scene in _comparable(model.scene))
+    except InvalidValue as refusal:
+        return unknown, _REFUSED.get(refusal.field, _HINGED)
+    # The solver finds the equilibria at all speeds along one branch, and keeps them; where the branch does
+    # not reach all speeds, none is kept, and each is sought by itself.
+    with suppress(ArithmeticError, np.linalg.LinAlgError):
+        bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
+    each = [_bent_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+    reasons = dict.fromkeys(reason for _, reason in each if reason)
+    return np.array([change for change, _ in each]), next(iter(reasons), "")
+
+
+def _bent_change_at(
+    straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray
+) -> tuple[np.ndarray, str]:
+    """Relative changes (m,) at one speed, and why they are not known."""
+    if not speed:
+        return np.zeros(len(eigenvalue)), ""
+    count, speeds = min(len(eigenvalue) + EXTRA_MODES, straight.solver.size), np.array([speed])
+    without = straight.solver.solve(speeds, count).eigenvalue[0]
+    order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
+    try:
+        within = bent.solver.solve(speeds, count).eigenvalue[0]
+    except (
+        ArithmeticError,
+        np.linalg.LinAlgError,
+    ) as error:  # of a hinge, with no one equilibrium
+        unknown = np.full(len(eigenvalue), np.nan)
+        return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = np.imag(within[order]) / np.imag(without[order]) - 1
+    return np.where(np.imag(within[order]) > 0, change, np.nan), ""
+
+
+def _comparable(scene: Scene) -> tuple[Scene, Scene]:
+    """The scene without and with large deflection, both without what that cannot be combined with."""
+    kept = Physics(rotary_inertia=scene.physics.rotary_inertia)
+    straight = replace(scene, physics=kept)
+    return straight, replace(straight, physics=replace(kept, large_deflection=True))
+
+
+# Critical speeds ----------------------------------------------------------------------------------
+
+
+def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
+    """Estimate what the effects that a model leaves out would change in its critical speed.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    critical : float
+        Critical speed [rad/s], finite and not 0.
+
+    Returns
+    -------
+    LeftOutEffects
+        Relative changes, of shape ().
+    """
+    base = BaseEquations.of(without_large_deflection(model), 1)
+    pencil = base.equations.steady()
+    v = buckling_mode(pencil, critical)
+    known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
+
+    def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        return np.array(shift_critical_speed(equations.steady(), known, embed(v)) / known - 1)
+
+    bent, reason = None, ""
+    if not model.scene.physics.large_deflection:
+        does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
+        bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
+    return _gather(model.scene, base, change, bent, reason)
+
+
+def nothing_known(scene: Scene) -> LeftOutEffects:
+    """The effects that a scene leaves out, where there is no value that they could change."""
+    additions, not_known, not_modelled = list_effects(_straightened(scene))
+    names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
+    unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
+    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
+
+
+def without_large_deflection(model: Model) -> Model:
+    """The model of the straight beam, for which the other effects are estimated."""
+    if not model.scene.physics.large_deflection:
+        return model
+    return Model(_straightened(model.scene), model.discretization)
+
+
+def _straightened(scene: Scene) -> Scene:
+    return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+
+
+def _reasons(scene: Scene) -> dict[str, str]:
+    """What the model assumes in place of each effect, and how to include it."""
+    return {effect.name: effect.reason for effect in list_left_out(scene)}
+
+
+def _gather(
+    scene: Scene,
+    base: BaseEquations,
+    change: Change,
+    bent: np.ndarray | None,
+    reason: str,
+    shape: tuple[int, ...] = (),
+) -> LeftOutEffects:
+    """All effects that a scene leaves out on values of a shape: by the equations of each; and by bending."""
+    additions, not_known, not_modelled = list_effects(base.scene)
+    changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
+    not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
+    for added in additions:
+        equations = base.extend(added.scene)
+        changes[added.name] = change(equations, lambda v, equations=equations: base.embed(equations, v))
+    assumed = {added.name: added.assumed for added in additions if added.assumed}
+    if bent is None:
+        assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}
+    return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(scene), shape)
+
+
+# Any answer, by solving again with each effect ----------------------------------------------------
+
+
+class SolvedValues(NamedTuple):
+    """Values that an effect may change, nan where there is none; why there is none; what they rest on."""
+
+    values: np.ndarray
+    reason: str = ""
+    assumed: str = ""
+
+
+Solve: TypeAlias = Callable[[Scene, str], SolvedValues]  # of a scene with the effect of a name, or with ""
+
+
+def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
+    """Find what each effect that a scene leaves out changes in values, by solving with it.
+
+    Effects that large deflection is not combined with are judged on the straight beam where the scene has it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    solve : callable
+        Solves a scene.
+
+    Returns
+    -------
+    LeftOutEffects
+        Relative changes, of the shape of the values.
+    """
+    base = _straightened(scene)
+    additions, not_known, not_modelled = list_effects(base)
+    without, found, notes = solve(base, ""), {}, {}
+    if not scene.physics.large_deflection:
+        found[LARGE_DEFLECTION.name] = _bent_values(base, without, solve)
+    for added in additions:
+        found[added.name] = _relative_change(without, solve(added.scene, added.name))
+        notes[added.name] = [added.assumed, _STRAIGHT if scene.physics.large_deflection else ""]
+    assumed = {n: ", ".join(filter(None, [*notes.get(n, ()), each.assumed])) for n, each in found.items()}
+    return LeftOutEffects(
+        changes={name: each.values for name, each in found.items()},
+        not_known=not_known | {name: each.reason for name, each in found.items() if each.reason},
+        assumed={name: note for name, note in assumed.items() if note},
+        not_modelled=not_modelled,
+        reasons=_reasons(scene),
+        shape=np.shape(without.values),
+    )
+
+
+def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValues:
+    """Relative change of values, nan where it is not known."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
+    change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
+    unknown = ~np.isfinite(change)
+    reason = (without.reason or within.reason or "there is nothing to compare") if unknown.any() else ""
+    return SolvedValues(np.where(unknown, np.nan, change), reason, within.assumed)
+
+
+def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedValues:
+    """Relative change of values by large deflection."""
+    unknown = np.full(np.shape(without.values), np.nan)
+    if scene.physics.planes == 2:
+        return SolvedValues(unknown, _TWO_PLANES)
+    try:
+        straight, bent = _comparable(scene)
+    except InvalidValue as error:
+        return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
+    without = without if straight.physics == scene.physics else solve(straight, "")
+    return _relative_change(without, solve(bent, LARGE_DEFLECTION.name))

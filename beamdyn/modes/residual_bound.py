@@ -1,0 +1,383 @@
+"""Guaranteed bounds of the eigenvalues of bending: the Ritz part, and the residual of all other functions.
+
+All quantities are nondimensional: x is x/L, mass and stiffness are relative to the segment at the root.
+
+**The problem.**  With a(u, v) = int EI u'' v'' and four positive semidefinite forms
+
+    P1(u, u) = int N_B u'^2,  P2 = int N_A u'^2,  P3 = int rho A u^2 + m t^2,  P4 = u'(1)^2,
+
+where t = u(1) + eps u'(1) and int rho A u^2 contains m_k u(x_k)^2 of each point mass, the eigenvalues
+z = lambda^2 are those at which the form
+
+    Q_z = a + sum_j c_j(z) P_j,    c_j(z) = omega^2 spin_j - z mass_j,
+
+has a kernel, and the k-th of them is at least z if Q_z >= 0 on a subspace of codimension k - 1.
+
+**The split.**  The head, or Ritz part, is spanned by some trial functions, of any kind; the tail is its
+orthogonal complement with respect to a.  On the tail P_j <= tail_j a, where tail_j is a trace,
+
+    tail_j = trace(P_j) - trace(P_j on the head),  for instance  trace(P1) = int N_B(x) int_0^x 1/EI,
+
+because P_j is a sum of squares of functionals whose norms the cantilever, being statically
+determinate, has in closed form.  Hence Q_z >= q a on the tail with q = 1 - sum_j max(0, -c_j) tail_j.
+
+**The coupling.**  For v of the head and w of the tail, integrating from the tip inwards,
+sum_j c_j P_j(v, w) = int F w'', where F is the moment that the loads of v cause; and as int EI p w'' = 0 for
+curvatures p of the head, it is int (F - EI p) w'' <= sqrt(R(v, v) a(w, w)), R = int (F - EI p)^2 / EI.
+All this for any p; the best is the head's answer to the loads.  On cells where F and EI p are
+polynomials, R is integrated exactly with an upper bound of 1/EI on each.
+
+**The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
+and this last matrix has at most k - 1 negative eigenvalues, the k-th eigenvalue is at least z.
+Nothing is assumed of other eigenvalues, signs or the speed.  Assumptions and rounding: docs/bounds.md.
+
+**Two planes** that the twist or the mount couples.  With the curvature vector k = (v'', w'') and the
+stiffness tensor D(x) of the sections, turned by the twist,
+tensor D(x) of the sections, turned by the twist,
+
+    a(u, u) = int k . D k,    P_mass = int rho A |u|^2 + m |t|^2,    P_tension = int N |u'|^2,
+
+in the plane of rotation P_soft = int rho A (d . u)^2 + m (d . t)^2 with its direction d, and of the slope
+vector s = u'(1) at the tip the forms s . T s with the tensors T of its inertia and of its spin.  Without
+precone nothing is gyroscopic: z are the eigenvalues of a form, as in one plane.
+
+**The traces** on all functions need no twist.  The slope in a direction e is int_0^x e . k, of squared norm
+int_0^x e . D^-1 e; the sum over both directions has the trace of D^-1, 1/EI_1 + 1/EI_2 however the section is
+turned.  So the traces of tension, mass and slope at the tip are the sums of those of the two planes, and
+P_soft <= P_mass and s . T s >= (least eigenvalue of T) |s|^2 are used on the tail alone.
+
+**Twisting by inertia.**  A tip body with a product of inertia on the axes of rotation adds
+H int (v' w'' - v'' w'), a form of either sign.  It is int int k(x) . K(x, s) k(s) with the kernel
+K = (H/2) sign(s - x) (0, 1; -1, 0).  The squares of its eigenvalues relative to a have the sum
+H^2 det(int D^-1) / 2, and on the tail at most that less the head's.
+
+**The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with
+any curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of
+the section have one EI each.  The rest is as in one plane.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from functools import cached_property
+from math import cos, sin
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.fields.transverse import plane_components
+from beamdyn.equations.root_motion import root_motion
+from beamdyn.modes.flexibility import bound_on_cells, bound_traces
+from beamdyn.modes.modal.eigenproblem import Solver
+from beamdyn.modes.ritz_part import CoupledRitzPart, PlaneRitzPart
+from beamdyn.scene.beam import TipMass
+from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.profile import Profile
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import centrifugal_inertia, tilting_inertia
+
+_EPS = float(np.finfo(float).eps)
+_MOST_STEPS = 12  # of the search for z from a Ritz value
+_LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
+
+
+class Enclosure(ABC):
+    """Bounds of the lowest z of one problem, from the head and what bounds the tail.
+
+    Parameters
+    ----------
+    speed : float
+        Nondimensional speed.
+    stiffness : ndarray, shape (n, n)
+        Energies a of pairs of functions of the head.
+    forms : ndarray, shape (m, n, n)
+        The forms P_j on the head.
+    spin, mass : ndarray, shape (m,)
+        Parts of their coefficients c_j per squared speed and per -z.
+    spin_terms : ndarray, shape (m,)
+        Sums of the absolute values of the terms of `spin`.
+    unit : float
+        Rounding error of an entry of a matrix, relative to its terms.
+    """
+
+    speed: float
+    stiffness: np.ndarray
+    forms: np.ndarray
+    spin: np.ndarray
+    mass: np.ndarray
+    spin_terms: np.ndarray
+    unit: float
+
+    @abstractmethod
+    def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
+        """Upper bound of -sum_j c_j P_j on the tail relative to a: 1 - q, with the rounding of its terms."""
+
+    @abstractmethod
+    def _residual(self, coefficients: np.ndarray) -> np.ndarray:
+        """Residual R of the loads with coefficients c_j, shape (n, n)."""
+
+    @abstractmethod
+    def _residual_allowance(self, terms: np.ndarray) -> float:
+        """Bound of the rounding error of R: of the products, and of the moments in them."""
+
+    @abstractmethod
+    def _sizes(self) -> np.ndarray:
+        """Traces of the absolute terms of the forms on the head, shape (m,)."""
+
+    def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
+        """Compute lower and upper bounds of the lowest z."""
+        mass = self._sum(self.mass)
+        starts = -np.real(self._solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
+        lower, upper = (
+            [_search_bound(form, mass, k, z, side) for k, z in enumerate(starts)]
+            for form, side in ((self.lower_form, -1), (self.upper_form, 1))
+        )
+        return np.array(lower), np.array(upper)
+
+    @cached_property
+    def ritz_critical_speed(self) -> float:
+        """Critical speed in the space of the head: never below the exact one but by rounding."""
+        return self._solver.critical_speed
+
+    @cached_property
+    def _solver(self) -> Solver:
+        """Solver of the eigenproblem on the head, whose Ritz values the search starts from."""
+        mass = self._sum(self.mass)
+        zero = np.zeros_like(mass)
+        return Solver(SteadyPencil(mass, zero, zero, self.stiffness, self._sum(self.spin), zero[0]))
+
+    def upper_form(self, z: float) -> np.ndarray:
+        """Q_z on the head plus the rounding allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
+        coefficients, terms = self._coefficients(z)
+        return self.stiffness + self._sum(coefficients) + self._allowance(terms) * np.eye(len(self.stiffness))
+
+    def lower_form(self, z: float) -> np.ndarray | None:
+        """Q_z - R/q minus the rounding allowance: with <= k eigenvalues < 0, mode k is at least z."""
+        return self._lower_form(*self._coefficients(z))
+
+    def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
+        """The lower form at z = 0 and another speed: without eigenvalues < 0, no slower speed is critical."""
+        return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
+
+    def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
+        """Q - R/q minus the rounding allowance, for coefficients c_j and the sums of their absolute terms."""
+        tail = self._tail(coefficients, terms)
+        if tail >= 1:
+            return None
+        # Twice, with twice the allowance, because |a + b|^2 <= 2 (a^2 + b^2).
+        R = 2 * self._residual(coefficients)
+        allowance = self._allowance(terms) + 2 * self._residual_allowance(terms) / (1 - tail)
+        return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
+
+    def _coefficients(self, z: float) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients c_j(z) of the forms, and the sums of the absolute values of their terms."""
+        squared = self.speed**2
+        return squared * self.spin - z * self.mass, squared * self.spin_terms + abs(z) * self.mass
+
+    def _allowance(self, terms: np.ndarray) -> float:
+        """Bound of the rounding error of Q: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
+        return float(self.unit * (np.trace(self.stiffness) + terms @ self._sizes()))
+
+    def _sum(self, coefficients: np.ndarray) -> np.ndarray:
+        return np.tensordot(coefficients, self.forms, 1)
+
+
+class PlaneEnclosure(Enclosure):
+    """Bounds in one plane, at one speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        A nondimensional scene.
+    functions : int
+        Number n of functions of the head, on each segment where these have their own.
+    speed : float
+        Nondimensional speed.
+    flexibility : Profile or None
+        Upper bound of 1/EI; without one there are no lower bounds.
+    """
+
+    def __init__(self, scene: Scene, functions: int, speed: float, flexibility: Profile | None) -> None:
+        self.scene, self.speed, self.flexibility = scene, speed, flexibility
+        self.part = PlaneRitzPart(scene.beam, functions)
+        self.stiffness, self.forms = self.part.stiffness, self.part.forms
+        # Coefficients of the forms, and the absolute values of their terms.
+        tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
+        tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
+        root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
+        out = tension * sin(psi) ** 2 - turning
+        tilt = out * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
+        pull = tip.mass * tip.offset * np.array([tension, tension * tip.offset, -root])
+        ends = np.concatenate([tilt, pull])
+        self.spin = np.array([tension, -root, -(cos(psi) ** 2 + turning * sin(psi) ** 2), ends.sum()])
+        self.spin_terms = np.append(np.abs(self.spin[:3]), np.abs(ends).sum())
+        self.mass = np.array([0.0, 0.0, 1.0, tip.inertia])
+        # Rounding error of a sum of as many products as the rule has points, relative to its terms: doubled
+        # for the factors, and again for the eigensolution.
+        self.unit = 4 * _EPS * (self.part.quadrature.xi.size + len(self.stiffness))
+
+    def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
+        if self.flexibility is None:
+            return np.inf
+        return float(np.maximum(self.unit * terms - coefficients, 0) @ self.tails)
+
+    def _residual(self, coefficients: np.ndarray) -> np.ndarray:
+        return np.einsum("j,jakb,k", coefficients, self._residuals[0], coefficients)
+
+    @cached_property
+    def _residuals(self) -> tuple[np.ndarray, float]:
+        """Products of unbalanced moments, and an upper bound of the largest EI over the least in a cell."""
+        assert self.flexibility is not None
+        compliance = bound_on_cells(self.flexibility, self.part.ends)
+        stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)
+        return self.part.residuals(compliance), float((stiffness * compliance).max())
+
+    @cached_property
+    def _traces(self) -> np.ndarray:
+        """Upper bounds of the traces of the forms on all functions, relative to a."""
+        assert self.flexibility is not None
+        return bound_traces(self.scene.beam, self.flexibility)
+
+    @cached_property
+    def tails(self) -> np.ndarray:
+        """Upper bounds tail_j of the four forms on the tail, relative to a."""
+        head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in self.forms]
+        return np.maximum(self._traces - head, 0) + self.unit * self._traces
+
+    def _residual_allowance(self, terms: np.ndarray) -> float:
+        residuals, variation = self._residuals
+        products = terms @ np.sqrt(np.einsum("jaja->j", residuals))
+        moments = self.unit * (terms @ self._traces)
+        return self.unit * products**2 + variation * len(self.stiffness) * moments**2
+
+    def _sizes(self) -> np.ndarray:
+        return np.trace(self.forms, axis1=1, axis2=2)
+
+
+class CoupledEnclosure(Enclosure):
+    """Bounds in two coupled planes, at one speed.
+
+    The forms are, in this order, those of the tension N_B per squared speed, of N_A per acceleration of the
+    root, of the mass, of the mass in the plane of rotation, of spin and of inertia of the slope at the tip,
+    and of twisting by inertia.
+
+    Parameters
+    ----------
+    scene : Scene
+        A nondimensional scene in two planes without precone.
+    moments : int
+        Number of bending moments of the head in each direction.
+    speed : float
+        Nondimensional speed.
+    flexibility : tuple of Profile
+        Upper bounds of 1/EI in the first direction of the sections and in the second.
+    """
+
+    def __init__(
+        self, scene: Scene, moments: int, speed: float, flexibility: tuple[Profile, Profile]
+    ) -> None:
+        self.scene, self.speed, self.flexibility = scene, speed, flexibility
+        self.part = CoupledRitzPart(scene.beam, moments, flexibility)
+        self.stiffness, self.mass = self.part.stiffness, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
+        beam, tip, (d, n) = scene.beam, scene.beam.tip or TipMass(0.0), np.array(plane_components(scene))
+        root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
+        body = centrifugal_inertia(tip, beam.tip_twist)
+        self.spin = np.array([1.0, -root, 0.0, -1.0, 1.0, 0.0, -float(d @ body @ n)])
+        # Tensors T of the slope at the tip (2, 2), per squared speed and per -z, and their absolute terms.
+        pull = tip.mass * tip.offset * (1 + tip.offset - root)
+        spin = pull * np.eye(2) + (np.outer(n, body @ n) + np.outer(body @ n, n)) / 2
+        self._tensors = spin, tilting_inertia(tip, beam.tip_twist)
+        pull = tip.mass * abs(tip.offset) * (1 + abs(tip.offset) + abs(root))
+        inertia = tip.inertia + tip.inertia_about_bending_direction
+        self._tensor_terms = np.array([pull + inertia + 2 * tip.axial_inertia, inertia])
+        self.spin_terms = np.append(np.abs(self.spin[:6]), self._tensor_terms[0] if self.spin[6] else 0.0)
+        self._direction, self._slope = d, self.part.slope[..., -1]
+        tilts = [self._slope @ T @ self._slope.T for T in self._tensors]
+        self.forms = np.concatenate([self.part.forms(d), tilts, self.part.twisting[None]])
+        # As in one plane, with two products at a point; the head is of a stiffness as near as the misfit.
+        products = 2 * self.part.quadrature.xi.size
+        self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
+
+    # The tail -------------------------------------------------------------------------------------
+
+    @cached_property
+    def _traces(self) -> np.ndarray:
+        """Upper bounds of the traces of tensions, mass and slope at the tip on all functions: shape (4,)."""
+        first, second = (bound_traces(self.scene.beam, flexibility) for flexibility in self.flexibility)
+        return first + second
+
+    @cached_property
+    def tails(self) -> np.ndarray:
+        """Upper bounds of the forms of tensions, mass and slope at the tip on the tail, relative to a."""
+        forms = [*self.forms[:3], self._slope @ self._slope.T]
+        head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in forms]
+        return np.maximum(self._traces - head, 0) + self.unit * self._traces
+
+    @cached_property
+    def _twisting_tail(self) -> float:
+        """Upper bound of twisting by inertia on the tail, relative to a, by the norm of its kernel."""
+        slope = self._slope
+        flexibility = slope.T @ np.linalg.solve(self.stiffness, slope) + self.tails[3] * np.eye(2)
+        total = np.linalg.det(flexibility) / 2
+        head = np.linalg.solve(self.stiffness, self.part.twisting)
+        rounding = self.unit * (self._traces[3] ** 2 + self.part.twisting_size**2)
+        return float(np.sqrt(max(total - np.trace(head @ head), 0.0) + rounding))
+
+    def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
+        least = np.linalg.eigvalsh(np.tensordot(coefficients[4:6], self._tensors, 1))[0]
+        softening = -min(coefficients[2], coefficients[2] + coefficients[3])
+        signed = np.array([*-coefficients[:2], softening, -least])
+        rounding = np.array([*terms[:2], terms[2] + terms[3], terms[4:6] @ self._tensor_terms])
+        twisting = terms[6] * self._twisting_tail if terms[6] else 0.0
+        return float(self.unit + twisting + np.maximum(signed + self.unit * rounding, 0) @ self.tails)
+
+    # The coupling: by the squared speed and by -z, which are coefficients of softening and of mass ---
+
+    @cached_property
+    def _residuals(self) -> np.ndarray:
+        """Products of moments that the head does not balance, by squared speed and -z: (2, n, 2, n)."""
+        n, d, (spin, inertia) = len(self.stiffness), self._direction, self._tensors
+        of_spin = self.spin[:2], -np.outer(d, d), spin, self.spin[6]
+        unbalanced = [
+            self.part.unbalanced(self._sum(self.spin), *of_spin),
+            self.part.unbalanced(self._sum(self.mass), np.zeros(2), np.eye(2), inertia, 0.0),
+        ]
+        return self.part.residuals(np.concatenate(unbalanced)).reshape(2, n, 2, n)
+
+    def _residual(self, coefficients: np.ndarray) -> np.ndarray:
+        c = np.array([-coefficients[3], coefficients[2]])
+        return np.einsum("j,jakb,k", c, self._residuals, c)
+
+    def _residual_allowance(self, terms: np.ndarray) -> float:
+        of_loads = np.array([-terms[3], terms[2]])
+        products = np.abs(of_loads) @ np.sqrt(np.einsum("jaja->j", self._residuals))
+        moments = self.unit * (terms @ self._of_all(self._traces, 1.5 * self._traces[3]))
+        variation = float(np.diag(self.part.ratios).max())
+        return self.unit * products**2 + variation * len(self.stiffness) * moments**2
+
+    def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
+        """Sizes of the absolute terms of all forms (7,), by those of four (4,) and that of twisting."""
+        return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
+
+    def _sizes(self) -> np.ndarray:
+        traces = [*np.trace(self.forms[:3], axis1=1, axis2=2), float((self._slope**2).sum())]
+        return self._of_all(np.array(traces), self.part.twisting_size)
+
+
+def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
+    """Move z until the k-th eigenvalue of form(z), k from 0, proves a lower (side -1) or upper (1) bound."""
+    step = 0.0
+    for _ in range(_MOST_STEPS):
+        matrix = form(z)
+        if matrix is None or not np.isfinite(matrix).all():
+            break
+        value, vector = np.linalg.eigh(matrix)
+        if side * value[k] <= 0:
+            return z
+        step = 2 * max(step, abs(value[k]) / (vector[:, k] @ mass @ vector[:, k]))
+        if step > _LARGEST_STEP * (1 + abs(z)):
+            break
+        z += side * step
+    return np.nan

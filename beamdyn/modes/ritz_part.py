@@ -1,0 +1,438 @@
+"""Trial functions with residuals that are known exactly, for the theorem of `beamdyn.modes.residual_bound`.
+
+Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam of few segments,
+bending moments over the stiffness on a beam of many or where it almost vanishes.  So are all moments that
+their loads cause; products of these with the properties are integrated exactly.  In the energy a the
+functions are orthonormal, whatever the stiffness, so that rounding has the size of the eigenvalues and not of
+the largest stiffness over the least.
+
+**Two planes** that the twist or the mount couples: the curvature is a vector and the stiffness D(x) a tensor
+that the twist beta(x) turns.  On cells the curvatures *in the axes of the section* are polynomials, so that
+the energy and the moments D p need no cosine of the twist.  Only the curvatures along the fixed directions
+e1, e2 do, and moments in the axes of the section.  There cosine and sine stand for polynomials of such a
+degree that the beam for which they are exact has a stiffness within (1 -+ `misfit`) D(x): see `twist_degree`.
+An array (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import qr, solve_triangular
+
+from beamdyn.common.legendre import gauss_rule, legendre_series
+from beamdyn.equations.discretization import CLAMPED
+from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.moment_functions import NODES, MomentSpaces, orthonormalize
+from beamdyn.equations.quadrature import ArcQuadrature, Cells
+from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
+from beamdyn.modes.flexibility import bound_on_cells
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.profile import ONE, Profile
+
+MOST_MOMENTS = 100  # in each of two coupled directions: two seconds of a core
+_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_SAMPLES = 32  # of the stiffness on a segment, which decide about the basis only
+_STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
+_MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
+_LARGEST_TURN = 0.25  # of a section from the middle of its cell [rad]
+_MISFIT = 1e-14  # relative, of the stiffness of the beam whose twist has polynomials for cosine and sine
+_MOST_DEGREE = 40  # of these polynomials in the twist
+
+_CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
+
+
+class RitzPart(ABC):
+    """Trial functions on a clamped beam, orthonormal in energy, in one plane (n, N) or in two (n, 2, N).
+
+    Subclasses have the nondimensional `beam`.
+    """
+
+    beam: Beam
+
+    @property
+    @abstractmethod
+    def ends(self) -> np.ndarray:
+        """Ends of the cells on which the curvatures are polynomials, as x/L."""
+
+    @property
+    @abstractmethod
+    def quadrature(self) -> ArcQuadrature:
+        """Gauss rule for products of two moments of the highest degree, and of less with properties."""
+
+    @property
+    @abstractmethod
+    def bending(self) -> np.ndarray:
+        """Curvatures at the points, along fixed directions."""
+
+    def at(self, profile: Profile, rule: ArcQuadrature | None = None) -> np.ndarray:
+        """Values of a property at the points of the rule, or of another on the cells, shape (N,)."""
+        points = (rule or self.quadrature).cells.points
+        return profile.split(self.ends.tolist()).at_points(points).ravel()
+
+    @property
+    def tip(self) -> TipMass:
+        """Rigid body at the tip."""
+        return self.beam.tip or TipMass(0.0)
+
+    @cached_property
+    def slope(self) -> np.ndarray:
+        """Slopes at the points, and at the tip: shape (..., N + 1)."""
+        return self.quadrature.integrate(self.bending)
+
+    @cached_property
+    def deflection(self) -> np.ndarray:
+        """Deflections at the points, and at the tip: shape (..., N + 1)."""
+        return self.quadrature.integrate(self.slope[..., :-1])
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        """Deflections of the centre of mass of the tip body."""
+        return self.deflection[..., -1] + self.tip.offset * self.slope[..., -1]
+
+    @cached_property
+    def loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Properties N_B, N_A and the mass, at the points."""
+        n_a, n_b = axial_tension(self.beam)
+        return self.at(n_b), self.at(n_a), self.at(self.beam.mass_per_length)
+
+    def gram(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """Integrate products of values (n, ..., N) with a weight (..., N)."""
+        flat = values.reshape(len(values), -1)
+        scale = np.broadcast_to(self.quadrature.weights * weight, values.shape[1:]).reshape(-1)
+        return (flat * scale) @ flat.T
+
+    def from_tip(self, values: np.ndarray, rule: ArcQuadrature | None = None) -> np.ndarray:
+        """Integrate from each point to the tip: shape (..., N); small values there keep their digits."""
+        cells = (rule or self.quadrature).cells
+        inwards = ArcQuadrature(Cells(-cells.ends[::-1], cells.points))
+        return inwards.integrate(values[..., ::-1])[..., -2::-1]
+
+
+# One plane ----------------------------------------------------------------------------------------
+
+
+def most_functions(beam: Beam) -> int:
+    """Largest number of functions of a Ritz part: on each segment, or of moments in all."""
+    most = MOST_FUNCTIONS - _extra_degrees(beam)
+    return most if _bends_by_moments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
+
+
+def segments_with_functions(beam: Beam) -> int:
+    """Number of segments that have functions of their own."""
+    return 1 if _bends_by_moments(beam) else len(beam.breakpoints) - 1
+
+
+def basis(beam: Beam, functions: int) -> Ritz:
+    """The assumed modes of a Ritz part; the number is that on each segment where these have their own."""
+    return Ritz(functions, "moments" if _bends_by_moments(beam) else "legendre")
+
+
+def _bends_by_moments(beam: Beam) -> bool:
+    """Whether polynomial curvatures do badly: on many segments, or where the stiffness almost vanishes."""
+    if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
+        return True
+    stiffness = beam.bending_stiffness.at_points(_SAMPLES)
+    return bool((stiffness.max(axis=1) > _STEEP * stiffness.min(axis=1)).any())
+
+
+def _extra_degrees(beam: Beam) -> int:
+    """Degrees by which moments, of loads or of the curvature, exceed the polynomials of the curvature."""
+    return max(beam.mass_per_length.degree + 4, beam.bending_stiffness.degree)
+
+
+@dataclass(frozen=True)
+class PlaneRitzPart(RitzPart):
+    """Trial functions in one plane, and the moments that their loads cause.
+
+    Forms and loads are, in this order, those of the tension N_B per squared speed, of the tension N_A per
+    acceleration of the root, of the mass with point masses and tip body, and of the slope at the tip.
+
+    Parameters
+    ----------
+    beam : Beam
+        A nondimensional beam.
+    functions : int
+        Number of functions; see `basis`.
+    """
+
+    beam: Beam
+    functions: int
+
+    @cached_property
+    def _ritz(self) -> Ritz:
+        return basis(self.beam, self.functions)
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Ends of the cells on which the curvatures are polynomials, as x/L."""
+        return self._ritz.cells(self.beam).ends
+
+    @property
+    def _degree(self) -> int:
+        """Degree of the curvatures."""
+        return (self.functions if self._ritz.on_each_segment else NODES) - 1
+
+    @cached_property
+    def quadrature(self) -> ArcQuadrature:
+        """Gauss rule for products of two moments of the highest degree, and of less with properties."""
+        return ArcQuadrature(Cells(self.ends, self._degree + _extra_degrees(self.beam) + 1))
+
+    @cached_property
+    def bending(self) -> np.ndarray:
+        """Curvatures at the points, shape (n, N)."""
+        given = self._ritz.spaces(self.beam).functions(_CONDITIONS).samples[2]
+        on_cells = given.reshape(len(given), len(self.ends) - 1, -1)
+        series = on_cells @ legendre_series(on_cells.shape[-1])[: self._degree + 1].T
+        values = legendre.legvander(gauss_rule(self.quadrature.cells.points)[0], self._degree).T
+        root = np.sqrt(self.quadrature.weights * self.at(self.beam.bending_stiffness))
+        (factor,) = qr(((series @ values).reshape(len(series), -1) * root).T, mode="r")
+        columns = series.reshape(len(series), -1)
+        orthonormal = solve_triangular(factor[: len(series)], columns, trans="T").reshape(series.shape)
+        return (orthonormal @ values).reshape(len(series), -1)
+
+    @cached_property
+    def _at_lumps(self) -> np.ndarray:
+        """Deflections of the point masses, shape (n, k)."""
+        return self.slope[:, :-1] @ self.quadrature.integrate_to(self.beam.lumps[0]).T
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """Energies of pairs of functions, shape (n, n): 1 but for rounding."""
+        return self.gram(self.bending, self.at(self.beam.bending_stiffness))
+
+    @cached_property
+    def forms(self) -> np.ndarray:
+        """The forms as matrices, shape (4, n, n)."""
+        tension_b, tension_a, mass = self.loads
+        slope, at_tip, centre = self.slope[:, :-1], self.slope[:, -1], self.centre
+        inertia = self.gram(self.deflection[:, :-1], mass) + self.tip.mass * np.outer(centre, centre)
+        inertia += (self._at_lumps * self.beam.lumps[1]) @ self._at_lumps.T
+        by_tension = (self.gram(slope, tension) for tension in (tension_b, tension_a))
+        return np.array([*by_tension, inertia, np.outer(at_tip, at_tip)])
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """Bending moments at the points that the loads of each function cause, shape (4, n, N)."""
+        tension_b, tension_a, mass = self.loads
+        slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
+        inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
+        inertia += (self._at_lumps * lumped) @ np.maximum(xi[:, None] - self.quadrature.xi, 0.0)
+        inertia = inertia + self.tip.mass * np.outer(self.centre, 1 - self.quadrature.xi + self.tip.offset)
+        by_tension = (self.from_tip(tension * slope) for tension in (tension_b, tension_a))
+        return np.array([*by_tension, inertia, np.broadcast_to(self.slope[:, -1:], slope.shape)])
+
+    def residuals(self, compliance: np.ndarray) -> np.ndarray:
+        """Integrate products of moments that the functions do not balance, with a compliance of cells (c,).
+
+        For the load j of the function i the moment is F_ji - EI p, where the curvature p of the functions is
+        the best answer if they are orthonormal: shape (4, n, 4, n).
+        """
+        own = self.at(self.beam.bending_stiffness) * self.bending
+        left = (self.moments - self.forms @ own).reshape(-1, own.shape[1])
+        products = self.gram(left, np.repeat(compliance, self.quadrature.cells.points))
+        return products.reshape(4, len(own), 4, len(own))
+
+
+# Two coupled planes -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class CoupledRitzPart(RitzPart):
+    """Trial functions in two planes, orthonormal in energy but for interpolation.
+
+    Curvatures are those of smooth bending moments in either direction.
+
+    Parameters
+    ----------
+    beam : Beam
+        A nondimensional beam with a second bending stiffness.
+    number : int
+        Number of moments in each direction.
+    flexibility : tuple of Profile
+        Upper bounds of 1/EI in the first direction of the sections and in the second.
+    """
+
+    beam: Beam
+    number: int
+    flexibility: tuple[Profile, Profile]
+
+    @cached_property
+    def stiffnesses(self) -> tuple[Profile, Profile]:
+        """Bending stiffness in the first direction of the sections and in the second."""
+        assert self.beam.second_bending_stiffness is not None
+        return self.beam.bending_stiffness, self.beam.second_bending_stiffness
+
+    @cached_property
+    def _twist(self) -> Profile:
+        return ONE.scaled(0.0) if self.beam.twist is None else self.beam.twist
+
+    # Cells and quadrature -------------------------------------------------------------------------
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Ends of the cells, on which compliance and twist are resolved, as x/L."""
+        ends = MomentSpaces(self.beam, self.number).cells
+        while (coarse := self._turns(ends) > _LARGEST_TURN).any():
+            ends = np.sort(np.concatenate([ends, (ends[:-1] + ends[1:])[coarse] / 2]))
+        return ends
+
+    def _turns(self, ends: np.ndarray) -> np.ndarray:
+        """Bounds of the angles by which sections are turned from the mean of their cell, shape (c,)."""
+        parts = self._twist.split(ends.tolist())
+        varying = tuple((0.0, *row[1:]) for row in parts.coefficients)
+        return bound_on_cells(Profile(parts.breakpoints, varying), ends)
+
+    @cached_property
+    def compliance(self) -> np.ndarray:
+        """Upper bounds of 1/EI in either direction on the cells, shape (2, c)."""
+        return np.array([bound_on_cells(p, self.ends) for p in self.flexibility])
+
+    @cached_property
+    def ratios(self) -> np.ndarray:
+        """Upper bounds of ratios of two stiffnesses in a cell, in the directions i and j: shape (2, 2)."""
+        largest = np.array([bound_on_cells(p, self.ends) for p in self.stiffnesses])
+        return (largest[:, None] * self.compliance).max(axis=-1)
+
+    @cached_property
+    def _turning(self) -> tuple[int, float]:
+        return twist_degree(float(self._turns(self.ends).max()), float(self.ratios.max()))
+
+    @property
+    def misfit(self) -> float:
+        """Relative distance of the stiffness from that of the beam of which integrals are exact."""
+        return self._turning[1]
+
+    @cached_property
+    def _nodes(self) -> ArcQuadrature:
+        """Points through which curvatures are interpolated."""
+        return ArcQuadrature(Cells(self.ends, NODES))
+
+    @cached_property
+    def quadrature(self) -> ArcQuadrature:
+        """Gauss rule for products of two moments, in the axes of the section."""
+        turns = 2 * self._turning[0] * self._twist.degree
+        of_loads = self.beam.mass_per_length.degree + 4 + turns
+        of_stiffness = max(p.degree for p in self.stiffnesses)
+        return ArcQuadrature(Cells(self.ends, NODES - 1 + max(of_loads, of_stiffness) + 1))
+
+    def _both_at(self, rule: ArcQuadrature) -> np.ndarray:
+        """Stiffnesses in the two directions at the points of a rule, shape (2, N)."""
+        return np.array([self.at(p, rule) for p in self.stiffnesses])
+
+    def _turned(self, values: np.ndarray, rule: ArcQuadrature, sign: int) -> np.ndarray:
+        """Turn components (n, 2, N) into the axes of the section (sign -1), or from there (1)."""
+        beta = self.at(self._twist, rule)
+        c, s = np.cos(beta), sign * np.sin(beta)
+        first, second = values[:, 0], values[:, 1]
+        return np.stack([c * first - s * second, s * first + c * second], axis=1)
+
+    # Functions ------------------------------------------------------------------------------------
+
+    @cached_property
+    def curvature(self) -> np.ndarray:
+        """Curvatures in the axes of the section at the points, shape (n, 2, N)."""
+        nodes = self._nodes
+        moments = self._all_moments
+        given = self._turned(moments, nodes, -1) / self._both_at(nodes)
+        weight = (nodes.weights * self._both_at(nodes)).ravel()
+        series = orthonormalize(given.reshape(len(given), -1).T, weight).T
+        series = series.reshape(-1, 2, len(self.ends) - 1, NODES) @ legendre_series(NODES).T
+        values = legendre.legvander(gauss_rule(self.quadrature.cells.points)[0], NODES - 1).T
+        return (series @ values).reshape(len(series), 2, -1)
+
+    @property
+    def _all_moments(self) -> np.ndarray:
+        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and what the first ones cause.
+
+        That is by inertia and by tension, where the beam vibrates as the first ones bend it.
+        """
+        first, nodes = self.number // 3, self._nodes
+        count = self.number - 2 * first
+        P = legendre.legvander(2 * nodes.xi - 1, count - 1).T
+        polynomials = np.einsum("ij,kx->kijx", np.eye(2), P).reshape(2 * count, 2, -1)
+        curvatures = self._turned(polynomials[: 2 * first], nodes, -1) / self._both_at(nodes)
+        slope = nodes.integrate(self._turned(curvatures, nodes, 1))[..., :-1]
+        mass, tension = (self.at(p, nodes) for p in (self.beam.mass_per_length, axial_tension(self.beam)[1]))
+        inertia = self.from_tip(mass * nodes.integrate(slope)[..., :-1], nodes)
+        return np.concatenate(
+            [polynomials, self.from_tip(inertia, nodes), self.from_tip(tension * slope, nodes)]
+        )
+
+    @cached_property
+    def bending(self) -> np.ndarray:
+        """Curvatures along e1, e2 at the points, shape (n, 2, N)."""
+        return self._turned(self.curvature, self.quadrature, 1)
+
+    # Forms and loads ------------------------------------------------------------------------------
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """Energies of pairs of functions, shape (n, n): 1 but for interpolation and rounding."""
+        return self.gram(self.curvature, self._both_at(self.quadrature))
+
+    def forms(self, direction: np.ndarray) -> np.ndarray:
+        """The forms of the tensions N_B, N_A, the mass, and the mass along a direction (2,): (4, n, n)."""
+        tension_b, tension_a, mass = self.loads
+        slope, along = self.slope[..., :-1], direction @ self.deflection
+        inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
+        centre = self.centre @ direction
+        softening = self.gram(along[..., :-1], mass) + self.tip.mass * np.outer(centre, centre)
+        return np.array([self.gram(slope, tension_b), self.gram(slope, tension_a), inertia, softening])
+
+    @cached_property
+    def twisting(self) -> np.ndarray:
+        """The form of twisting by inertia, int (v' w'' - v'' w'), shape (n, n)."""
+        across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
+        form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
+        return (form + form.T) / 2
+
+    @cached_property
+    def twisting_size(self) -> float:
+        """Norm of slopes times norm of curvatures, of all functions together."""
+        sizes = (np.sqrt(np.trace(self.gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self.bending))
+        return float(math.prod(sizes))
+
+    def unbalanced(
+        self, answer: np.ndarray, tension: np.ndarray, inertia: np.ndarray, tilt: np.ndarray, twisting: float
+    ) -> np.ndarray:
+        """Bending moments in the axes of the section that loads cause, less those of the answer: (n, 2, N).
+
+        Loads are parts of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another times the slope
+        at the tip, and a part of the twisting by inertia.  The answer has the curvatures that the functions
+        combine, by columns (n, n).
+        """
+        (tension_b, tension_a, mass), rule, at_tip = self.loads, self.quadrature, self.slope[..., -1]
+        shear = self.from_tip(mass * (inertia @ self.deflection[..., :-1]))
+        shear += (tension[0] * tension_b + tension[1] * tension_a) * self.slope[..., :-1]
+        arm = 1 - rule.xi + self.tip.offset
+        of_body = self.tip.mass * (self.centre @ inertia)[..., None] * arm
+        fixed = self.from_tip(shear) + of_body + (at_tip @ tilt)[..., None]
+        turned = at_tip[..., None] / 2 - self.slope[..., :-1]
+        fixed += twisting * np.stack([turned[:, 1], -turned[:, 0]], axis=1)
+        own = self._both_at(rule) * self.curvature
+        return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
+
+    def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
+        """Integrate products of moments (m, 2, N) with the bounds of the compliance."""
+        return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
+
+
+def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
+    """Degree in the twist of polynomials for its cosine and sine, and how far they change a stiffness.
+
+    Of an angle of at most `turn` from the middle of its range, interpolation in Chebyshev's points has an
+    error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that turns curvatures is then
+    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy
+    E grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    """
+    for degree in range(_MOST_DEGREE):
+        error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))
+        if (misfit := 5 * math.sqrt(ratio) * error) <= _MISFIT:
+            return degree, misfit
+    return _MOST_DEGREE, np.inf

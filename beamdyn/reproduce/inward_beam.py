@@ -1,0 +1,344 @@
+"""Lee and Yoo (2019), the inward beam: every number of the paper beside ours, and notes on the differences.
+
+The paper's equations are linear about the straight beam. Its numbers stand beside those of the linear model
+and of an inextensible beam that bends by any angle.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+import beamdyn as bd
+from beamdyn.common.results.comparison import Comparison
+from beamdyn.common.results.published import values_alone
+from beamdyn.modes.modal.model import Model
+from beamdyn.published import load
+from beamdyn.results.of_motion import sweep_peaks
+
+PAPER = load("lee_yoo_2019")
+VALUES = values_alone(PAPER)
+KNOWN = VALUES["reference"]
+SPEED: float = VALUES["largest_deflection"]["speed"]
+WINDOW: tuple[float, float] = tuple(VALUES["scene"]["window"])
+TOP = 150.0  # highest speed [rad/s]: the end of Fig. 6; Fig. 8 and 9 do not say where they end
+MM = 1e3  # millimetres in a metre
+
+# Sources of values; the numbers are those of notes.
+_PAPER, _ANSYS, _RECURDYN, _OWN = "paper", "ANSYS (4)", "RecurDyn (4)", "independent (5)"
+_BENDS = "large deflection (9)"  # why a beam that bends by any angle differs from the paper's
+_METHODS = (("Ritz", "ritz"), ("FE", "fem"))
+_MODELS = (("Ritz", "ritz", "bending"), ("FE", "fem", "bending"), ("with stretch", "ritz", "stretch"))
+_MODES = 5  # of the published run
+_FIGURE_6 = np.linspace(0, TOP, 151)  # speeds [rad/s]
+_DAMPING = 0.01  # damping ratio with which the ring-down decays before 20 s
+_ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly
+_JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are judged [rad/s]: that of Table 2, and one beyond
+
+
+def inward_scene(setting_angle: float = 0.0, **physics: Any) -> bd.Scene:
+    """The beam of Table 1 at a setting angle [deg], with effects of `Physics` by their names."""
+    given = VALUES["input"]
+    names = ("length", "width", "thickness", "youngs_modulus", "density")
+    beam = bd.Beam.rectangular(**{name: given[name] for name in names})
+    mount = bd.Mount(given["radius"], float(np.radians(setting_angle)))
+    return bd.Scene(beam, mount, physics=bd.Physics(**physics))
+
+
+def rolling_scene(**physics: Any) -> bd.Scene:
+    """The beam on a wheel that spins up and rolls over the wavy road: Table 3, Fig. 5 to 7."""
+    given = VALUES["input"]
+    road = bd.RoadWave(given["road_wavelength"], given["road_velocity_amplitude"])
+    motion = bd.RollingWheel(given["rolling_radius"], bd.SpinUp(SPEED, VALUES["scene"]["duration"]), road)
+    return replace(inward_scene(**physics), motion=motion)
+
+
+def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparison]:
+    """Compare our value and its error with known ones: source, value, and decimals and reason if they matter.
+
+    Decimals are those of the value as Python prints it unless they are given.
+    """
+    number, error = map(float, ours)
+    for source, value, *more in known:
+        decimals: Any = more[0] if more else len(np.format_float_positional(value).partition(".")[2])
+        published = tuple(value) if isinstance(value, list) else value
+        yield Comparison(what, source, published, number, error, decimals, *more[1:])
+
+
+# Frequencies and setting angles -------------------------------------------------------------------------
+
+
+def _first_frequency(scene: bd.Scene, speed: float, discretization: str = "ritz") -> tuple[float, float]:
+    """First frequency and its estimated error [Hz]."""
+    modes = bd.natural_modes(scene, speed, 1, discretization)
+    return float(modes.frequency[0]), float(modes.error[0]) * float(modes.frequency[0])
+
+
+def first_frequencies() -> Iterator[Comparison]:
+    """Compare with Table 2: the first frequency at three speeds, by three models of ours."""
+    for row, exact in zip(PAPER["first_frequency"], KNOWN["first_frequency"], strict=True):
+        speed, proposed, ansys = (row[name]["value"] for name in ("speed", "proposed", "ansys"))
+        decimals = row["proposed"]["decimals"], row["ansys"]["decimals"]
+        for name, method, model in _MODELS:
+            yield from _compare(
+                f"{speed:g} rad/s, {name}",
+                _first_frequency(inward_scene(stretch=model == "stretch"), speed, method),
+                (_PAPER, proposed, decimals[0], "" if speed else "unexplained (1)"),
+                (_ANSYS, ansys, decimals[1]),
+                (_OWN, exact[model]),
+            )
+
+
+def limits_of_setting_angle() -> Iterator[Comparison]:
+    """Compare with Section 3.3: the two setting-angle limits [deg].
+
+    The second is that of bases of N eigenfunctions without a top speed, then the converged one by top speed.
+    """
+    printed, scene = VALUES["setting_angle_limits"], inward_scene()
+    for name, method in _METHODS:
+        limits = bd.setting_angle_limits(scene, TOP, method)
+        ours, known = np.degrees((limits.first, limits.error)), KNOWN["first_setting_angle_limit"]
+        yield from _compare(f"first limit, {name}", ours, (_PAPER, printed["first"], 2), (_OWN, known))
+    by_modes = PAPER["reference"]["second_setting_angle_limit_of_modes"]
+    for modes, value in zip(by_modes["modes"], by_modes["value"], strict=True):
+        limit = np.degrees(bd.setting_angle_limits(scene, np.inf, bd.Ritz(modes, "eigenfunctions")).second)
+        paper = [(_PAPER, printed["second"], 2)] if modes == _MODES else []
+        what = f"second limit of {modes} modes"
+        yield from _compare(what, (limit, limit * _ROUNDING), *paper, (_OWN, value))
+    by_top = PAPER["reference"]["second_setting_angle_limit"]
+    known = [(entry["top_speed"]["value"], (_OWN, entry["value"])) for entry in by_top]
+    for top, row in [(TOP, (_PAPER, printed["second"], 2, "top speed (2)")), *known]:
+        limits = bd.setting_angle_limits(scene, top)
+        ours = np.degrees((limits.second, limits.error))
+        yield from _compare(f"second limit, to {top:g} rad/s", ours, row)
+
+
+def buckling_speed() -> Iterator[Comparison]:
+    """Compare the speed at which the inward beam buckles with our own reference: the paper prints none."""
+    for name, method in _METHODS:
+        point = bd.critical_point(inward_scene(), method)
+        ours = point.speed, point.error * point.speed
+        yield from _compare(f"critical speed, {name}", ours, (_OWN, KNOWN["critical_speed"]))
+
+
+# Motion -----------------------------------------------------------------------------------------------
+
+
+@cache
+def run(modes: int = _MODES, discretization: str = "ritz", *, large_deflection: bool = False) -> bd.Transient:
+    """Run of Table 3; with large deflection, which takes far longer, to a tenth of the accuracy."""
+    scene, tolerance = rolling_scene(large_deflection=large_deflection), 1e-5 if large_deflection else 1e-6
+    return bd.simulate(scene, VALUES["scene"]["t_end"], modes, tolerance, discretization=discretization)
+
+
+def _peak(found: bd.Transient) -> tuple[float, float]:
+    """Largest tip deflection in the window of Table 3, and its error [mm]."""
+    return MM * found.peak(*WINDOW), MM * found.time_error
+
+
+def _of_table_3(reason: str = "") -> tuple:
+    """The paper's deflection and that of RecurDyn [mm], as rows for `_compare`."""
+    printed = PAPER["largest_deflection"]
+    paper, other = (MM * printed[name]["value"] for name in ("proposed", "recurdyn"))
+    return (_PAPER, paper, 2, reason), (_RECURDYN, other, 2, "unexplained (6)")
+
+
+def largest_deflections() -> Iterator[Comparison]:
+    """Compare with Table 3: the largest tip deflection [mm] in 20 to 30 s, by 1 to 6 modes and by FE."""
+    exact = KNOWN["largest_deflection"]
+    known = dict(zip(exact["modes"], exact["in_window"], strict=True))
+    for modes, name, method in [*((n, "Ritz", "ritz") for n in range(1, 7)), (_MODES, "FE", "fem")]:
+        printed = _of_table_3("too few modes (7)" if modes < 3 else "")[: 1 + (modes == _MODES)]
+        what = f"{modes} mode{'s' * (modes > 1)}, {name}"
+        yield from _compare(what, _peak(run(modes, method)), *printed, (_OWN, MM * known[modes], 6))
+
+
+def largest_deflections_of_bent_beam() -> Iterator[Comparison]:
+    """Compare with Table 3: the largest tip deflection [mm] in 20 to 30 s with large deflection."""
+    exact = KNOWN["largest_deflection_elastica"]
+    for modes, known in zip(exact["modes"], exact["in_window"], strict=True):
+        printed = _of_table_3(_BENDS) if modes == _MODES else ()
+        ours = _peak(run(modes, large_deflection=True))
+        yield from _compare(f"{modes} modes, bent beam", ours, *printed, (_OWN, MM * known, 5))
+
+
+def steady_amplitudes() -> Iterator[Comparison]:
+    """Compare the steady amplitude [mm] at the speed of Table 3; the paper prints none."""
+    exact, (paper, _) = KNOWN["steady_response"], _of_table_3("ring-down (8)")
+    response = bd.steady_response(rolling_scene(), [SPEED], _MODES)
+    largest, lines = MM * response.amplitude[0], MM * response.bound[0]
+    error, deflection = response.error[0] * lines, MM * exact["largest_deflection"]
+    yield from _compare("steady amplitude, undamped", (largest, error), paper, (_OWN, deflection, 6))
+    yield from _compare("sum of the lines", (lines, error), (_OWN, MM * exact["line_sum"], 6))
+    damped = replace(rolling_scene(), damping_ratio=_DAMPING)
+    tail = bd.simulate(damped, VALUES["scene"]["t_end"], _MODES, 1e-6)
+    steady = float(MM * bd.steady_response(damped, [SPEED], _MODES).amplitude[0])
+    other = "harmonic balance (8)", steady, 4
+    yield from _compare("damped transient in 20 to 30 s", _peak(tail), other)
+
+
+def crossings(discretization: str = "ritz", gravity: float = 0.0) -> bd.Crossings:
+    """Speeds at which an excited frequency equals the first natural one: Fig. 7."""
+    scene = replace(rolling_scene(), gravity=gravity)
+    return bd.resonance_speeds(scene, TOP, 1, discretization=discretization)
+
+
+def resonances() -> Iterator[Comparison]:
+    """Compare with Fig. 7: speeds [rad/s] at which an excited frequency equals the first natural one."""
+    further, forced = KNOWN["further_resonance_speeds"], KNOWN["resonance_speeds"]
+    for name, method in _METHODS:
+        yield from _by_kind(crossings(method), "forced", forced, name)
+        yield from _by_kind(crossings(method), "parametric", further["parametric"], name)
+    weighed = _by_kind(crossings(gravity=9.81), "forced", [*forced, further["gravity"]], "gravity")
+    yield [*weighed][-1]
+
+
+def _by_kind(found: bd.Crossings, kind: str, known: list[float], name: str) -> Iterator[Comparison]:
+    """Compare the crossings of a kind with known ones [rad/s]."""
+    for c, value in zip([c for c in found if c.kind == kind], known, strict=True):
+        yield from _compare(f"{kind} {c.line.name}, {name}", (c.speed, c.error * c.speed), (_OWN, value))
+
+
+def run_sweep(
+    progress: Callable[[int, int], object] | None = None, speeds: np.ndarray = _FIGURE_6
+) -> bd.Sweep:
+    """Compute Fig. 6: the largest deflection in 20 to 30 s over speed."""
+    workers = min(2, os.cpu_count() or 1)
+    return bd.sweep(rolling_scene(), speeds, WINDOW, modes=_MODES, workers=workers, progress=progress)
+
+
+def sweep_peak_comparisons(result: bd.Sweep) -> Iterator[Comparison]:
+    """Compare the peaks of Fig. 6: their number, and their speeds [rad/s] with the crossings of Fig. 7."""
+    indices, count = sweep_peaks(result), PAPER["figures"]["fig_6"]["peaks"]
+    yield from _compare("number of peaks", (len(indices), 0.0), (_PAPER, count, 0))
+    half = np.diff(result.speeds).max() / 2
+    for i, (index, value) in enumerate(zip(indices, KNOWN["resonance_speeds"], strict=False), 1):
+        yield from _compare(f"speed of peak {i}", (result.speeds[index], half), (_OWN, value, 4))
+
+
+# A beam that bends by any angle ---------------------------------------------------------------------------
+
+
+def first_frequencies_of_bent_beam() -> Iterator[Comparison]:
+    """Compare the first frequency [Hz] with that of linear equations at the angles of Fig. 8 and 9."""
+    rows: list[tuple[float, float, Any]] = [
+        (figure["setting_angle"][1], speed, None)
+        for figure in (PAPER["figures"]["fig_8"], PAPER["figures"]["fig_9"])
+        for speed in _JUDGED
+    ]
+    for row in load("elastica")["harvester"]:
+        rows.append((row["setting_angle_deg"], row["speed"], (_OWN, float(row["frequency"]))))
+    for angle, speed, known in rows:
+        linear = known or ("paper's model", _first_frequency(inward_scene(angle), speed)[0], 2, _BENDS)
+        ours = _first_frequency(inward_scene(angle, large_deflection=True), speed)
+        yield from _compare(f"{angle:g} deg, {speed:g} rad/s", ours, linear)
+
+
+def limits_of_bent_beam() -> Iterator[Comparison]:
+    """Compare with Section 3.3: the setting-angle limits [deg] of a beam that bends."""
+    printed = VALUES["setting_angle_limits"]
+    yield from _compare("first limit, at rest", _bent_limit(0.0), (_PAPER, printed["first"], 2))
+    second = _PAPER, printed["second"], 2, _BENDS
+    yield from _compare(f"second limit, to {TOP:g} rad/s", _bent_limit(TOP), second)
+
+
+@cache
+def _bent_limit(speed: float) -> tuple[float, float]:
+    """Angle [deg] at which the slope of the first frequency at a speed changes sign, and its error.
+
+    The slope is that over a small step of speed, extrapolated to none.
+    """
+
+    def change(angle: float, step: float) -> float:
+        solver = Model(inward_scene(angle, large_deflection=True), bd.Ritz(16)).solver  # good to 1e-13
+        around = np.array([speed - step, speed + step]) if speed else np.array([0.0, step])
+        before, after = np.abs(solver.eigenvalues(around, 1)[:, 0]) ** 2
+        return after - before
+
+    between = (2.0, 6.0) if speed else (80.0, 89.9)  # angles at which the slopes have two signs [deg]
+    near, far = (float(brentq(change, *between, (step,), 1e-11)) for step in (0.5, 1.0))  # pyright: ignore
+    return near + (near - far) / 3, abs(near - far) / 30
+
+
+# Sections and notes ---------------------------------------------------------------------------------------
+
+
+def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
+    """All comparisons, by the titles of their tables."""
+    of_sweep = sweep_peak_comparisons(fig_6_sweep)
+    found = {
+        "Table 2: first natural frequency, beam pointing inward [Hz]": first_frequencies(),
+        "Table 3: largest tip deflection in 20 to 30 s [mm]": largest_deflections(),
+        "Table 3, continued: steady amplitude at the same speed [mm]": steady_amplitudes(),
+        "Fig. 6: peaks over speed [rad/s]": of_sweep,
+        "Fig. 7: speeds of resonance [rad/s]": resonances(),
+        "Section 3.3: limits of the setting angle [deg]": limits_of_setting_angle(),
+        "Section 4: speed of buckling, beam pointing inward [rad/s]": buckling_speed(),
+        "Table 3 with large deflection: largest tip deflection in 20 to 30 s [mm]": (
+            largest_deflections_of_bent_beam()
+        ),
+        "Fig. 8 and 9 with large deflection: first natural frequency [Hz]": first_frequencies_of_bent_beam(),
+        "Section 3.3 with large deflection: limits of the setting angle [deg]": limits_of_bent_beam(),
+    }
+    return {title: [*rows] for title, rows in found.items()}
+
+
+def passage() -> tuple[float, float]:
+    """Time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
+    motion = rolling_scene().motion
+    assert motion is not None
+    first = next(c.speed for c in crossings() if c.kind == "forced")
+    time = brentq(lambda t: float(motion.at(np.array([t])).speed[0]) - first, 0.0, motion.steady_start)
+    return float(time), first  # pyright: ignore[reportArgumentType]  (brentq returns a float)
+
+
+def notes() -> Iterator[str]:
+    """Notes on the tables, in the order of their numbers."""
+    limits = bd.setting_angle_limits(inward_scene(), 400.0)
+    yield (
+        "(1) The paper prints 65.231 Hz at rest; its own input gives "
+        f"{_first_frequency(inward_scene(), 0.0)[0]:.6f} Hz, as ANSYS does. The cause of the difference is "
+        "unknown."
+    )
+    yield (
+        "(2) Above the second limit the first frequency rises up to the top speed, so the limit depends on "
+        "the top speed. The paper does not state it; 150 rad/s is the end of its Fig. 6. Its 89.62 to "
+        "89.63 deg is what exactly five clamped-free modes give; with more modes the limit tends to 90 deg."
+    )
+    yield (
+        "(3) The limits are results of the linear equations outside their range: at the second limit for "
+        f"400 rad/s the rotation would bend the tip by {limits.static_deflection:.2g} lengths of the beam."
+    )
+    yield (
+        "(4) As printed in the paper. (5) Computed apart from this program, not in the paper: frequencies by "
+        "40-digit Rayleigh-Ritz and power series. A deviation '0 ± e' is within our estimated error e."
+    )
+    low, high = (MM * value for value in KNOWN["largest_deflection_exudyn"]["in_window"])
+    yield (
+        "(6) By another program, whose settings are not known. The response is sensitive to them: Exudyn, "
+        f"whose integrator damps, gives {low:.2f} to {high:.2f} mm."
+    )
+    yield "(7) Three modes and more give the digits of the paper; one and two do not."
+    (time, line), (peak, _) = passage(), _peak(run())
+    steady = MM * float(bd.steady_response(rolling_scene(), [SPEED], _MODES).amplitude[0])
+    yield (
+        f"(8) The {peak:.2f} mm of Table 3 are ring-down: on its way to {SPEED:g} rad/s the wheel passes "
+        f"the resonance at {line:.2f} rad/s at {time:.2f} s, and without damping the vibration excited "
+        f"there remains. The steady amplitude at {SPEED:g} rad/s is {steady:.2f} mm, {peak / steady:.1f} "
+        f"times less; with a damping ratio of {_DAMPING:g} the transient decays to it."
+    )
+    angle, bends = VALUES["setting_angle_limits"]["first"][1], {"large_deflection": True}
+    rest, turning = (_first_frequency(inward_scene(angle, **bends), speed)[0] for speed in (0.0, _JUDGED[0]))
+    yield (
+        "(9) Rotation bends this beam, unless it points at the axis, and the paper's equations are linear "
+        "about the straight beam: ours are those of an inextensible beam of any slope. It has the first "
+        f"limit of the paper at rest only: at {angle:g} deg its frequency does not stay, but is "
+        f"{turning - rest:.2f} Hz higher at {_JUDGED[0]:g} rad/s. From {_bent_limit(TOP)[0]:.2f} deg on it "
+        f"rises again before {TOP:g} rad/s, and at no angle does it rise first and then fall."
+    )

@@ -1,0 +1,310 @@
+"""The problem that a transient solves, its integration, and larger problems to compare with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.directions import check_direction
+from beamdyn.equations.elastica import QUANTITIES
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
+from beamdyn.modes.modal.eigenproblem import Solver
+from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
+from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
+from beamdyn.modes.modal.model import Model
+from beamdyn.scene.motion import Motion
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.along_path import distance_along_path
+from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
+from beamdyn.transient.gauss import growth_without_bound
+from beamdyn.transient.integration import follow_steps, integrate
+from beamdyn.transient.step_size import TooManySteps
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.trajectory import Path, Trajectory, in_direction, largest_on, magnitude_of, sample_tip
+
+if TYPE_CHECKING:
+    from typing import Self
+
+    from scipy.integrate import OdeSolver
+
+_LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as unbounded
+_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
+_REMEDY = "give 'rest' or an array"
+_FINER_MODEL = 1e-3  # error of the modes over the tolerance
+_Found = TypeVar("_Found")
+
+
+class Solution(NamedTuple):
+    """Motion in time: equations, path, errors of time integration [m], largest deflection [m] and method."""
+
+    system: AnySystem
+    path: Path
+    error: float
+    largest: float
+    method: str = ""
+
+    def peak(self, start: float, end: float, direction: int | None = None) -> float:
+        """Largest |tip deflection| [m] in a window [s], or of its component in a direction."""
+        if direction is None:
+            return largest_on(lambda q: magnitude_of(self.system.deflections(q)), self.path, start, end)
+        chosen = check_direction(direction)
+        return largest_on(
+            lambda q: np.abs(in_direction(self.system.deflections(q), chosen)), self.path, start, end
+        )
+
+
+def unless_unbounded(solve: Callable[[], _Found]) -> _Found | None:
+    """Solve; None if the motion grows without bound, or takes too many steps."""
+    try:
+        return solve()
+    except (ArithmeticError, TooManySteps):
+        return None
+
+
+def choose_for_basis(
+    scene: Scene, discretization: DiscretizationChoice, basis: ModalBasis, tolerance: float
+) -> Model:
+    """Choose the smallest model that gives the modes of a basis, far within the tolerance of a motion.
+
+    The basis has modes without damping.  In a scene with two planes, shear, rotary inertia or springs those
+    are what the choice rests on: damped ones take far longer to find in large models, and where shear has no
+    mass of its own, some do not exist.
+    """
+    speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
+    if scene.physics.large_deflection:  # the modes are those of the straight beam
+        straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+        return choose_for_basis(straight, discretization, basis, tolerance).of(scene)
+    plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
+    if plain or not scene.is_damped:
+        return choose_model(scene, discretization, speeds, modes, target)
+    return choose_model(scene.undamped, discretization, speeds, modes, target).of(scene)
+
+
+@dataclass(frozen=True)
+class TransientProblem(FieldsOnly):
+    """Checked arguments of `simulate`, with the modal basis in place of the number of modes."""
+
+    scene: Scene
+    t_end: float
+    tolerance: float
+    method: str | type[OdeSolver]
+    discretization: DiscretizationChoice
+    initial: str | np.ndarray
+    t_eval: np.ndarray | None
+    options: dict[str, Any]
+    basis: ModalBasis
+
+    @property
+    def motion(self) -> Motion:
+        """Motion of the scene."""
+        assert self.scene.motion is not None
+        return self.scene.motion
+
+    @cached_property
+    def model(self) -> Model:
+        """The discretized scene, chosen for the modal basis and the tolerance."""
+        return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
+
+    def system(self) -> AnySystem:
+        """Equations of the run, without the coordinates that stay at rest."""
+        if self.scene.physics.large_deflection:
+            return ElasticaSystem.of_model(self.model, self.basis, self.motion)
+        equations = self.model.modal_equations(self.basis)
+        if isinstance(self.initial, str):
+            return ModalSystem.from_rest(equations, self.motion, self.t_end)
+        return ModalSystem(equations, self.motion)
+
+    def solve(self) -> Solution:
+        """Integrate with the modal basis.
+
+        Raises
+        ------
+        NoModelAnswer
+            If the motion passes the critical speed, before any long work.
+        ArithmeticError
+            If it has grown without bound: its error estimates are void.
+        """
+        self._refuse_past_critical()
+        system = self.system()
+        y0 = initial_state(self.initial, system)
+        if self.method == "auto":
+            path, error, name = integrate(system, y0, self.t_end, self.tolerance)
+        else:
+            from beamdyn.transient.scipy_integrators import integrate_by_solve_ivp
+
+            name, error = self.method if isinstance(self.method, str) else self.method.__name__, np.nan
+            path = integrate_by_solve_ivp(system, y0, self.t_end, self.method, self.tolerance, self.options)
+        found = Solution(system, path, error, np.nan, name)
+        largest, length = found.peak(path.start, path.end), self.scene.beam.length
+        if not largest <= _LIMIT_DEFLECTION * length:
+            raise growth_without_bound(f"to {largest / length:.1g} times the length")
+        return found._replace(largest=largest)
+
+    def _refuse_past_critical(self) -> None:
+        """Refuse a motion that passes the critical speed; past it a beam of large deflection bends on."""
+        t = np.linspace(0, self.t_end, SPEED_SAMPLES)
+        speed = np.abs(self.motion.at(t).speed)
+        if self.scene.physics.large_deflection:
+            return
+        critical = self.model.solver.critical_speed
+        past = (speed >= critical) & (speed > 0)
+        if past.any():
+            k = int(past.argmax())
+            raise NoModelAnswer(
+                f"the motion reaches {speed[k]:.6g} rad/s at t = {t[k]:.4g} s, past the critical speed "
+                f"{critical:.6g} rad/s: the beam buckles there, and linear theory does not hold; lower the "
+                "speed"
+            )
+
+    # With more modes ------------------------------------------------------------------------------
+
+    def refined(self) -> Self | None:
+        """Problem with more modes, or a finer discretization where the basis has all modes; None if none."""
+        base = replace(self, method="auto", t_eval=None)
+        if self.basis.modes is None:
+            finer = self.model.discretization.finer()
+            return None if finer is None else replace(base, discretization=finer)
+        basis = self.basis.refined()
+        return basis and base._with_basis(basis)
+
+    def with_one_more(self) -> Self | None:
+        """Problem with one more mode; None if the basis has all."""
+        basis = None if self.basis.modes is None else self.basis.with_one_more()
+        return basis and self._with_basis(basis)
+
+    def _with_basis(self, basis: ModalBasis) -> Self:
+        """Problem with a larger basis, by "ritz" if the discretization has too few functions."""
+        assert basis.modes is not None and self.basis.modes is not None
+        initial = self.initial
+        if not isinstance(initial, str):
+            parts = np.reshape(initial, (-1, self.basis.modes))
+            initial = np.hstack([parts, np.zeros((len(parts), basis.modes - self.basis.modes))]).ravel()
+        discretization = ensure_size(self.scene, self.discretization, basis.modes)
+        return replace(self, basis=basis, discretization=discretization, initial=initial)
+
+    def _refined_of_same_functions(self) -> Self | None:
+        """Problem with more modes, of the functions of this one if these suffice: no choice takes time."""
+        finer = self.refined()
+        if finer is None or finer.basis.modes is None:
+            return finer
+        own = self.model.discretization
+        same = ensure_size(self.scene, own, finer.basis.modes) is own
+        return replace(finer, discretization=own) if same else finer
+
+    def follow_with_more_modes(self, path: Trajectory) -> tuple[AnySystem, Path] | None:
+        """Integrate with the modes of `refined` in the steps of a path: equations and motion; or None.
+
+        Two runs in the same steps differ by the modes of one of them; neither needs an error of its own.
+        Where the steps are too long for what the further modes do, those of `refined` are taken.
+        """
+        finer = self._refined_of_same_functions()
+        if finer is None or not isinstance(system := finer.system(), ModalSystem):
+            return None
+        y0 = initial_state(finer.initial, system)
+        if (found := unless_unbounded(lambda: follow_steps(path, system, y0, self.tolerance))) is None:
+            return None
+        followed, error = found
+        if error <= self.tolerance * float(magnitude_of(sample_tip(system, followed)[1]).max()) < np.inf:
+            return system, followed
+        refined = self.refined()
+        solved = refined and unless_unbounded(refined.solve)
+        return solved and (solved.system, solved.path)
+
+    def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
+        """Distance of the tip from that with the modes of `refined` [m], found along a path; or None."""
+        finer = self._refined_of_same_functions()
+        if finer is None or not isinstance(system := finer.system(), ModalSystem):
+            return None
+        states = (initial_state(each.initial, s) for each, s in ((self, own), (finer, system)))
+        return distance_along_path(path, own, system, *states)
+
+
+# The beginning -------------------------------------------------------------------------------------
+
+
+def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
+    """Coordinates and velocities (2 n,) at "rest", in "equilibrium", or as given by an array.
+
+    Raises
+    ------
+    ValueError
+        If it is another word, an array of another shape, or there is no equilibrium.
+    """
+    n = system.size
+    if isinstance(initial, str):
+        if initial == "rest":
+            return np.zeros(2 * n)
+        if initial == "equilibrium":
+            found = _bent_equilibrium(system) if isinstance(system, ElasticaSystem) else _equilibrium(system)
+            return np.concatenate([found, np.zeros(n)])
+        raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
+    y0 = as_floats(initial)
+    if y0 is None or y0.shape != (2 * n,) or not np.isfinite(y0).all():
+        bound = f"give {2 * n} finite numbers, coordinates then velocities, or 'rest' or 'equilibrium'"
+        raise InvalidValue("initial", initial, bound)
+    return y0
+
+
+def _equilibrium(system: ModalSystem) -> np.ndarray:
+    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    _, K, f = system.coefficients(np.zeros(()))
+    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
+        bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
+        raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
+    return np.linalg.solve(K, f)
+
+
+@dataclass(frozen=True)
+class LoadAtOnce(SteadyLoad):
+    """Equilibrium under all loads at one time, gravity and angular acceleration included.
+
+    The continuation parameter is the squared speed, and all other quantities grow in proportion to it; for a
+    beam that does not rotate it is the fraction of the loads.
+
+    Parameters
+    ----------
+    quantities : dict of str to float
+        Quantities of the root's motion, per unit of the parameter.
+    """
+
+    quantities: dict[Quantity, float] | None = None
+
+    @cached_property
+    def _values(self) -> dict[Quantity, float]:
+        """Quantities that differ from 0, with the push."""
+        values = dict(self.quantities or {})
+        values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
+        return {quantity: value for quantity, value in values.items() if value}
+
+    @property
+    def transverse(self) -> float:
+        """Transverse acceleration of the root, or what else bends the straight beam, per parameter."""
+        given = self._values.get("root_transverse", 0.0)
+        return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
+
+
+def _bent_equilibrium(system: ElasticaSystem) -> np.ndarray:
+    """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
+    root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
+    speed = abs(float(root.speed)) or 1.0
+    is_bent = system.branch == "bent"
+    if is_bent and not root.speed:
+        bound = "at time 0 the beam does not rotate, and no branch but that of the beam at rest exists"
+        raise InvalidValue(
+            "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
+        )
+    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
+    load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
+    try:
+        return find_bent(load, speed) if is_bent else follow_to(load, np.array([speed]))[0]
+    except NoEquilibrium as error:
+        bound = f"at time 0 there is none: {error}"
+        raise InvalidValue("initial", "equilibrium", bound, _REMEDY) from None

@@ -1,0 +1,210 @@
+"""The commands of `brakes`.  What is heavy is imported by the commands that need it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
+from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
+from beamdyn.common.screens.server import add_command
+from brakes.answers import STANDARD
+from brakes.cli.answering import What, app, run_command
+
+if TYPE_CHECKING:
+    from beamdyn.common.screens.screens import Program
+    from brakes.answers.base import BrakeType
+
+BrakeFile = Annotated[Path, Parameter(name="BRAKE.toml")]
+ForkliftFile = Annotated[Path, Parameter(name="FORKLIFT.toml")]
+StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
+
+
+@app.command(
+    usage="Usage: brakes caliper [OPTIONS] MECHANISM",
+    help_epilogue=examples(
+        "brakes caliper v-brake --plot v_brake.png",
+        'brakes caliper dual-pivot --vary "dimensions.side_pivot.x=22:32:3 mm"',
+        "brakes caliper examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+    ),
+)
+def caliper(
+    mechanism: Annotated[str, Parameter(name="MECHANISM", show_default=False)] = "",
+    /,
+    *,
+    free_bodies: Path | None = None,
+    animation: Path | None = None,
+    varying: VaryOptions = NOTHING_VARIED,
+    spreading: SpreadOptions = NO_SPREAD,
+    what: What = None,
+    list_: Annotated[Flag, Parameter(name="--list")] = False,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Forces, travels and mechanical advantage of a caliper, or of any planar mechanism.
+
+    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
+    statics does not determine and which contacts open, and then ends with code 1.
+
+    Parameters
+    ----------
+    mechanism
+        A TOML file, or a caliper with its usual dimensions: eebrake, single-pivot, dual-pivot, centre-pull,
+        cantilever or v-brake.
+    free_bodies
+        Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
+    animation
+        Write an animation of the stroke: .gif.
+    varying
+        Inputs that are varied, e.g. --vary "clearance=1:2:11 mm" --vary "dimensions.pad.y=-55:-45:11 mm".
+    spreading
+        Inputs that have a tolerance, e.g. --spread "clearance=+-0.1 mm": ranges of results.
+    what
+        Results with --vary or --spread, separated by commas, such as "finger_travel,right_advantage"; a
+        wrong name lists all.
+    list_
+        List the named calipers and their dimensions; needs no MECHANISM.
+    outputs
+        Files to write.
+    """
+    from beamdyn.common.edge.tables import show
+    from beamdyn.common.results.pictures import save_figure
+    from brakes.answers.caliper import MECHANISM, names_table
+    from brakes.calipers import NAMED
+
+    if list_:
+        files = {"plot": outputs.plot, "json": outputs.json, "csv": outputs.csv, "report": outputs.report}
+        files |= {"free-bodies": free_bodies, "animation": animation}
+        given = {"MECHANISM": mechanism or None} | {f"--{name}": value for name, value in files.items()}
+        given |= {f"--{name}": value for name, value in (varying.options | spreading.options).items()}
+        for name, value in (given | {"--what": what}).items():
+            if value is not None:
+                text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
+                says = "--list shows the named calipers alone; leave one of the two out"
+                raise ValueError(f"{name} = {text}: {says}")
+        show(names_table(name) for name in NAMED)
+        return
+    further = {
+        "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
+        "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
+    }
+    run_command(MECHANISM, "caliper", mechanism, varying, spreading, what, outputs, further)
+
+
+@app.command(
+    help_epilogue=examples(
+        "brakes forklift examples/forklift.toml --plot forklift.png",
+        'brakes forklift examples/forklift.toml --vary "stop.speed=10:30:3 km/h"',
+    )
+)
+def forklift(
+    file: ForkliftFile,
+    /,
+    *,
+    stage: StageChoice = "all",
+    varying: VaryOptions = NOTHING_VARIED,
+    spreading: SpreadOptions = NO_SPREAD,
+    what: What = None,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part.
+
+    Parameters
+    ----------
+    file
+        The truck, the stop, and one of its brakes.
+    stage
+        What to show; what comes before it is computed where it is needed.
+    varying
+        Inputs that are varied, e.g. --vary "stop.speed=10:30:9 km/h".
+    spreading
+        Inputs that have a tolerance, e.g. --spread "stop.friction=+-10%": ranges of results.
+    what
+        Results with --vary or --spread, separated by commas, such as "distance,A"; the file of --csv
+        without them lists all names.
+    outputs
+        Files to write.
+    """
+    from brakes.answers.forklift import FORKLIFT, TYPES
+
+    brake = FORKLIFT if stage == "all" else TYPES[stage]
+    run_command(brake, "forklift", str(file), varying, spreading, what, outputs, stage=stage)
+
+
+@app.command(help_epilogue=examples("brakes reproduce --output pictures"))
+def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
+    """Published numbers of brakes beside ours, what the papers' errors cost, and the pictures.
+
+    Parameters
+    ----------
+    output
+        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
+    """
+    from beamdyn.common.edge.tables import console
+    from brakes.reproduce import compare_all
+
+    check_folder("output", output)
+    screen = console()
+    screen.print(f"Pictures go into the folder {output} (--output names another).\n")
+    checked = compare_all(screen, output)
+    unexpected = sum(not verdict.as_expected for verdict in checked)
+    if unexpected:
+        raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
+    screen.print(
+        f"\nAll {len(checked)} verdicts are as expected: agreement, but for what is explained above."
+    )
+
+
+def make_program() -> Program:
+    """The program, imported when it is wanted."""
+    from brakes.app.program import BRAKES
+
+    return BRAKES
+
+
+add_command(
+    app,
+    make_program,
+    port=8081,
+    about="The interactive program in the browser: forklift, drum brake, calipers, any mechanism.",
+)
+
+
+def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> None:
+    """Add a command on a type of brake that needs no options of its own: name, help, type."""
+    plain = f"brakes {name} examples/{name}.toml"
+
+    @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))
+    def answer_file(
+        file: BrakeFile,
+        /,
+        *,
+        varying: VaryOptions = NOTHING_VARIED,
+        spreading: SpreadOptions = NO_SPREAD,
+        what: What = None,
+        outputs: Outputs = NO_FILES,
+    ) -> None:
+        """Answer a file.
+
+        Parameters
+        ----------
+        file
+            The TOML file that describes the brake.
+        varying
+            Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
+        spreading
+            Inputs that have a tolerance, e.g. --spread "friction=+-10%": ranges of results.
+        what
+            Results with --vary or --spread, separated by commas, such as "torque,pin_1"; the file of --csv
+            without them lists all names.
+        outputs
+            Files to write.
+        """
+        run_command(load(), name, str(file), varying, spreading, what, outputs)
+
+
+for _name, (_help, _load) in STANDARD.items():
+    add_standard(_name, _help, _load)

@@ -1,0 +1,218 @@
+"""A strip as a plate: values of another program, limits, and the energy by direct integration over the area.
+
+The values of `STRIPS` and `CANTILEVER_PLATES` were computed by a Kirchhoff-plate program that shares nothing
+with this one (products of polynomials along and across, without the correction of torsion by the free
+edges), converged to about 1e-5.  Those of `SOLIDS` are by CalculiX, C3D20R.
+"""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from numpy.polynomial.legendre import leggauss
+
+import beamdyn as bd
+from beamdyn.equations.assembly import assemble_equations
+from beamdyn.equations.discretization import CLAMPED
+from beamdyn.equations.fields.plate import Strip
+from beamdyn.scene.profile import ONE
+from beamdyn.scene.rectangle import Rectangle
+
+PLATE = bd.Physics(plate=True)
+STEEL = {"youngs_modulus": 200e9, "density": 7850.0}
+IN, OUT = 0.0, math.pi  # setting angles
+
+# Sides [m], Poisson's ratio, radius [m], setting angle, bending angle [deg], speed [rad/s], frequencies [Hz].
+STRIPS = [
+    ((0.05, 0.01, 0.0002), 0.3, 0.215, IN, 0, 0, (66.0704, 413.571, 659.547, 1160.446, 2017.41)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.215, IN, 0, 50, (62.8385, 411.139, 659.201, 1157.98)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.215, IN, 0, 100, (51.9397, 403.748, 658.161, 1150.55)),
+    ((0.05, 0.01, 0.0002), 0.0, 0.215, IN, 0, 0, (65.2305, 408.79, 744.77, 1144.6)),
+    ((0.05, 0.01, 0.0002), 0.0, 0.215, IN, 0, 100, (50.9071, 398.84, 743.54)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.215, IN, 30, 100, (52.5457, 403.826, 658.257, 1150.58, 2014.88)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.215, IN, 90, 100, (54.3234, 404.061, 658.546, 1150.66, 2014.98)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.05, OUT, 0, 300, (91.4491, 450.780, 662.629, 1200.63, 2027.30)),
+    ((0.05, 0.01, 0.0002), 0.3, 0.05, OUT, 90, 300, (103.163, 453.302, 666.061, 1201.58, 2028.42)),
+    ((0.1, 0.05, 0.001), 0.3, 0.1, OUT, 90, 0, (83.6085, 359.826, 521.045, 1171.17, 1462.21)),
+    ((0.1, 0.05, 0.001), 0.3, 0.1, OUT, 90, 150, (92.5741, 362.772, 529.229, 1175.53, 1470.39)),
+    ((0.2, 0.02, 0.002), 0.3, 0.1, OUT, 90, 0, (41.0508, 257.188, 720.676, 802.540, 1414.41)),
+]
+# Length over width, and omega L^2 (rho t/D)^(1/2) of the lowest modes, nu 0.3.
+CANTILEVER_PLATES = [
+    (1.0, (3.4710, 8.5063, 21.284, 27.199, 30.955, 54.184)),
+    (2.0, (3.4392, 14.8014, 21.4332, 48.176, 60.148, 92.516)),
+    (5.0, (3.3973, 21.2654, 33.9133, 59.669, 103.73)),
+]
+SOLIDS = [((0.05, 0.01, 0.0002), 655.99), ((0.1, 0.02, 0.002), 1586.8)]  # first torsional mode [Hz]
+
+
+@pytest.fixture
+def thin(monkeypatch):
+    """Sections without what their thickness adds to warping and turning."""
+    monkeypatch.setattr(Rectangle, "warping_factor", ONE)
+    monkeypatch.setattr(Strip, "rotary_inertia", ONE.scaled(0.0))
+
+
+@pytest.fixture
+def wide(monkeypatch, thin):
+    """Torsion of an infinitely wide section as well, as the plate program has it."""
+    monkeypatch.setattr(Rectangle, "torsion_factor", ONE)
+
+
+def strip(sides, nu, **given):
+    length, width, thickness = sides
+    return bd.Beam.rectangular(length, width, thickness, poissons_ratio=nu, **STEEL, **given)
+
+
+@pytest.mark.parametrize("case", STRIPS)
+def test_frequencies_are_those_of_a_plate_program(wide, case):
+    sides, nu, radius, setting, bending, speed, expected = case
+    scene = bd.Scene(strip(sides, nu), bd.Mount(radius, setting, math.radians(bending)), physics=PLATE)
+    found = bd.natural_modes(scene, speed, len(expected), discretization=bd.Ritz(13))
+    np.testing.assert_allclose(found.frequency, expected, rtol=3e-5)  # printed digits, and its convergence
+
+
+@pytest.mark.parametrize("case", [STRIPS[2], STRIPS[5], STRIPS[8]])
+def test_elements_agree(wide, case):
+    sides, nu, radius, setting, bending, speed, expected = case
+    scene = bd.Scene(strip(sides, nu), bd.Mount(radius, setting, math.radians(bending)), physics=PLATE)
+    found = bd.natural_modes(scene, speed, len(expected), discretization=bd.Fem(24))
+    np.testing.assert_allclose(found.frequency, expected, rtol=1e-3)  # of coarse elements
+
+
+@pytest.mark.parametrize(("ratio", "expected"), CANTILEVER_PLATES)
+def test_cantilever_plates(wide, ratio, expected):
+    beam = strip((0.05, 0.05 / ratio, 0.0002), 0.3)
+    found = bd.natural_modes(bd.Scene(beam, physics=PLATE), modes=len(expected), discretization=bd.Ritz(10))
+    D = 200e9 * 0.0002**3 / 12 / (1 - 0.3**2)
+    scaled = 2 * np.pi * found.frequency * 0.05**2 * math.sqrt(7850.0 * 0.0002 / D)
+    np.testing.assert_allclose(scaled, expected, rtol=1e-4)  # a Kirchhoff plate is one at any thickness
+
+
+@pytest.mark.parametrize(("sides", "expected"), SOLIDS)
+def test_first_torsional_mode_is_that_of_a_solid(sides, expected):
+    scene = bd.Scene(strip(sides, 0.3), physics=PLATE)
+    found = bd.natural_modes(scene, modes=5, discretization=bd.Ritz(8)).frequency
+    assert found[np.abs(found - expected).argmin()] == pytest.approx(expected, rel=1e-2)
+
+
+def test_without_poissons_ratio_bending_is_that_of_the_beam():
+    beam, mount = strip((0.05, 0.01, 0.0002), 0.0), bd.Mount(0.215)
+    plain = bd.natural_modes(bd.Scene(beam, mount), 100.0, 3, discretization=bd.Ritz(14)).frequency
+    found = bd.natural_modes(bd.Scene(beam, mount, physics=PLATE), 100.0, 4, discretization=bd.Ritz(14))
+    np.testing.assert_allclose(found.frequency[[0, 1, 3]], plain, rtol=1e-12)  # rounding
+
+
+def test_torsional_constant_of_rectangles():
+    # Timoshenko and Goodier (1970), Theory of Elasticity, table of 3 k1 = 3 J/(b t^3)
+    for ratio, printed in ((1, 0.1406), (1.5, 0.196), (2, 0.229), (3, 0.263), (5, 0.291), (10, 0.312)):
+        beam = bd.Beam.rectangular(1.0, 0.01 * ratio, 0.01, 200e9, 7850.0)
+        assert float(beam.section.torsion_factor(0.5)) / 3 == pytest.approx(
+            printed, abs=1e-3
+        )  # printed digits
+    square = bd.Beam.rectangular(1.0, 0.01, 0.01, 200e9, 7850.0).section
+    n = np.arange(1, 4001, 2)
+    series = 1 - 192 / np.pi**5 * (np.tanh(n * np.pi / 2) / n**5).sum()
+    assert float(square.torsion_factor(0.0)) == pytest.approx(series, rel=1e-12)  # terms beyond: 1e-15
+
+
+# The energy by direct integration ------------------------------------------------------------------
+
+TAPERED = bd.Beam.rectangular(
+    0.1,
+    Polynomial([0.03, -0.02, 0.006]),
+    Polynomial([0.001, -0.0004]),
+    poissons_ratio=0.35,
+    tip=bd.TipMass(2e-3, 0.002, 3e-7, axial_inertia=2e-7, transverse_inertia=4e-7),
+    **STEEL,
+)
+
+
+BASIS, STEP = bd.Ritz(3), 2e-6  # m: of differences, short against the parts of the strip
+t, weights = leggauss(14)
+
+
+def surface(scene, space, q):
+    """The deflection of coordinates as a function of x [m] and of y [m], each of shape (n,)."""
+    equations = assemble_equations(scene, space)
+    beam = scene.beam
+
+    def w(x, y):
+        eta = 2 * y / beam.section.width(x / beam.length)
+        total = np.zeros(np.broadcast(x, y).shape)
+        phi = space.spaces(scene.modelled_beam).functions(CLAMPED).evaluate(np.ravel(x / beam.length))
+        for name, block in equations.blocks.items():
+            parts = q[block].reshape(-1, len(phi))
+            numbers = {"bending": [0], "torsion": range(1, 40, 2), "camber": range(2, 40, 2)}[name]
+            for k, part in zip(numbers, parts, strict=False):
+                total += (part @ phi) * np.sqrt(2 * k + 1) * np.polynomial.Legendre.basis(k)(eta)
+        return total
+
+    return w
+
+
+def sample(scene, w):
+    """The strip at the points of a rule over its area, with derivatives of w by differences."""
+    beam, L = scene.beam, scene.beam.length
+    ends = np.array(scene.modelled_beam.breakpoints) * L
+    x = np.concatenate([(a + b) / 2 + (b - a) / 2 * t for a, b in pairwise(ends)])
+    dx = np.concatenate([(b - a) / 2 * weights for a, b in pairwise(ends)])
+    X, E = (each.ravel() for each in np.meshgrid(x, t, indexing="ij"))
+    b, h = beam.section.width(X / L), beam.section.thickness(X / L)
+    Y, area = E * b / 2, np.outer(dx, weights).ravel() * b / 2
+    e = STEP
+    f = {(i, j): w(X + i * e, Y + j * e) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    w_x, w_y = (f[1, 0] - f[-1, 0]) / (2 * e), (f[0, 1] - f[0, -1]) / (2 * e)
+    w_xx, w_yy = (f[1, 0] - 2 * f[0, 0] + f[-1, 0]) / e**2, (f[0, 1] - 2 * f[0, 0] + f[0, -1]) / e**2
+    w_xy = (f[1, 1] - f[1, -1] - f[-1, 1] + f[-1, -1]) / (4 * e**2)
+    nu = beam.section.poissons_ratio
+    D, c = 200e9 * h**3 / 12 / (1 - nu**2), beam.section.torsion_factor(X / L)
+    strain = area @ (D * (w_xx**2 + w_yy**2 + 2 * nu * w_xx * w_yy + 2 * (1 - nu) * c * w_xy**2))
+    return SimpleNamespace(
+        x=X, y=Y, b=b, area=area, rho_h=7850.0 * h, w=f[0, 0], w_x=w_x, w_y=w_y, strain=strain
+    )
+
+
+@pytest.fixture(params=range(3))
+def tapered(request, thin):
+    """A tapered strip with a tip body at an oblique bending angle, a random deflection, and its samples."""
+    scene = bd.Scene(TAPERED, bd.Mount(0.2, OUT, 0.7), physics=PLATE)
+    equations = assemble_equations(scene, BASIS)
+    q = np.random.default_rng(request.param).normal(size=equations.size) * 1e-3
+    w = surface(scene, BASIS, q)
+    return SimpleNamespace(scene=scene, q=q, pencil=equations.steady(), surface=w, strip=sample(scene, w))
+
+
+def test_strain_energy_of_a_tapered_strip(tapered):
+    found = tapered.q @ tapered.pencil.K0 @ tapered.q
+    assert found == pytest.approx(tapered.strip.strain, rel=1e-5)  # differences
+
+
+def test_kinetic_energy_with_a_body_that_moves_as_the_mean_over_the_width(tapered):
+    strip, tip, L = tapered.strip, TAPERED.tip, np.full(14, TAPERED.length)
+    y = t * float(TAPERED.section.width(1.0)) / 2
+    mean = weights @ tapered.surface(L, y) / 2
+    inboard = y * float(TAPERED.section.width(1 - STEP / TAPERED.length) / TAPERED.section.width(1.0))
+    slope = weights @ (tapered.surface(L, y) - tapered.surface(L - STEP, inboard)) / 2 / STEP
+    twist = weights @ (tapered.surface(L, y + STEP) - tapered.surface(L, y - STEP)) / (4 * STEP)
+    body = tip.mass * (mean + tip.offset * slope) ** 2 + tip.inertia * slope**2 + tip.axial_inertia * twist**2
+    found = tapered.q @ tapered.pencil.M @ tapered.q
+    assert found == pytest.approx(strip.area @ (strip.rho_h * strip.w**2) + body, rel=1e-4)  # difference
+
+
+def test_energy_and_load_of_rotation(tapered):
+    alone = replace(tapered.scene, beam=replace(TAPERED, tip=None))
+    strip, q, L, (c, s) = tapered.strip, tapered.q, TAPERED.length, (math.cos(0.7), math.sin(0.7))
+    outboard = strip.x[:, None] + (L - strip.x)[:, None] / 2 * (1 + t)
+    section = TAPERED.section.width(outboard / L) * TAPERED.section.thickness(outboard / L)
+    T = 7850.0 * (section * (0.2 + outboard)) @ weights * (L - strip.x) / 2 / strip.b
+    N = strip.rho_h * s**2 * (strip.b**2 / 4 - strip.y**2) / 2
+    expected = strip.area @ (T * strip.w_x**2 + N * strip.w_y**2 - c**2 * strip.rho_h * strip.w**2)
+    pencil = assemble_equations(alone, BASIS).steady()
+    assert q @ pencil.K2 @ q == pytest.approx(expected, rel=1e-5)  # differences
+    work = -strip.area @ (c * s * strip.rho_h * strip.y * strip.w)
+    assert pencil.f2 @ q == pytest.approx(work, rel=1e-9)  # rounding
