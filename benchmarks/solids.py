@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 
 import numpy as np
 
-from benchmarks.cases.solids import BENDING, SolidMode, Strip, random_strip, reference
+from benchmarks.peers.solids import BENDING, SolidMode, Strip, random_strip, reference
 from benchmarks.resumable import Cases
 from benchmarks.rows import Row, show, time_text
 

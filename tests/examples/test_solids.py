@@ -8,9 +8,8 @@ import pytest
 
 import beamdyn as bd
 from benchmarks import solids as references
-from benchmarks.cases import solids
-from benchmarks.cases.solids import BENDING, CAMBER, OTHER, STRETCH, TORSION, Mode, Strip
-from benchmarks.peers import hexahedra
+from benchmarks.peers import hexahedra, solids
+from benchmarks.peers.solids import BENDING, CAMBER, OTHER, STRETCH, TORSION, Mode, Strip
 
 STRIP = Strip(0.05, 0.01, 0.0002, 200e9, 7850, 0.3, radius=0.215, speed=100.0)
 COARSE = ((4, 1, 4), (8, 1, 8), (16, 1, 16))
