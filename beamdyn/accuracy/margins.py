@@ -18,7 +18,7 @@ class ErrorMargin(NamedTuple):
     factor : float
         Error over distance.
     distance : str
-        What is compared.
+        Names of what is compared.
     reason : str
         Why the factor is as large as it is.
     evidence : str
@@ -42,6 +42,12 @@ BASES_OF_FIELDS = ErrorMargin(
     "the same with two planes, shear or springs at the root",
     "a mode may lack functions of one field only, which both bases lack",
     "stated_physics_errors",
+)
+ROUNDING_OF_TWO = ErrorMargin(
+    1.5,
+    "rounding errors of one of two models that are compared",
+    "where both have the same matrices, they have the same errors, which do not show",
+    "stated_frequency_errors",
 )
 BASES_OF_PLATES = ErrorMargin(
     3.0,

@@ -30,7 +30,7 @@ Physics = Annotated[
         help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scene."
     ),
 ]
-ANALYSES: dict[str, Analysis] = {}  # by the name of the command, in the order of the manual
+ANALYSES: dict[str, Analysis] = {}  # all analyses by the name of their command, in the order of the manual
 WRITTEN = "written"  # marks an option that names a file to write
 DRAWN = "drawn"  # marks an option that chooses what a picture shows
 
@@ -164,11 +164,11 @@ class Analysis:
 
     @property
     def question(self) -> str:
-        """What it asks, in a sentence."""
+        """The question that the analysis answers, in a sentence: the first line of its docstring."""
         return (self.function.__doc__ or "").partition("\n")[0]
 
     def meaning(self, name: str) -> str:
-        """What an option means."""
+        """Explanation of an option: that of this analysis if it has one, else that of the option's type."""
         from docstring_parser import parse
 
         notes = [note.help for note in _notes(self.options[name].annotation) if isinstance(note, Parameter)]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.sensitivities.result import Sensitivities
 
 Kind = Literal["frequencies", "critical_speed", "crossings"]
-_OPTIONS = {  # on which each answer depends
+_OPTIONS = {  # options on which each answer depends
     "frequencies": ("speed", "modes", "tolerance"),
     "critical_speed": ("tolerance",),
     "crossings": ("speed", "modes", "order"),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
 
-_PERIODS, _FRAMES = 3, 60  # of a close-up
+_PERIODS, _FRAMES = 3, 60  # periods and frames of a close-up
 Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text), field="t_end")]
 

@@ -163,7 +163,7 @@ def _list(text: str, numbers: str, unit: str, scene: Scene | None) -> np.ndarray
 
 
 def _not_ascending(text: str, numbers: str, unit: str) -> str:
-    """What to give in place of speeds that do not ascend, each as it was written."""
+    """The refusal of speeds that do not ascend, with the order to give, each as it was written."""
     parts = {float(part): part.strip() for part in numbers.split(",")}
     ordered = ", ".join(parts[number] for number in sorted(parts))
     return f'--speeds = "{text}": the speeds must ascend without repeats; give "{ordered} {unit}"'

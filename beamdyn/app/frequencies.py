@@ -32,7 +32,7 @@ from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, per
 from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
-_SPEEDS, _FEW_SPEEDS = 121, 31  # in full, and while something is dragged
+_SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds in full, and while something is dragged
 _COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
 _HEADROOM = 1.08  # height of the chart over the highest frequency

@@ -58,7 +58,7 @@ def scene_screen(
     left_out_of : str
         What the effects left out change, such as "frequencies"; empty if the screen does not list them.
     **special
-        What the screen shows in its own way: further arguments of `Screen`.
+        Further arguments of `Screen`.
     """
     tables = (*beside, *SCENE_TABLES)
 

@@ -30,8 +30,8 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
 
-_BUDGET = 2.0  # for all measurements of a diagram [s]
-_RUNS = 5  # of the chosen model, the shortest of which counts
+_BUDGET = 2.0  # time for all measurements of a diagram [s]
+_RUNS = 5  # runs of the chosen model, the shortest of which counts
 _KEPT = 8  # scenes whose measurements are kept
 _LARGEST, _LEAST = 1.0, 1e-14  # relative errors that are drawn
 _ROUNDING = 1e-9  # relative, of a power of ten

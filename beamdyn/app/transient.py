@@ -20,7 +20,7 @@ from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screens import KeyResult, Slider
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.results.cautions import describe_choice
 from beamdyn.results.of_motion import time_of_peak, transient_table
 from beamdyn.scene.scene import Scene
@@ -28,12 +28,12 @@ from beamdyn.steady.crossings import label_crossing
 from beamdyn.transient.transient import Transient
 
 _TOLERANCE = 1e-4
-_MOST_PERIODS = 20_000  # of the first mode at rest in a run
+_MOST_PERIODS = 20_000  # periods of the first mode at rest in a run
 _PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
 _SAMPLES = 40  # number of the largest samples near which the peak is sought
 _CLOSE = 4  # periods of the first mode before and after the present time in the close-up
 _MOST_SENT = 4000  # points of the whole run on the page: enough to see its periods when zoomed
-_MODES = 3  # whose resonances are marked
+_MODES = 3  # modes whose resonances are marked
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
     speed = np.abs(scene.motion.at(t).speed)
     try:
         found = resonance_speeds(scene, float(speed.max()), _MODES)
-    except ValueError:  # at rest, or excited by no lines
+    except ValueError:  # the scene is at rest, or excited by no lines
         return
     for c in found:
         over = speed - c.speed

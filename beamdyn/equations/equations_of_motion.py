@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample
@@ -62,7 +62,7 @@ class SteadyPencil:
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
     def undamped(self) -> SteadyPencil:
-        """The same without damping and gyroscopic coupling."""
+        """Leave out damping and gyroscopic coupling."""
         return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
     @cached_property
@@ -224,7 +224,7 @@ class Equations:
     def _steady(self) -> SteadyPencil:
         rotating, shape, parts = root_motion(self.mount, MotionSample.steady(1.0)), (self.size, self.size), []
         for matrices in self.matrices:  # what is there at rest, and what motion of the root adds to it
-            moving = {quantity: matrix for quantity, matrix in matrices.items() if quantity != "unity"}
+            moving: dict[Quantity, np.ndarray] = {q: A for q, A in matrices.items() if q != "unity"}
             turning = _sum_over_quantities(moving, rotating, shape)
             parts.append((matrices.get("unity", np.zeros(shape)), turning))
         (K0, K2), (C, G), (M, _) = parts

@@ -19,7 +19,7 @@ from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 _ROUNDING = 1e-15  # relative to the largest acceleration of the root: rounding error of pi
 _SAMPLES = 501  # times in each of the two parts of a motion: until the speed is steady, and at steady speed
 _TURNS = 10  # revolutions sampled at steady speed
-_MOST_PLACES = 6  # of point masses, that are listed
+_MOST_PLACES = 6  # places of point masses that are listed
 _HORIZON = 100.0  # time sampled of a motion that is never steady and has no end [s]
 
 

@@ -170,7 +170,7 @@ class FemSpaces(FieldsOnly):
 
     @property
     def fewer_across(self) -> int:
-        """The same: meshes differ along the beam alone."""
+        """Number of functions `across` of the coarser model: its mesh differs along the beam alone."""
         return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:

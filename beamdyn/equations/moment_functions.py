@@ -41,9 +41,9 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-NODES = 10  # on each cell, through which the quotients are interpolated
+NODES = 10  # nodes on each cell, through which the quotients are interpolated
 _RESOLVED = 1e-7  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
-_ROUNDING = 10 * float(np.finfo(float).eps)  # of a sum of polynomials
+_ROUNDING = 10 * float(np.finfo(float).eps)  # rounding error of a sum of polynomials, relative
 _PHASE = 7.0  # largest change of phase of the highest polynomial within a cell [rad]
 _SHORTEST = 1e-10  # cell that is halved, as x/L
 _BLOCK = 32  # columns that LAPACK treats at once
@@ -246,7 +246,7 @@ def _build_forces(
     caused = []
     for name, order, weight in causes:
         force = weight * displaced[name][order]
-        for _ in range(derivatives - order):  # from each node to the tip
+        for _ in range(derivatives - order):  # integrates from each node to the tip
             integral = spaces.nodes.integrate(force)
             force = integral[:, -1:] - integral[:, :-1]
         caused.append(force)
@@ -293,12 +293,12 @@ class MomentSpace(SampledSpace):
     spaces: MomentSpaces
     conditions: RootConditions
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """Points of the Gauss rule on [0, 1], shape (k,)."""
         return self.spaces.quadrature.xi
 
-    @property
+    @cached_property
     def rule(self) -> np.ndarray:
         """Weights of the Gauss rule, shape (k,)."""
         return self.spaces.quadrature.weights

@@ -138,7 +138,7 @@ class Sampler:
 
     @classmethod
     def on_cells(cls, cells: Cells) -> Sampler:
-        """That of cells one after the other."""
+        """Sample on cells that follow one another."""
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
@@ -170,12 +170,12 @@ class Sampler:
 class SampledSpace(FieldsOnly, ABC):
     """Base class of spaces of functions that are smooth between the points of a Gauss rule on cells."""
 
-    @property
+    @cached_property
     @abstractmethod
     def points(self) -> np.ndarray:
         """Points of the rule on [0, 1], shape (k,)."""
 
-    @property
+    @cached_property
     @abstractmethod
     def rule(self) -> np.ndarray:
         """Weights of the rule, shape (k,)."""
@@ -185,7 +185,7 @@ class SampledSpace(FieldsOnly, ABC):
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the points, each of shape (n, k)."""
 
-    @cached_property
+    @property
     def size(self) -> int:
         """Number n of functions."""
         return len(self.samples[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 from itertools import pairwise
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -57,8 +57,6 @@ class Ritz:
 
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
-    order: ClassVar[None] = None  # the error does not fall as a power of the size
-    rounding: ClassVar[float] = 0.0  # scaling of the functions keeps all digits of their integrals
 
     def __post_init__(self) -> None:
         most, remedy = MOST_FUNCTIONS, "use fewer, or discretization='fem'"
@@ -69,6 +67,16 @@ class Ritz:
     def on_each_segment(self) -> bool:
         """Whether each segment between breakpoints has its own functions."""
         return self.basis == "legendre"
+
+    @property
+    def order(self) -> None:
+        """None: the error does not fall as a power of the size."""
+        return None
+
+    @property
+    def rounding(self) -> float:
+        """0: scaling of the functions keeps all digits of their integrals."""
+        return 0.0
 
     @property
     def converges_regularly(self) -> bool:
@@ -168,9 +176,13 @@ class RitzSpace(SampledSpace):
     spaces: RitzSpaces
     conditions: RootConditions
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
+        return self._coarse
+
+    @cached_property
+    def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer

@@ -176,7 +176,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     }
     position = rows(0)
     if math.isfinite(spring):
-        slope = kept[full.blocks[name].start] / length  # of bending, without shear
+        slope = kept[full.blocks[name].start] / length  # slope by bending, without shear
         position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
     return RootMoment(load, position, rows(1))
 

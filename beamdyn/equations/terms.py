@@ -85,7 +85,7 @@ class Terms(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{len(self.present)} of {counted(len(self), 'term')} present"
         yield f"{counted(len(self.left_out), 'effect')} left out"
         yield counted(len(self.lines), "line")

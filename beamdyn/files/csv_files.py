@@ -20,7 +20,7 @@ from beamdyn.files.scene_inputs import PLACES, VARYING
 from beamdyn.scene.motion import KINDS
 from beamdyn.scene.motion.records import check_record_times
 
-RADIUS = "r"  # in CSV files: distance from the axis of rotation
+RADIUS = "r"  # head in CSV files of the distance from the axis of rotation
 # Heads of CSV files, beside the keys of the beam.
 _HEADS = {
     "x/L": ("span", "blfract", "sec_loc", "span_loc"),
@@ -75,7 +75,7 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
     return data | {"beam": beam | {"stations": [heads, *rows]}}
 
 
-# Records in CSV files, which the table [motion] of a scene may name in  ---------------------------
+# Records of motions -------------------------------------------------------------------------------
 
 
 class RecordedQuantity(Quantity):
@@ -89,7 +89,7 @@ class RecordedQuantity(Quantity):
 
 @cache
 def _si_value(unit: str, of: str) -> Decimal:
-    """What one of a unit is in SI."""
+    """Size of a unit in SI."""
     return Decimal(repr(quantity(f"1 {unit}", of)))
 
 

@@ -95,7 +95,7 @@ def _kind_of_variation(given: Any) -> str | None:
     return next((kind for kind, keys in kinds.items() if keys & given.keys()), None)
 
 
-# The tables of a scene's TOML file, as texts with units, and the core o ---------------------------
+# Motions, physics and points ----------------------------------------------------------------------
 
 
 # Tables of the file -------------------------------------------------------------------------------
@@ -183,7 +183,7 @@ class _BeamInput(CoreSection):
 
     @property
     def _arguments(self) -> dict[str, Any]:
-        """What the constructors of `Beam` take."""
+        """Arguments of the constructors of `Beam`."""
         others = ("stations", "point_mass", "point_spring")
         given = {name: value for name, value in self if value is not None and name not in others}
         given = {name: _to_fractions(value, self.length) for name, value in given.items()}
@@ -250,7 +250,7 @@ class StiffnessInput(_BeamInput):
 
 
 def _to_fractions(given: Any, length: float) -> Any:
-    """The same with positions in metres turned into fractions of the length."""
+    """Turn positions in metres into fractions of the length; all else is unchanged."""
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):

@@ -33,7 +33,7 @@ def with_rolling_speeds(data: Mapping[str, Any]) -> Mapping[str, Any]:
         return data
     try:
         radius = quantity(motion.get("rolling_radius"), "m")
-    except InvalidInput:  # which is said where the table is checked
+    except InvalidInput:  # the check of the table names this mistake
         return data
     velocities = {key: as_velocity(value) for key, value in rotation.items()}
     if radius <= 0 or all(value is None for value in velocities.values()):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_MODES = 5  # by which the physics and the functions are chosen, where all functions are kept
+_MODES = 5  # modes by which physics and functions are chosen, where all functions are kept
 _STRAIGHT = "linear models are those about the straight beam"
 
 
@@ -79,20 +79,22 @@ def model_at_speed(
 def model_of_few_modes(
     scene: Scene, speed: float, few: int, discretization: DiscretizationChoice
 ) -> ModelAtSpeed:
-    """The same in a few modes that nobody asked for: in fewer where a given discretization has no more."""
+    """Make the model of a few modes that nobody asked for: of fewer if the discretization has no more."""
     return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization)
 
 
-# How many modes a linear model needs, and the error of what is computed ---------------------------
+# How many modes are needed ------------------------------------------------------------------------
 
 
 Evaluation = Callable[[ModelAtSpeed], np.ndarray]
+# A value by a model, and by the one with twice as many modes, if there is one.
+_Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
 _FIRST = 4  # modes of the first basis of "auto"
 _ACCURATE = 8  # modes for which its functions are chosen, at least
-_MOST = 40  # of the last
+_MOST = 40  # most modes of the last refinement
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
-_ROUNDING = 1e-12  # of the largest value
+_ROUNDING = 1e-12  # rounding error, over the largest value
 
 
 @dataclass(frozen=True)
@@ -159,7 +161,16 @@ def evaluate_accurately(
         model = model_at_speed(scene, speed, size, discretization)
         larger = _all_of(model, most) or _larger(model, discretization)
         return _with_error(model, evaluate(model), larger, evaluate)
-    model = _resolving(scene, speed, top, discretization)
+
+    # The model with functions for modes up to an angular frequency [rad/s], within limits.
+    def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
+        return modes, model_of_few_modes(scene, speed, modes, discretization)
+
+    def of_more(found: tuple[int, ModelAtSpeed]) -> tuple[int, ModelAtSpeed] | None:
+        largest = not isinstance(discretization, str) or found[0] >= _MOST
+        return None if largest else of_modes(min(_MOST, 2 * found[0]))
+
+    model = refine(of_modes(_ACCURATE), of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
     if (whole := _all_of(model, most)) is not None:
         return _with_error(whole, evaluate(whole), None, evaluate)
     few = replace(model, modes=min(_FIRST, model.modes or _FIRST))
@@ -171,41 +182,18 @@ def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
     return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
 
 
-def _resolving(scene: Scene, speed: float, top: float, discretization: DiscretizationChoice) -> ModelAtSpeed:
-    """The model with functions for modes up to an angular frequency [rad/s], within limits."""
-
-    def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
-        return modes, model_of_few_modes(scene, speed, modes, discretization)
-
-    def of_more(found: tuple[int, ModelAtSpeed]) -> tuple[int, ModelAtSpeed] | None:
-        largest = not isinstance(discretization, str) or found[0] >= _MOST
-        return None if largest else of_modes(min(_MOST, 2 * found[0]))
-
-    return refine(of_modes(_ACCURATE), of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
-
-
 def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
     """The model with all functions, unless they are many or some have no mass of their own."""
     whole = replace(model, modes=None)
     if whole.equations.size > most:
         return None
-    values = np.linalg.eigvalsh(whole.M)
-    return whole if values[0] > _MASSLESS * values[-1] else None
+    return whole if _count_with_mass(whole.M) == len(whole.M) else None
 
 
-class _Doubled(NamedTuple):
-    """A value by a model, and by the one with twice as many modes, if there is one."""
-
-    model: ModelAtSpeed
-    value: np.ndarray
-    larger: ModelAtSpeed | None
-    finer: np.ndarray | None
-
-    def settles(self, share: float) -> bool:
-        """Whether more modes change the value by at most a share of the largest."""
-        if self.finer is None:
-            return False
-        return bool(np.abs(self.finer - self.value).max() <= share * np.abs(self.finer).max())
+def _count_with_mass(M: np.ndarray) -> int:
+    """How many modes a mass matrix has: coordinates without mass, as of shear alone, add none."""
+    values = np.linalg.eigvalsh(M)
+    return int((values > _MASSLESS * values[-1]).sum())
 
 
 def _add_modes(
@@ -215,23 +203,30 @@ def _add_modes(
 
     def doubled(model: ModelAtSpeed, value: np.ndarray) -> _Doubled:
         larger = _larger(model, discretization)
-        return _Doubled(model, value, larger, None if larger is None else evaluate(larger))
+        return model, value, larger, None if larger is None else evaluate(larger)
 
     def of_more(found: _Doubled) -> _Doubled | None:
-        if found.larger is None or found.finer is None or (found.larger.modes or 0) >= _MOST:
+        _, _, larger, finer = found
+        if larger is None or finer is None or (larger.modes or 0) >= _MOST:
             return None
-        return doubled(found.larger, found.finer)
+        return doubled(larger, finer)
 
-    first = doubled(model, evaluate(model))
-    found = refine(first, of_more, lambda found: found.settles(tolerance / LINEAR_MODES.factor))
-    return _with_error(found.model, found.value, found.larger, evaluate, found.finer)
+    def settles(found: _Doubled) -> bool:
+        """Whether more modes change the value by at most a share of the largest."""
+        _, value, _, finer = found
+        share = tolerance / LINEAR_MODES.factor
+        return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
+
+    model, value, larger, finer = refine(doubled(model, evaluate(model)), of_more, settles)
+    return _with_error(model, value, larger, evaluate, finer)
 
 
 def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
     """The model with twice as many modes; None if the discretization has too few."""
     assert model.modes is not None
     modes, coarser = 2 * model.modes, model.model.coarser.equations
-    if all(len(coarser.places(names)) >= modes for names in coarser.coupled):
+    masses = (coarser.steady().part(coarser.places(names)).M for names in coarser.coupled)
+    if all(_count_with_mass(mass) >= modes for mass in masses):
         return replace(model, modes=modes)
     if not isinstance(discretization, str):
         return None

@@ -66,7 +66,7 @@ class FreeMotion:
     shapes : ndarray of complex, shape (n, m)
         Coordinates q of each free motion.
     states : ndarray of complex, shape (2 n, m)
-        The same in balanced coordinates, u and then w.
+        Each free motion in balanced coordinates, u and then w.
     coordinates : BalancedCoordinates
         These.
     damping : ndarray, shape (n, n)
@@ -87,7 +87,7 @@ class FreeMotion:
 
     @property
     def finite_poles(self) -> np.ndarray:
-        """Those of what has mass."""
+        """Poles of the coordinates that have mass."""
         inverse = self.inverse_poles[self.inverse_poles != 0]
         free = np.isinf(inverse)
         return np.where(free, 0.0, 1 / np.where(free, 1.0, inverse))

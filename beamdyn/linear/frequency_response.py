@@ -20,7 +20,7 @@ from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
@@ -86,7 +86,7 @@ class FrequencyResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The largest response, its frequency and its error in one line; see `Result.headline`."""
         at, size = self.peak
         names = [text.partition(" [")[0] for text in (self.output, self.input)]
         yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"

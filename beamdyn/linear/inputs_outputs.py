@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -20,7 +20,7 @@ _ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_
 _ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
 _NEGLIGIBLE = 1e-15  # component of a unit acceleration that rounding makes of 0
 
-Accelerations: TypeAlias = "dict[Quantity, complex]"  # of the root, per unit of the input
+Accelerations: TypeAlias = "dict[Quantity, complex]"  # accelerations of the root, per unit of the input
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,12 @@ class BaseMotion:
     'base acceleration, n2 [m/s2]'
     """
 
+    unit: ClassVar[str] = "m/s2"
+
     direction: BaseDirection = "bending"
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, get_args(BaseDirection))
-
-    @property
-    def unit(self) -> str:
-        """Unit of the input."""
-        return "m/s2"
 
     @property
     def label(self) -> str:
@@ -120,6 +117,8 @@ class PointForce:
     1.0
     """
 
+    unit: ClassVar[str] = "N"
+
     position: float | None = None
     direction: Direction = ALONG_BENDING
 
@@ -128,11 +127,6 @@ class PointForce:
         if self.position is not None:
             remedy = "a force at the root, 0, moves nothing"
             set_fields(self, position=positive("position", self.position, "m", remedy))
-
-    @property
-    def unit(self) -> str:
-        """Unit of the input."""
-        return "N"
 
     @property
     def label(self) -> str:
@@ -216,6 +210,9 @@ class DeflectionAt:
     'm per m/s2'
     """
 
+    unit: ClassVar[str] = "m"
+    _word: ClassVar[str] = "deflection"
+
     position: float | None = None
     direction: Direction = ALONG_BENDING
 
@@ -225,14 +222,9 @@ class DeflectionAt:
             set_fields(self, position=not_negative("position", self.position, "m"))
 
     @property
-    def unit(self) -> str:
-        """Unit of the output."""
-        return "m"
-
-    @property
     def label(self) -> str:
         """For tables and pictures."""
-        return f"deflection {place_in_words(self.position, self.direction)}"
+        return f"{self._word} {place_in_words(self.position, self.direction)}"
 
     def place(self, beam: Beam) -> tuple[float, int]:
         """Position x/L, and direction 0 or 1."""
@@ -259,15 +251,8 @@ class AccelerationAt(DeflectionAt):
     'm/s2 per m/s2'
     """
 
-    @property
-    def unit(self) -> str:
-        """Unit of the output."""
-        return "m/s2"
-
-    @property
-    def label(self) -> str:
-        """For tables and pictures."""
-        return f"acceleration {place_in_words(self.position, self.direction)}"
+    unit: ClassVar[str] = "m/s2"
+    _word: ClassVar[str] = "acceleration"
 
 
 @dataclass(frozen=True)
@@ -281,15 +266,8 @@ class MomentAtRoot:
     'N m per m/s2'
     """
 
-    @property
-    def unit(self) -> str:
-        """Unit of the output."""
-        return "N m"
-
-    @property
-    def label(self) -> str:
-        """For tables and pictures."""
-        return "bending moment at the root"
+    unit: ClassVar[str] = "N m"
+    label: ClassVar[str] = "bending moment at the root"
 
 
 @dataclass(frozen=True)
@@ -303,15 +281,8 @@ class StrainAtRoot:
     '1 per m/s2'
     """
 
-    @property
-    def unit(self) -> str:
-        """Unit of the output."""
-        return ""
-
-    @property
-    def label(self) -> str:
-        """For tables and pictures."""
-        return "strain at the root"
+    unit: ClassVar[str] = ""
+    label: ClassVar[str] = "strain at the root"
 
     @staticmethod
     def per_moment(beam: Beam) -> float:

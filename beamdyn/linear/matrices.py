@@ -15,7 +15,7 @@ from beamdyn.common.results.announced import announce, announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
 from beamdyn.linear.free_motion import free_motion
@@ -30,7 +30,7 @@ from beamdyn.linear.inputs_outputs import (
 )
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed, pole_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
@@ -38,7 +38,7 @@ from beamdyn.scene.validity import warn_of_left_out
 if TYPE_CHECKING:
     from scipy.signal import StateSpace
 
-_NODAL = 1e-9  # by which a nodal value may differ from 1
+_NODAL = 1e-9  # difference from 1 that a nodal value may have
 _FEW = 5  # modes, of which the lowest loses its stability first
 
 
@@ -71,12 +71,12 @@ class Matrices(Result):
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str
-        What each coordinate q and each equation is, with units.
+        Meaning of each coordinate q and each equation, with units.
     error : ndarray, shape (2 n,)
         Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
         discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
     warnings : tuple of str
-        What limits the validity of the matrices.
+        Limits of the validity of the matrices.
     provenance : Provenance
         How the matrices were computed.
 
@@ -106,7 +106,7 @@ class Matrices(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Size, speed, inputs and error of the lowest pole in one line; see `Result.headline`."""
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
         yield f"lowest pole: {error_at_most(self.error[:1])}"
@@ -265,7 +265,7 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
 
 
 def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
-    """What each coordinate is: a mode, a nodal value, or the coefficient of a function."""
+    """Name each coordinate with its unit: a mode, a nodal value, or the coefficient of a function."""
     for name, place in model.equations.blocks.items():
         size = place.stop - place.start
         if model.modes is not None:
@@ -275,7 +275,7 @@ def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
 
 
 def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator[str]:
-    """What each coordinate of a field is: a deflection or a slope at a node, or else a coefficient."""
+    """Name the coordinates of a field: deflections and slopes at nodes, or else coefficients."""
     deflection = model.equations.deflections.get(field_name)
     nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
     nodal: list[np.ndarray] = []
@@ -295,10 +295,10 @@ def _is_nodal(values: np.ndarray) -> bool:
     return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1
 
 
-# The linear model at a steady speed as a state space, for scipy.signal  ---------------------------
+# State space --------------------------------------------------------------------------------------
 
 
-_MODES = 6  # by default
+_MODES = 6  # number of modes by default
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 
 

@@ -11,6 +11,21 @@ which S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 p
 
 whose last integrand is smooth: resonances, however sharp, are integrated in closed form.  The mean square by
 white noise is half its density times the sum of the c_k.
+
+Size of the parametric term that linear models leave out: accelerations along the beam vary its stiffness.
+
+A random acceleration a along the beam varies the squared frequency of a mode by the fraction xi = kappa a,
+kappa = |phi K_GA phi| / omega^2 for its shape phi of unit mass.  For an oscillator of the damping ratio zeta,
+
+    q'' + 2 zeta omega q' + omega^2 (1 + xi) q = w,
+
+with xi and w of a wide band the equations of the second moments give the variance over that without xi
+
+    1 / (1 - x),    x = omega G(2 f) / (8 zeta),
+
+with the one-sided density G of xi at twice the natural frequency (stochastic averaging: Roberts and Spanos
+(1986), International Journal of Non-Linear Mechanics 21, 111-134).  At x = 1 the mean square grows without
+limit.  Of a narrow band, and of xi that depends on w, this tells the order of magnitude.
 """
 
 from __future__ import annotations
@@ -60,7 +75,7 @@ class PartialFractions:
         return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
 
     def through_filter(self, delay: float) -> PartialFractions:
-        """The same divided by 1 + s delay."""
+        """Partial fractions of the function divided by 1 + s delay."""
         pole = -1 / delay
         passed = self.residues / (1 + self.poles * delay)
         residue = complex(self(np.array(pole)) / delay)
@@ -85,9 +100,9 @@ class PoleIntegrals:
     Parameters
     ----------
     whole : float
-        Of g S.
+        Integral of g S.
     by_pole : ndarray of complex, shape (m,)
-        Of g S / (f - mu_k).
+        Integrals of g S / (f - mu_k).
     """
 
     whole: float

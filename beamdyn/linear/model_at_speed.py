@@ -196,7 +196,7 @@ class ModelAtSpeed(FieldsOnly):
         return Row(factor * position, factor * velocity, zero)
 
     def residual(self, observation: Observation, drive: HarmonicDrive) -> np.ndarray:
-        """What the static deflection beyond the kept coordinates adds to an output: shape (3,).
+        """Share of an output due to static deflection beyond the kept coordinates: shape (3,).
 
         Per unit of the input, and of its first and second time derivative.
         """
@@ -260,7 +260,7 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error beyond which the partner of a pole may be that of another mode
-_ROUNDING = 4 * float(np.finfo(float).eps)  # of the matrices, relative
+_ROUNDING = 4 * float(np.finfo(float).eps)  # rounding error of the matrices, relative
 
 
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:

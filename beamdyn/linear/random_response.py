@@ -43,7 +43,7 @@ from beamdyn.linear.spectra import (
 )
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
@@ -115,7 +115,7 @@ class RandomResponse(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The output's rms and its error in one line; see `Result.headline`."""
         yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
@@ -209,7 +209,11 @@ def random_response(
         _DIRECT,
     )  # fmt: skip
     model, rms = refined.model, float(refined.value[0])
-    f = _given(frequencies) if frequencies is not None else _frequencies(spectrum, model, drive)
+    if frequencies is None:
+        f = _frequencies(spectrum, model, drive)
+    else:
+        f = ascending("frequencies", frequencies)
+        refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
     of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
     parametric = parametric_term(model, drive, spectrum)
     return RandomResponse(
@@ -237,13 +241,6 @@ def random_response(
 # The response -------------------------------------------------------------------------------------
 
 
-def _given(frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
-    """The frequencies asked for [Hz], checked."""
-    f = ascending("frequencies", frequencies)
-    refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
-    return f
-
-
 def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation) -> np.ndarray:
     """Frequencies of the response [Hz], such that straight lines between its densities have their area.
 
@@ -254,7 +251,7 @@ def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Ex
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # where all are overdamped
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # without resonances all are overdamped
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, about_resonances(poles)
     between = about[(about > bottom) & (about < top)]

@@ -23,7 +23,7 @@ from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
 _DENSE = 0.1  # step of samples over the distance to the nearest pole
-_HALVINGS = 60  # of an interval, to rounding
+_HALVINGS = 60  # halvings of an interval, to rounding
 _UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
 _ROUNDING = 1e-9  # relative, within which the numbers of a peak are found
 _LEVEL = 1e-10  # relative, by which a peak stands above the minima beside it, or it is rounding
@@ -117,20 +117,14 @@ def find_peaks(
 def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
     """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
     own = np.array(peak[:3])
-    with np.errstate(invalid="ignore"):  # of a magnitude that is inf
+    with np.errstate(invalid="ignore"):  # a magnitude may be inf
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
         error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
         for margin, others in compared:
-            error += margin * np.nan_to_num(np.abs(_nearest(peak, others) - own), nan=np.inf, posinf=np.inf)
+            same = (each for each in others if each.harmonic == peak.harmonic)
+            near = min(same, key=lambda each: abs(each.frequency - peak.frequency), default=[np.inf] * 3)
+            error += margin * np.nan_to_num(np.abs(np.array(near[:3]) - own), nan=np.inf, posinf=np.inf)
     return np.where(np.isfinite(own), error, np.nan)
-
-
-def _nearest(peak: Peak, others: list[Peak]) -> np.ndarray:
-    """Frequency, magnitude and bandwidth of the nearest peak of the same harmonic; inf if there is none."""
-    same = [each for each in others if each.harmonic == peak.harmonic]
-    if not same:
-        return np.full(3, np.inf)
-    return np.array(min(same, key=lambda each: abs(each.frequency - peak.frequency))[:3])
 
 
 def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float) -> Iterator[Peak]:

@@ -1,4 +1,12 @@
-"""Power spectral densities of inputs: tables, and roads by ISO 8608."""
+"""Power spectral densities of inputs: tables, and roads by ISO 8608.
+
+Random inputs at a steady speed: what acts, and with which density.
+
+Frequencies of the density of a random response: straight lines between its values have its area.
+
+They are dense where the density of the input is steep, and about each resonance, down to its bandwidth.  An
+input that does not turn with the beam appears shifted by the speed.
+"""
 
 from __future__ import annotations
 
@@ -43,9 +51,9 @@ class SpectrumPiece:
     start, end : float
         Its ends [Hz].
     constant, slope : float
-        Of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
+        Numbers of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
     power : float
-        Of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
+        Exponent of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
     """
 
     start: float
@@ -277,7 +285,7 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
 
 _STEP = 0.02  # relative distance of frequencies of the input
 _STEEPEST = 0.1  # logarithm of the ratio of densities of the input at two of them
-_DECADES = 3  # that a piece which begins at 0 is listed downwards
+_DECADES = 3  # decades that a piece which begins at 0 is listed downwards
 _CLOSE = 0.2  # distance of two frequencies near a resonance, over that from it or its bandwidth
 _REACH = 30.0  # half bandwidths about a resonance that are dense, beside its frequency
 _BESIDE = 1e-6  # relative distance of a frequency outside of an input to its end, where the density falls

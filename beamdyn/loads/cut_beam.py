@@ -84,12 +84,12 @@ class CutSpace(SampledSpace):
         """Number of trial functions, before the virtual displacements."""
         return 0 if self.space is None else self.space.size
 
-    @property
+    @cached_property
     def points(self) -> np.ndarray:
         """Points of the rule, and the stations."""
         return self.quadrature.points
 
-    @property
+    @cached_property
     def rule(self) -> np.ndarray:
         """Weights of the rule, and 1 at the stations."""
         return self.quadrature.weights

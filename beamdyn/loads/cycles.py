@@ -44,7 +44,7 @@ class LoadCycles(Result):
     start, end : float
         The time window [s].
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was computed.
 
@@ -70,7 +70,7 @@ class LoadCycles(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Number of cycles, their place and largest range in one line; see `Result.headline`."""
         yield f"{number(self.counts.sum())} of {self.quantity} at {self.say_length(self.x)}"
         yield f"largest range {number(self.ranges.max(initial=0.0), UNITS[self.quantity])}"
         yield warned(self.warnings)

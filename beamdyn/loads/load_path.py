@@ -19,7 +19,7 @@ from beamdyn.transient.trajectory import Trajectory
 
 _COMPARED = 4000  # times at which two runs are compared; at most twice as many
 _BATCH = 500  # times at once
-_REFINEMENTS, _FINE = 3, 17  # of a maximum, each on a grid so many times as fine
+_REFINEMENTS, _FINE = 3, 17  # refinements of a maximum, each on a grid so many times as fine
 _OF_TURNING_POINTS = 2  # refinements of a turning point: values within 1e-6, as parts of the largest range
 _BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
 _BEFORE_JUMP = 1e-9  # over a segment: loads may jump at its end
@@ -182,7 +182,7 @@ class LoadPath(FieldsOnly):
             error = estimate_time_error(system, path.segments, np.diag(largest))
             contributions = np.empty(system.size)
             contributions[rank] = error.modes
-            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # of each station
+            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # share of each station
             totals = shares @ contributions + shares.max(axis=1) * error.interpolation
             errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
         return errors

@@ -46,7 +46,7 @@ from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi
 _EPSILON = 2.0**-48  # rounding of a term, some units of the last digit
-_FIRST_MODES = 4  # of a model that tells the sizes of the outputs
+_FIRST_MODES = 4  # modes of a model that tells the sizes of the outputs
 _OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors follow their logarithm
 _LEAST = math.e  # crossings that the formula is evaluated with, at least
 
@@ -156,7 +156,7 @@ class LinearLoads:
         (at, direction), planes = drive.force, self.model.equations.planes
         xi, inboard = self.stations.xi, self.stations.inboard
         outboard = (xi < at) | (inboard & (xi == at))
-        loads = np.zeros((len(xi), 1 + 2 * planes))  # of a unit force on the parts outboard of it alone
+        loads = np.zeros((len(xi), 1 + 2 * planes))  # loads by a unit force on the outboard parts alone
         loads[:, 1 + direction] = outboard
         loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
         return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)

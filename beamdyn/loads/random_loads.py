@@ -28,7 +28,7 @@ from beamdyn.loads.load_statistics import (
 from beamdyn.loads.span_loads import AskedLoads, Case, SpanLoads, with_unit
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.static_load import warn_of_rotation
+from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _TURN = 2 * np.pi
 _HOUR = 3600.0
 _FEW = 10.0  # crossings in the duration, below which the largest is no matter of statistics
-_DIGITS = 3  # of the largest that are expected: statistics have no more
+_DIGITS = 3  # digits of the largest that are expected: statistics have no more
 _UNSURE = 0.05  # error over the largest, above which no digit of it may be sure
 _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
 
@@ -86,7 +86,7 @@ class RandomLoads(SpanLoads):
     case: ClassVar[Case] = Case("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Largest moment and strain to be expected, with errors, in one line; see `Result.headline`."""
         yield f"{counted(len(self.x), 'station')} at {self.say_speed(self.speed)}"
         for name in ("moment", "strain"):
             if np.isfinite(self.values(name)).any():

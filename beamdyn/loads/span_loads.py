@@ -13,7 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.loads.stations import (
     UNITS,
     Positions,
@@ -116,7 +116,7 @@ class SpanLoads(Result):
     force_error, moment_error, curvature_error, strain_error, stress_error : ndarray
         Estimated errors; of a transient one for the whole run, without the first axis.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was computed.
 
@@ -148,7 +148,7 @@ class SpanLoads(Result):
     case: ClassVar[Case]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Largest moment and strain of all cases and stations in one line; see `Result.headline`."""
         yield f"{len(self.cases)} x {counted(len(self.x), 'station')}"
         for name in ("moment", "strain"):
             size = np.abs(self.values(name))
@@ -270,7 +270,7 @@ class AskedLoads:
     points : ndarray, shape (S, P, 2)
         Points of the sections [m].
     notes : tuple of str
-        What the strain lacks.
+        Parts that the strain lacks.
     start : float
         When it was asked [s].
     """

@@ -16,8 +16,7 @@ from beamdyn.loads.span_loads import SPEEDS, AskedLoads, Case, SpanLoads, refuse
 from beamdyn.loads.stations import Positions, SectionPoints
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import static_load
+from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
@@ -28,7 +27,7 @@ from beamdyn.scene.validity import (
     warn_of_strain,
 )
 
-_MODES = 3  # of which the model is accurate: loads in equilibrium need no more
+_MODES = 3  # modes of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
 _ROUNDING = 1e-12  # relative to the largest along the span
 

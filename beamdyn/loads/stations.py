@@ -22,7 +22,7 @@ from beamdyn.scene.scene import Scene
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
 SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
 
-UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # of the quantities
+UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # units of loads
 
 _EVENLY = 21  # stations by default, besides both sides of each jump
 _MOST, _MOST_POINTS = 1001, 100
@@ -269,7 +269,7 @@ def mode_error(
         Infinite where the distance exceeds 0.3 of the largest value along the span, and rounding: then it
         does not bound the error.
     """
-    modes = np.inf if basis.modes is None else basis.modes  # of a field
+    modes = np.inf if basis.modes is None else basis.modes  # number of modes of each field
     near = np.abs(stations.xi[:, None] - with_neighbours(stations).xi) <= 1 / (modes + 0.5)
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     planes = (distance.shape[-1] - 1) // 2

@@ -24,7 +24,7 @@ from beamdyn.transient.simulate import Transient
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_TIMES = 2000  # of the result by default
+_MOST_TIMES = 2000  # times of the result by default
 
 
 @dataclass(frozen=True)

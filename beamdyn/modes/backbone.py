@@ -45,7 +45,7 @@ class Backbone(Result):
     error : float
         Estimated absolute error of the coefficient, which is nondimensional as that is.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -67,7 +67,7 @@ class Backbone(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"mode {self.mode} at {self.say_speed(self.speed)}: {number(self.frequency, 'Hz')}"
         yield from (
             f"coefficient {number(self.coefficient)}",
@@ -144,8 +144,8 @@ def backbone(
 
 
 SMALL = 0.02  # amplitude of the tip over the length, and half of it
-_SAMPLES = 16  # of a period: harmonics up to the seventh are apart
-_RESONANT = 1e-3  # of the dynamic stiffness's condition, below which a second harmonic is a mode
+_SAMPLES = 16  # samples of a period: harmonics up to the seventh are apart
+_RESONANT = 1e-3  # condition of the dynamic stiffness below which a second harmonic is a mode
 
 
 @dataclass(frozen=True)

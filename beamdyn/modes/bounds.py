@@ -6,12 +6,15 @@ The theorem is that of `beamdyn.modes.residual_bound`; here, the Ritz part grows
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import TypeAlias
 
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import count, real
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import listed, spanned, warned
@@ -81,7 +84,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
         yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
 
@@ -142,7 +145,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
     upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
     method = max((ritz for _, _, ritz in enclosed), key=lambda ritz: ritz.functions)
-    speeds = np.array([speed])  # at which rotation may bend the beam too far for the model that is bounded
+    speeds = np.array([speed])  # rotation may bend the beam too far for the bounded model
     tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
     deflection = np.linalg.norm(tips, axis=1)
     bent = warn_of_static_deflection(deflection, scene.beam.length, speeds)
@@ -206,7 +209,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip, unit = beam.tip or TipMass(0.0), m * length  # of mass
+    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass
     moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)
@@ -228,19 +231,23 @@ def bound_critical_speed(scene: Scene) -> float:
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:
         return 0.0
-    proved, most, segments = 0.0, most_functions(scaled.beam), segments_with_functions(scaled.beam)
-    for total in _PROOF_SIZES:
-        size = min(most, max(6, total // segments))
-        split = PlaneEnclosure(scaled, size, 1.0, flexibility)
-        softening = float(np.maximum(-split.spin, 0) @ split.tails)
-        largest = min(1 / max(softening, _EPS), split.ritz_critical_speed**2)
+    most, segments = most_functions(scaled.beam), segments_with_functions(scaled.beam)
+    sizes = iter(_PROOF_SIZES)
+
+    def finer(found: tuple[float, float]) -> tuple[float, float] | None:
+        """Largest squared speed for which the stiffness is proved positive, and the Ritz value."""
+        if (total := next(sizes, None)) is None:
+            return None
+        part = PlaneEnclosure(scaled, min(most, max(6, total // segments)), 1.0, flexibility)
+        softening = float(np.maximum(-part.spin, 0) @ part.tails)
+        largest = min(1 / max(softening, _EPS), part.ritz_critical_speed**2)
         for squared in largest * _SHARES:
-            form = split.stiffness_form(squared)
+            form = part.stiffness_form(squared)
             if form is not None and np.isfinite(form).all() and np.linalg.eigvalsh(form)[0] >= 0:
-                proved = max(proved, float(squared))
-                break
-        if proved >= _CLOSE * split.ritz_critical_speed**2:
-            break
+                return max(found[0], float(squared)), part.ritz_critical_speed**2
+        return found[0], part.ritz_critical_speed**2
+
+    proved, _ = refine((0.0, np.inf), finer, lambda found: found[0] >= _CLOSE * found[1])
     return float(_widen(np.sqrt(np.array(proved)), -8) / time)
 
 
@@ -271,22 +278,29 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
+_Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]  # bounds, size, and the width before
+
+
 def _narrow(
-    split: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
+    enclosure: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Bounds of z from growing bases, until they hardly narrow, and the size of the last."""
-    lower, upper = np.full(modes, np.nan), np.full(modes, np.nan)
-    size = 0
-    for size in sizes:
-        try:
-            low, high = split(size).bounds(modes)
-        except np.linalg.LinAlgError:  # rounding of so many functions at such a speed
-            break
-        last_width, lower, upper = upper - lower, np.fmax(lower, low), np.fmin(upper, high)
+
+    def finer(found: _Found) -> _Found | None:
+        lower, upper, _, _ = found
+        with suppress(StopIteration, np.linalg.LinAlgError):  # rounding of so many functions at such a speed
+            size = next(sizes)
+            low, high = enclosure(size).bounds(modes)
+            return np.fmax(lower, low), np.fmin(upper, high), size, upper - lower
+        return None
+
+    def meets(found: _Found) -> bool:
+        lower, upper, _, before = found
         width = upper - lower
-        if (width <= narrow * np.abs(upper)).all() or (width > last_width / 2).all():
-            break
-    return lower, upper, size
+        return bool((width <= narrow * np.abs(upper)).all() or (width > before / 2).all())
+
+    unknown = np.full(modes, np.nan)
+    return refine((unknown, unknown, 0, unknown), finer, meets)[:3]
 
 
 def _growing(size: int, most: int) -> Iterator[int]:

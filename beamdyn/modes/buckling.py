@@ -92,12 +92,12 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
-_ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
+_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
 _SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
 _STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
 _RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
-_CELLS = 2000  # of the midpoint rule on all segments together
-_MARGIN = 1.01  # for its error
+_CELLS = 2000  # cells of the midpoint rule on all segments together
+_MARGIN = 1.01  # factor that allows for the error of the midpoint rule
 _LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
 _ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
 
@@ -172,7 +172,7 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
         return Buckling(True, "the rotation compresses a part of the beam")
     if toppling < 0 or (toppling == 0 and coupling):
         return Buckling(True, "the rotation topples the tip body, however stiff the beam")
-    determinant = _sum(  # of T, times L / m
+    determinant = _sum(  # determinant of T, times L / m
         *(tilt * v for v in (sin2 * L, eps, -a)), *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a))
     )
     # With T_22 = 0, T_12 is 0, too, and T_11 has the sign of the tension at the tip.
@@ -261,13 +261,13 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
         _tensor(beam, "bending_stiffness", xi, planes),
         np.array(mount.root_stiffnesses)[:planes],
     )
-    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # by the smaller stiffness
-    root = np.diag([1 / k if k else 0.0 for k in springs])  # of hinges that matter there is no bound
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility by the smaller stiffness
+    root = np.diag([1 / k if k else 0.0 for k in springs])  # there is no bound with hinges that matter
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T
     torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
     n_a, n_b = axial_tension(beam)
-    at = np.append(xi[:-1], 1.0)  # with that at the tip in the last cell
+    at = np.append(xi[:-1], 1.0)  # the last cell has the value at the tip
     tension = n_b(at) - _inward(scene) * n_a(at)
     ratios = [np.inf]  # r by the two arguments
     if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
@@ -286,7 +286,10 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # and speed of sound over the length
+    slowest, sound_speed = (
+        float((_MARGIN * min(ratios)) ** -0.5),
+        0.0,
+    )  # and the speed of sound over the length
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None

@@ -38,8 +38,7 @@ from beamdyn.modes.modal.discretization_choice import (
 from beamdyn.modes.modal.error_estimate import (
     UNRESOLVED,
 )
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends, static_load
+from beamdyn.modes.modal.model import Model, bends, static_load
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by
 from beamdyn.modes.model_error.left_out_changes import left_out_of_critical_speed, nothing_known
@@ -53,7 +52,7 @@ _BENT = (
     "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
     "equilibrium turns back"
 )
-_FUNCTIONS = 5  # of a model of which only the loads are read
+_FUNCTIONS = 5  # functions of a model of which only the loads are read
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ class CriticalPoint(StatesModelError):
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -99,7 +98,7 @@ class CriticalPoint(StatesModelError):
     model: Model | None = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         found = np.isfinite(self.speed)
         yield self.say_speed(self.speed) if found else f"none below {self.say_speed(self.none_below)}"
         yield error_at_most(self.error) if found else ""
@@ -107,7 +106,7 @@ class CriticalPoint(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects that the model leaves out would change in the critical speed, of shape ()."""
+        """Changes of the critical speed by the effects that the model leaves out, of shape ()."""
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)

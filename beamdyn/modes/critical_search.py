@@ -72,7 +72,7 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         coarse = model.coarser
         ends = discretization.cells(model.scene.modelled_beam).ends
         shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
-        noise = max(noise, _OF_SHORTEST * shortest**-3)  # of elements, by the integrals
+        noise = max(noise, _OF_SHORTEST * shortest**-3)  # noise of elements by their integrals
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FINE = 0.05  # arc length of a step, for smooth curves in a picture
-_MOST_POINTS = 2000  # of a branch
+_MOST_POINTS = 2000  # points of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
 _ROUNDING = 1e-13  # error of a position over the length
 
@@ -65,7 +65,7 @@ class Equilibrium(Result):
     growth_rate : float
         Largest growth rate of a small motion [1/s]; 0 if it is stable.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -92,7 +92,7 @@ class Equilibrium(Result):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         unit = self.display_units.length_unit()
         yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
         yield error_at_most(self.error * unit.per_si, unit.name)
@@ -274,7 +274,7 @@ class EquilibriumBranches(Result):
     critical_speed : float
         Speed at which the straight beam buckles [rad/s]; inf where rotation bends it from rest on.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How they were found.
 
@@ -294,7 +294,7 @@ class EquilibriumBranches(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{' and '.join(each.name for each in self.branches)} up to {self.say_speed(self.top_speed)}"
         if np.isfinite(self.critical_speed):
             yield f"straight beam buckles at {self.say_speed(self.critical_speed)}"
@@ -353,7 +353,7 @@ def equilibrium_branches(
         stable = np.array([np.linalg.eigvalsh(load.jacobian(rest, v**2))[0] >= 0 for v in speeds])
         tips = np.tile(_in_space(load.elastica.tip(rest), scene), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
-    try:  # that beside it, from the top speed down and through its turning points
+    try:  # follows the branch beside it, from the top speed through its turning points
         start_of_bent = start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top, scene))
         warnings = ()

@@ -18,7 +18,7 @@ from beamdyn.scene.profile import Profile
 _EPS = float(np.finfo(float).eps)
 _DEGREES = (0, 8, 16, 32, 64, 128)
 _EXCESS = 1e-10  # relative, of the bound over 1/EI
-_HALVINGS = 40  # of a segment on which no degree suffices
+_HALVINGS = 40  # halvings of a segment on which no degree suffices
 
 
 def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:

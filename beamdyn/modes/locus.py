@@ -20,9 +20,8 @@ from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.model import Model, plane_share
+from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
-from beamdyn.modes.modal.static_load import static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -75,7 +74,7 @@ class Locus(StatesModelError):
     axial_strain : ndarray, shape (S,)
         Largest static axial strain; nan if it is unknown.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -102,10 +101,10 @@ class Locus(StatesModelError):
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
     ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
-    place: np.ndarray = field(repr=False)  # of each mode in it (S, m)
+    place: np.ndarray = field(repr=False)  # place of each mode in `ascending` (S, m)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         count, modes = self.frequency.shape
         yield f"{counted(modes, 'mode')}, {counted(count, 'speed')}, {self.say_speed(self.speeds)}"
         yield spanned(self.frequency, "Hz")
@@ -117,7 +116,7 @@ class Locus(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in each frequency at the `left_out_speeds` (k, m)."""
+        """Changes of the frequencies at the `left_out_speeds` by the effects left out (k, m)."""
         return self.left_out_at(self._judged)
 
     @property
@@ -137,7 +136,7 @@ class Locus(StatesModelError):
         return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """What the effects left out would change at the speeds of some indices (k,): changes (k, m)."""
+        """Changes by the effects left out at the speeds of some indices (k,): (k, m)."""
         at = np.asarray(indices, dtype=int)
         return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
 

@@ -17,7 +17,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
-from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -25,8 +25,7 @@ from beamdyn.modes.modal.discretization_choice import (
     warn_of_missed_tolerance,
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model, plane_share
-from beamdyn.modes.modal.static_load import static_load, warn_of_straight
+from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -76,7 +75,7 @@ class Modes(StatesModelError):
     axial_strain : float
         Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -112,16 +111,15 @@ class Modes(StatesModelError):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{len(self.frequency)} at {self.say_speed(self.speed)}: {listed(self.frequency, 'Hz')}"
         yield from (error_at_most(self.error), states(self.status, ("stable",)), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects that the model leaves out would change in each frequency (m,)."""
-        from beamdyn.modes.model_error.left_out_changes import (
-            left_out_of_modes,
-        )  # here, for the time that it takes to import
+        """Changes of each frequency by the effects that the model leaves out (m,)."""
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 
         return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
@@ -219,9 +217,8 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     if scene.chooses_physics:
-        from beamdyn.modes.model_error.effect_choice import (
-            choose_physics,  # here, for the time that it takes to import
-        )
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.model_error.effect_choice import choose_physics
 
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)

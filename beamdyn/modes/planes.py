@@ -44,7 +44,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     properties = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
     unread = (*(f"second_{name}" for name in properties), *properties[1:], "twist")
     first = replace(beam, **dict.fromkeys(unread))
-    if tip is not None:  # which turns about another axis in the second direction of the section
+    if tip is not None:  # it turns about another axis in the second direction
         moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
         tip = TipMass(tip.mass, tip.offset, *moments)
     second = replace(first, bending_stiffness=beam.second_bending_stiffness, tip=tip, outer_fibre=None)

@@ -79,8 +79,8 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, tilting_inertia
 
 _EPS = float(np.finfo(float).eps)
-_MOST_STEPS = 12  # of the search for z from a Ritz value
-_LARGEST_STEP = 10.0  # of this search, relative to 1 + |z|: a bound beyond it would be useless
+_MOST_STEPS = 12  # steps of the search for z from a Ritz value
+_LARGEST_STEP = 10.0  # largest step of this search over 1 + |z|: a bound beyond it would be useless
 
 
 class Enclosure(ABC):

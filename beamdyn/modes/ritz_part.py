@@ -35,14 +35,14 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-MOST_MOMENTS = 100  # in each of two coupled directions: two seconds of a core
-_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
-_SAMPLES = 32  # of the stiffness on a segment, which decide about the basis only
+MOST_MOMENTS = 100  # moments in each of two coupled directions: two seconds of a core
+_FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
+_SAMPLES = 32  # samples of the stiffness on a segment, which decide about the basis only
 _STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
 _MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
-_LARGEST_TURN = 0.25  # of a section from the middle of its cell [rad]
+_LARGEST_TURN = 0.25  # largest turn of a section from the middle of its cell [rad]
 _MISFIT = 1e-14  # relative, of the stiffness of the beam whose twist has polynomials for cosine and sine
-_MOST_DEGREE = 40  # of these polynomials in the twist
+_MOST_DEGREE = 40  # highest degree of these polynomials in the twist
 
 _CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
@@ -55,17 +55,17 @@ class RitzPart(ABC):
 
     beam: Beam
 
-    @property
+    @cached_property
     @abstractmethod
     def ends(self) -> np.ndarray:
         """Ends of the cells on which the curvatures are polynomials, as x/L."""
 
-    @property
+    @cached_property
     @abstractmethod
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule for products of two moments of the highest degree, and of less with properties."""
 
-    @property
+    @cached_property
     @abstractmethod
     def bending(self) -> np.ndarray:
         """Curvatures at the points, along fixed directions."""

@@ -21,13 +21,12 @@ from beamdyn.modes.modal.discretization_choice import (
     choose_model,
 )
 from beamdyn.modes.modal.eigenproblem import Solver
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import static_load
+from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
-_ROUNDING = 1e-12  # of a setting angle [rad]: the cosine of a limit is a quotient of small differences
+_ROUNDING = 1e-12  # rounding of an angle [rad]: the cosine of a limit is a quotient of small differences
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class SettingAngleLimits(Result):
     static_deflection : float
         Static tip deflection at the second limit and the top speed, as a fraction of the length.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -69,7 +68,7 @@ class SettingAngleLimits(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Yield the parts of the result's one line; see `Result.headline`."""
         yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
         yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
 

@@ -66,7 +66,7 @@ class PrintedValue:
 
     @property
     def off_by(self) -> float:
-        """By how many units of its last digit the print differs from the third value, or else from ours."""
+        """Deviation of the print from the third value, or else from ours, in units of its last digit."""
         return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
 
     @property

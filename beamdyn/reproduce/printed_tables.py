@@ -30,7 +30,7 @@ _STRETCHED: dict[str, tuple[Discretization, Discretization]] = {
 }
 _ROUNDING = 1e-13  # relative error of a converged stretch
 
-Entries = Mapping[str, Sequence[PrintedValue]]  # by their source
+Entries = Mapping[str, Sequence[PrintedValue]]  # printed values by their source
 Errata = Sequence[tuple[str, PrintedValue]]
 
 

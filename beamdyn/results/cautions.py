@@ -51,7 +51,7 @@ def describe_choice(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """What a picture or a file of numbers alone must say: large deflection included, or what is left out."""
+    """Notes for a picture or a file of numbers: that deflection is large, or which effects are left out."""
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
@@ -61,7 +61,7 @@ def notes_of(result: Any) -> list[str]:
 
 
 def critical_label(point: CriticalPoint) -> str:
-    """What a picture calls a critical speed."""
+    """Label of a critical speed in a picture."""
     return "critical speed, were the beam straight:" if of_kind(point.warnings, OUTSIDE) else "critical speed"
 
 

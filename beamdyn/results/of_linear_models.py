@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from beamdyn.linear.matrices import Matrices
     from beamdyn.linear.random_response import RandomResponse
 
-_MOST_PEAKS = 8  # of a table
-_NO_WIDTH = "-"  # in place of a width that a peak does not have
+_MOST_PEAKS = 8  # peaks of a table
+_NO_WIDTH = "-"  # text in place of a width that a peak does not have
 _DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
 _MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "stiffness_by_axial_acceleration", "input_matrix")
-_PAIRS = 6  # of poles, whose errors the table has
+_PAIRS = 6  # pairs of poles whose errors the table has
 
 
 def response_table(result: FrequencyResponse) -> Group:
@@ -106,7 +106,7 @@ def squared(unit: str) -> str:
 
 
 def matrices_table(result: Matrices) -> Group:
-    """What each coordinate is, with the diagonals of mass and stiffness."""
+    """Table of the coordinates, with the diagonals of mass and stiffness."""
     columns = {
         "row": [str(k + 1) for k in range(len(result.coordinates))],
         "coordinate": result.coordinates,

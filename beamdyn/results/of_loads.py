@@ -15,7 +15,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
-from beamdyn.equations.directions import words_of_directions
+from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
 from beamdyn.loads.stations import UNITS
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
-_DIGITS_EXPECTED = 3  # of the largest that are expected: statistics have no more
-_CLASSES = 10  # of ranges of cycles
+_DIGITS_EXPECTED = 3  # digits of the largest that are expected: statistics have no more
+_CLASSES = 10  # number of classes of ranges of cycles
 _SCALES = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa"), "force": (1.0, "N"), "moment": (1.0, "N m")}
 
 
@@ -141,7 +141,7 @@ def random_loads_table(result: RandomLoads) -> Group:
             continue
         if name == "moment":
             shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
-        else:  # of the point that is largest there
+        else:  # the load of the point that is largest there
             shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
         for k, head in shown:
             rms, error = (scale * each(name)[at, k] for each in (result.rms, result.rms_error))

@@ -16,7 +16,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported, supported_or_range
 from beamdyn.common.results.statements import OUTSIDE, of_kind, said_in
-from beamdyn.equations.directions import first_drawn, words_of_directions
+from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.sweep import Sweep
 
-Cell: TypeAlias = "str | Text"  # of a table
-_MOST_ROWS = 16  # of a printed table, besides peaks and changes of status
+Cell: TypeAlias = "str | Text"  # cell of a table
+_MOST_ROWS = 16  # rows of a printed table, besides peaks and changes of status
 _ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
-_WIDTH = 119  # of a table's columns, so that none is cut at 120
+_WIDTH = 119  # width of a table's columns, so that none is cut at 120
 _CRITICAL_DIGITS = 12  # most digits of a critical speed
 _FEW = 4  # modes of a locus whose frequencies have all digits
 _DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
@@ -86,7 +86,7 @@ def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
 
 
 def csv_directions(scene: Scene) -> tuple[str, ...]:
-    """What heads of files say of the two directions, at any bending angle; nothing where there is one."""
+    """Names of the two directions in heads of files, at any bending angle; none where there is one."""
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 

@@ -15,7 +15,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
-from beamdyn.equations.directions import modelled_directions, words_of_directions
+from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.results.of_modes import (
     Cell,
     between_speeds,

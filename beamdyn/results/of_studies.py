@@ -15,7 +15,7 @@ from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, column_named, columns_of_rows, name_in_heads
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.pictures import figure_of
-from beamdyn.equations.directions import first_drawn
+from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from beamdyn.studies.tradeoffs.measurements import Diagram
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
-_MOST_ROWS = 30  # of a table of a study
+_MOST_ROWS = 30  # rows of a table of a study
 _DIGITS = 10  # most digits of a speed or frequency
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4  # most digits, and answers beside one another
-_RPM = 30 / np.pi  # in rad/s
+_RPM = 30 / np.pi  # revolutions per minute in a rad/s
 _NEAR = 1e-3  # relative distance of a frequency from its upper bound, which is close
 _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in_front"
 

@@ -32,7 +32,7 @@ from beamdyn.scene.profile import (
 )
 from beamdyn.scene.rectangle import Rectangle
 
-_ROUNDING = 1e-12  # of a position, relative to the length: the distance at which breakpoints merge
+_ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
 
 
 @dataclass(frozen=True)
@@ -275,7 +275,7 @@ class Beam(FieldsOnly, OneLine):
             to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
         other = shear_stiffness if second_shear_stiffness is None else second_shear_stiffness
-        given = {
+        given: dict[str, Any] = {
             "mass_per_length": mass_per_length,
             "bending_stiffness": bending_stiffness,
             "axial_stiffness": axial_stiffness,
@@ -288,7 +288,7 @@ class Beam(FieldsOnly, OneLine):
             "second_rotary_inertia": second_rotary_inertia,
         }
         length = size("length", length, "m")
-        made = {
+        made: dict[str, Any] = {
             name: (to_profile if name == "twist" else as_profile)(name, value, breakpoints)
             for name, value in given.items()
             if value is not None or name in _REQUIRED
@@ -313,7 +313,7 @@ class Beam(FieldsOnly, OneLine):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # of many properties, for each look into a cache
+    def _hash(self) -> int:  # hashed once: it has many properties, and caches ask often
         return hash(tuple(getattr(self, f.name) for f in fields(self) if f.compare))
 
     @cached_property
@@ -355,7 +355,7 @@ class Beam(FieldsOnly, OneLine):
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
 
 
-PROPERTY_UNITS = {  # of what varies along a beam, but for its twist
+PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "mass_per_length": "kg/m",
     "bending_stiffness": "N m2",
     "second_bending_stiffness": "N m2",

@@ -38,7 +38,7 @@ class Mount(OneLine):
         Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
         inf is clamped, 0 a hinge; a scene takes finite ones up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
-        The same by bending in the direction across, where a second plane is modelled.
+        Stiffness of the root by bending across, where a second plane is modelled.
     precone : float
         Angle eta by which the beam leaves the plane of rotation, positive towards b3 [rad]: less than pi/2
         either way, and only for a beam that points outward.

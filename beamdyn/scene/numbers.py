@@ -26,7 +26,7 @@ from beamdyn.scene.profile import Profile, as_profile, to_profile
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
 
-SPEED = "speed"  # at which the scene is analysed: no number of the scene itself
+SPEED = "speed"  # key of the speed at which the scene is analysed: no number of the scene itself
 SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
 # Powers of the sides of a section in its properties, whatever its form.

@@ -27,11 +27,11 @@ from beamdyn.common.legendre import (
 from beamdyn.common.results.pickling import FieldsOnly
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
-_SHORTEST_SEGMENT = 1e-12  # in x/L: closer breakpoints differ by rounding only
+_SHORTEST_SEGMENT = 1e-12  # length in x/L below which breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
-_ZERO = 5e-13  # of a property, relative to its largest value on a segment: less hangs on rounding
-_NOISE = 8 * float(np.finfo(float).eps)  # of the coefficients of a fit, relative to the largest
-_SPACING = 2.5e-5  # in x/L, of the samples of a user's function: no wider feature is missed
+_ZERO = 5e-13  # value over the largest on a segment below which a property is 0: less hangs on rounding
+_NOISE = 8 * float(np.finfo(float).eps)  # noise of the coefficients of a fit, relative to the largest
+_SPACING = 2.5e-5  # distance in x/L of the samples of a user's function: no wider feature is missed
 _FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
 _AT_ONCE = 4096  # samples compared at once, which fit into the processor's cache
 
@@ -87,7 +87,7 @@ class Profile(FieldsOnly):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # of many segments, for each look into a cache
+    def _hash(self) -> int:  # hashed once: it has many segments, and caches ask often
         return hash((self.breakpoints, self.coefficients))
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
@@ -273,7 +273,13 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     elif isinstance(value, Table):
         profile = _from_table(name, value)
     elif isinstance(value, Polynomial):
-        profile = _from_polynomial(name, value)
+        if np.iscomplexobj(value.coef) or not np.isfinite(value.coef).all():
+            raise ValueError(
+                f"{name}: the polynomial {value} has coefficients that are complex or not finite"
+            )
+        _check_largest(name, value.coef)  # a small one may stand beside others
+        t, w = legendre.leggauss(value.degree() + 1)
+        profile = Profile((0.0, 1.0), (_project(value, 0.0, 1.0, t, w),))
     elif callable(value):
         profile = Profile(ends, tuple(_fit(name, value, a, b) for a, b in pairwise(ends)))
     else:
@@ -304,16 +310,6 @@ def merge_breakpoints(breakpoints: np.ndarray) -> tuple[float, ...]:
     inner = ends[1:][np.diff(ends) > _SHORTEST_SEGMENT]
     inner = inner[ends[-1] - inner > _SHORTEST_SEGMENT]
     return (float(ends[0]), *inner.tolist(), float(ends[-1]))
-
-
-def _from_polynomial(name: str, polynomial: Polynomial) -> Profile:
-    if np.iscomplexobj(polynomial.coef) or not np.isfinite(polynomial.coef).all():
-        raise ValueError(
-            f"{name}: the polynomial {polynomial} has coefficients that are complex or not finite"
-        )
-    _check_largest(name, polynomial.coef)  # a small one may stand beside others
-    t, w = legendre.leggauss(polynomial.degree() + 1)
-    return Profile((0.0, 1.0), (_project(polynomial, 0.0, 1.0, t, w),))
 
 
 def _from_table(name: str, table: Table) -> Profile:
@@ -418,7 +414,7 @@ def check_positive(name: str, profile: Profile, power: int = 1) -> None:
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])
-    if profile.degree > 1:  # else the least value is at an end
+    if profile.degree > 1:  # a linear one is least at an end
         inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1]
         where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     least = zero * np.abs(profile.series).sum(axis=0)

@@ -13,6 +13,10 @@ from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.scene.profile import Profile, as_profile, combine
 
+# How much less a clamp stiffens bending and torsion of thick sections than of a plate, as factors of the
+# squared ratio of thickness and width.  Fitted to CalculiX's solids of random cantilevers (width/thickness
+# 1 to 100, length/width 2.5 to 50, nu 0 to 0.45): bending is then within 0.3 %, torsion 0.25 %.
+_THICK_CAMBER, _THICK_WARPING = 1.0, 7.0
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
@@ -72,6 +76,24 @@ class Rectangle:
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
+    def camber_ratio(self) -> Profile:
+        """Poisson's ratio of a plate whose clamped root stiffens bending as that of this section does.
+
+        In thick sections the clamp stiffens less than in a plate: see `_THICK_CAMBER`.
+        """
+        nu = self.poissons_ratio or 0.0
+
+        def ratio(b: np.ndarray, t: np.ndarray) -> np.ndarray:
+            return (nu / np.sqrt(1 + _THICK_CAMBER * (t / b) ** 2))[None]
+
+        return combine(ratio, self.width, self.thickness)[0]
+
+    @cached_property
+    def camber_stiffening(self) -> Profile:
+        """Bending stiffness of the section that cannot camber over that of one that does: 1/(1 - nu^2)."""
+        return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
+
+    @cached_property
     def warping_factor(self) -> Profile:
         """Warping constant of the section over b^3 t^3/144, that of a thin one."""
         return combine(_warping_factor, self.width, self.thickness)[0]
@@ -113,8 +135,10 @@ def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
         rising = np.exp(n * np.pi * (np.abs(y) - b / 2) / t) * -np.expm1(-2 * n * np.pi * np.abs(y) / t)
         along = np.sign(y) * rising / (1 + np.exp(-n * np.pi * b / t))
         warped = warped - (-1) ** k * 8 * t**2 / (np.pi * n) ** 3 * np.sin(n * np.pi * z / t) * along
-    mean = np.einsum("cyz,y,z->c", warped**2, w / 2, w / 2).reshape(shape)
-    return (mean / (b * t).reshape(shape) ** 2 * 144)[None]
+    mean = np.einsum("cyz,y,z->c", warped**2, w / 2, w / 2)
+    ratio = (t / b).ravel()
+    factor = mean / (b * t).ravel() ** 2 * 144 / (1 + _THICK_WARPING * ratio**2)
+    return factor.reshape(shape)[None]
 
 
 def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:

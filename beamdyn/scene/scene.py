@@ -21,7 +21,7 @@ from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, Ph
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.profile import Profile, mean
 
-_SLENDER = Physics(), Physics(stretch=True)  # in one plane
+_SLENDER = Physics(), Physics(stretch=True)  # physics of a slender beam in one plane
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Scene(OneLine):
     damping : Damping
         Further damping: ratios mode by mode, Rayleigh's factors, a damper at the tip.
     label : str
-        What the scene is called in pictures that show several.
+        Name of the scene in pictures that show several.
     units : DisplayUnits or dict
         Units in which its results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
         nevertheless.  A scene from a file has those of the file.
@@ -116,7 +116,7 @@ class Scene(OneLine):
         remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
-            set_fields(self, physics_choice=None)  # of another physics
+            set_fields(self, physics_choice=None)  # the choice was that of another physics
         _check_properties(self.beam, self.physics)
         _check_plate(self.beam, self.physics)
         _check_large_deflection(self)
@@ -256,7 +256,7 @@ _MOST_DAMPING = 1e6
 
 # Properties that the physics needs ----------------------------------------------------------------
 
-_SECOND = "second_"  # of the properties of bending in the second direction of the section
+_SECOND = "second_"  # prefix of the properties of bending in the second direction of the section
 _BENDING = "bending_stiffness"
 # Properties of the beam for each effect, of bending in either direction.
 _NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}

@@ -48,7 +48,7 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
         return {(0, 0): first, (1, 1): second}
     # Turn the values in the axes of the sections by the twist; refuse by name one that is not resolved.
-    excess = first + second.scaled(-1.0)  # of the series: its values may lose digits
+    excess = first + second.scaled(-1.0)  # series of the difference: differences of values may lose digits
     try:
         along, oblique, across = combine(_turned_values, first, second, excess, beam.twist)
     except ValueError as error:

@@ -23,7 +23,7 @@ from beamdyn.scene.scene import Scene
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
-_MOST_RANGES = 4  # of speeds in a sentence
+_MOST_RANGES = 4  # ranges of speeds in a sentence
 FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
-_FURTHER_MODES = 2  # with which those that are sought may exchange their order
+_FURTHER_MODES = 2  # modes with which those that are sought may exchange their order
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Crossing:
     plane_share : tuple of float
         Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
     second_plane_share : tuple of float or None
-        The same of the other mode of a combination resonance.
+        Shares of the other mode of a combination resonance.
 
     Examples
     --------
@@ -129,7 +129,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Number, speeds and error of the crossings in one line; see `Result.headline`."""
         yield f"{len(self)} up to {self.say_speed(self.speeds[-1])}"
         unit, factor = self.display_units.speed_unit()
         yield listed([c.speed * factor for c in self], unit)
@@ -143,7 +143,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
+        """Changes of the speed of each crossing by effects left out, shape (k,)."""
         if not self.crossings:
             return nothing_known(self.scene)
         speeds, modes = np.array([c.speed for c in self]), self.frequency.shape[1]

@@ -26,7 +26,7 @@ import numpy as np
 
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
-_MOST_ENTRIES = 10**7  # of the matrices that are solved at once: 80 MB
+_MOST_ENTRIES = 10**7  # entries of the matrices that are solved at once: 80 MB
 _MOST_TERMS = 12  # each then shrinks the error to a twentieth; where it does not, the series is given up
 _SETTLED = 4 * np.finfo(float).eps  # change by a term, over the response
 _WORTH_LEAVING_OUT = 0.25  # share of rates that have settled: fewer cost less than new arrays
@@ -114,7 +114,7 @@ def _assemble(
     A = np.zeros((S, H, n, H, n))
     diagonal = np.arange(H)
     A[:, diagonal, :, diagonal] = np.moveaxis(K[:, None] - (omega**2)[..., None, None] * M[:, None], 1, 0)
-    D = ((T.conj().T * 1j) @ (h.T[:, :, None] * T)).real  # of d/dtheta and d/dchi, shape (2, H, H)
+    D = ((T.conj().T * 1j) @ (h.T[:, :, None] * T)).real  # matrices of d/dtheta and d/dchi, shape (2, H, H)
     rate = np.einsum("sp,pab->sab", system.rates, D)
     if C.any():
         A += np.einsum("sab,sij->saibj", rate, C)
@@ -155,7 +155,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     except np.linalg.LinAlgError:
         return response, settled
     half = [h for h in harmonics if h >= (0, 0)]  # those of the others are conjugate
-    with np.errstate(all="ignore"):  # where it diverges, and where a harmonic is in resonance
+    with np.errstate(all="ignore"):  # it may diverge, or a harmonic be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance
         found, left = np.full_like(y, np.nan), np.arange(S)

@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 _MAXIMA = 16  # largest local maxima of the samples over the phases, which are refined
-_LEAST_SAMPLE = 0.5  # of the largest, by Riesz' inequality: lower samples lie beside lower maxima
-_MOST_STEPS = 20  # of Newton: each squares the error, but some begin near a saddle
+_LEAST_SAMPLE = 0.5  # share of the largest, by Riesz' inequality: lower samples lie beside lower maxima
+_MOST_STEPS = 20  # steps of Newton: each squares the error, but some begin near a saddle
 _CONVERGED = 1e-15  # gain by a step, over the value
 _WEAK = 0.02  # sum of the weak lines, over that of all: they shift maxima, but hardly make any
-_OFFSET = np.array([0.21, 0.37])  # of the samples, in steps: symmetric sums have saddles at round phases
-_MOST_SAMPLES = 2**20  # at once: 8 MB
+_OFFSET = np.array([0.21, 0.37])  # steps to the samples: symmetric sums have saddles at round phases
+_MOST_SAMPLES = 2**20  # samples at once: 8 MB
 
 
 def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndarray:

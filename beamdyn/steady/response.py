@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import error_at_most, states, warned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
-from beamdyn.equations.directions import check_direction, modelled_directions
+from beamdyn.equations.effects import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
 from beamdyn.modes.modal.model import Model
@@ -52,8 +52,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOST_HARMONICS = 20  # most interactions that may be asked for: they take half a minute
-_HIGHEST_SPEED = 0.99  # of the modal basis, over the critical speed
-_MOST_MODES = 13  # of "auto", at each of two speeds
+_HIGHEST_SPEED = 0.99  # highest speed of the modal basis, over the critical speed
+_MOST_MODES = 13  # modes of "auto", at each of two speeds
 _FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
 _MOST_JUDGED = 4  # speeds of the model error, beside that of the largest amplitude
 _LINEAR = "vibration about the equilibrium being linear"
@@ -137,7 +137,7 @@ class SteadyResponse(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Speeds, largest amplitude and error in one line; see `Result.headline`."""
         largest = self.say_length(np.nanmax(self.amplitude, initial=0.0))
         yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}: up to {largest}"
         yield from (
@@ -189,7 +189,7 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the amplitude at the `left_out_speeds` (k,)."""
+        """Changes of the amplitude by effects left out, at the `left_out_speeds` (k,)."""
         return self.left_out_at(self.left_out_speeds)
 
     @property
@@ -202,7 +202,7 @@ class SteadyResponse(StatesModelError):
         return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
-        """What the effects left out would change in the amplitude at speeds [rad/s] (k,)."""
+        """Changes of the amplitude by effects left out, at speeds [rad/s] (k,)."""
         if not len(speeds):
             return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))

@@ -360,5 +360,5 @@ def _nearest_eigenvalues(
     except ArpackError:
         s, z = np.linalg.eig(hill.toarray())
         return s, z
-    except RuntimeError:  # of the factorization
+    except RuntimeError:  # the factorization fails
         raise NoModelAnswer(_SINGULAR) from None

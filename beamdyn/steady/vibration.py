@@ -33,8 +33,8 @@ UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
 _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
-_MOST_INTERACTIONS = 5  # with the periodic coefficients, for the response
-_MOST_UNKNOWNS = 2**17  # that are solved for at once: they fit the processor's cache
+_MOST_INTERACTIONS = 5  # interactions with the periodic coefficients, for the response
+_MOST_UNKNOWNS = 2**17  # unknowns that are solved for at once: they fit the processor's cache
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 _NO_FREQUENCY = 1e-8  # frequency, over that of a clamped beam, that rounding makes of 0
 
@@ -257,7 +257,7 @@ def sizes_of(c: np.ndarray) -> np.ndarray:
     The vectors (S, d, H) have a component in the direction of bending, and perhaps one across.
     """
     along, across = c[:, 0], 1j * c[:, 1:].sum(axis=1)
-    return (np.abs(along + across) + np.abs(along - across)) / 2  # of circles in either sense
+    return (np.abs(along + across) + np.abs(along - across)) / 2  # radii of circles in either sense
 
 
 def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:

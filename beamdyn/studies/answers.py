@@ -24,7 +24,7 @@ class Caution:
     Parameters
     ----------
     kind : str
-        What it is about: cautions of one kind are put together.
+        Subject: cautions of one kind are put together.
     count : int
         Number of designs.
     weight : float
@@ -50,7 +50,7 @@ class DesignAnswers:
     status : ndarray of str, shape (R, S, k)
         States.
     cautions : tuple of Caution
-        What limits the answers.
+        Limits of the answers.
     method : str
         How they were found.
     """

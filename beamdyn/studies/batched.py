@@ -1,4 +1,7 @@
-"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds."""
+"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds.
+
+Similar designs solved in finer and finer bases: each in the smallest that a single call would choose.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_whe
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
 _WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
-_ENTRIES = 300_000  # of matrices of one size at once, which fit into the processor's cache
+_ENTRIES = 300_000  # entries of matrices of one size at once, which fit into the processor's cache
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class BasisAnswers:
     met: np.ndarray
 
 
-Solve = Callable[[np.ndarray, Discretization], BasisAnswers]  # of designs (R,) in a basis
+Solve = Callable[[np.ndarray, Discretization], BasisAnswers]  # solver of designs (R,) in a basis
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ class Refinement:
         Returns
         -------
         answers : list of ndarray, shape (N, ...)
-            Of each design those of the last basis in which it has any; nan where it has none.
+            Answers of each design in the last basis that has any; nan where none has.
         functions : int
             Largest number of functions that was needed.
         """
@@ -146,10 +149,10 @@ def _size(basis: Discretization) -> int:
     return basis.functions
 
 
-# Natural frequencies of designs that differ in numbers only, in one bas ---------------------------
+# Natural frequencies ------------------------------------------------------------------------------
 
 
-_LARGE_ERROR = 1e-6  # of a frequency, beyond which it is said to be unresolved
+_LARGE_ERROR = 1e-6  # error of a frequency beyond which it is said to be unresolved
 
 
 @dataclass(frozen=True)
@@ -273,13 +276,13 @@ def stacks_of(
     return stack, designs.family(basis.coarser()).stack(weights), family, weights
 
 
-# Critical speeds of designs that differ in numbers only -------------------------------------------
+# Critical speeds ----------------------------------------------------------------------------------
 
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
 _SIZED_FOR = 5  # modes that suit the first basis, as for a single design
 _TO_HALF = 4  # steps from a basis to one of about half its size
-_ROUNDING = 64 * float(np.finfo(float).eps)  # of a sum, relative to its terms
+_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
 _BENT = "rotation bends the beam at every speed, so that it does not buckle as a straight one does"
 
 
@@ -350,7 +353,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    apart = ~np.any(with_inertia, axis=0)  # else the twist turns the body
+    apart = ~np.any(with_inertia, axis=0)  # otherwise the twist turns the body
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 

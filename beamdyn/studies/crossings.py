@@ -32,18 +32,18 @@ from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
 _NOTHING_EXCITES = Statement(" nothing excites the beam", kind=EXCITATION)
-_FEW = Ritz(6)  # in which the lines of a scene are found: they do not depend on the functions
+_FEW = Ritz(6)  # basis in which the lines of a scene are found: they do not depend on the functions
 _PROBED = 16  # designs whose lines are looked for, beside the extremes
 _MOST_EXTREMES = 4  # inputs of which all extremes are looked at
 
 
 def line_key(kind: str, line: Line) -> tuple[str, float]:
-    """What tells a line of a kind from others: lines of one multiple are one, whatever rounding adds."""
+    """Key of a line of a kind; lines of one multiple have one key, whatever rounding adds."""
     return kind, round(line.multiple, 9)
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """What tells a crossing, found or possible, from others: its line and its mode."""
+    """Key of a crossing, found or possible: its line and its mode."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
@@ -72,7 +72,7 @@ class PossibleCrossing:
 
     @property
     def key(self) -> tuple[str, float, int]:
-        """What tells it from others."""
+        """Key of its line and mode; see `crossing_key`."""
         return crossing_key(self)
 
     @property

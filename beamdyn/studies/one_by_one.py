@@ -71,7 +71,7 @@ class SingleDesigns(FieldsOnly):
     Parameters
     ----------
     question : StudyQuestion
-        What is asked of them.
+        Question that is asked of the designs.
     columns : mapping of str to ndarray, shape (N,)
         Their inputs, but for the speed.
     speeds : ndarray, shape (N, S)
@@ -151,7 +151,9 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
     state = BUCKLES if np.isfinite(found.speed) else DOES_NOT_BUCKLE
     state = NOT_FOUND if np.isinf(found.error) else state
     answer = (np.array([[each]]) for each in (found.speed, found.error, state))
-    return SpeedAnswer(*answer, found.warnings, effects=lambda: found.left_out_effects.at(np.newaxis))
+    return SpeedAnswer(
+        *answer, warnings=found.warnings, effects=lambda: found.left_out_effects.at(np.newaxis)
+    )
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
@@ -179,7 +181,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     ]
 
     def effects() -> LeftOutEffects:
-        """Those of the crossings of the answer; nan where there is none."""
+        """Changes of the crossings of the answer; nan where there is none."""
         places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
         known = found.left_out_effects
         changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}
@@ -224,7 +226,7 @@ def _at_each(
     columns = (each[order, None] for each in (value, np.where(np.isnan(error), np.inf, error), status))
     where = None if warned is None else warned[order]
     warnings = (*found.warnings, *failed)
-    return SpeedAnswer(*columns, warnings, where, effects=lambda: found.left_out_effects)
+    return SpeedAnswer(*columns, warnings=warnings, warned=where, effects=lambda: found.left_out_effects)
 
 
 _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] = {
@@ -242,12 +244,12 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
 def left_out_of_design(
     question: StudyQuestion, scene: Scene, design: Mapping[str, float]
 ) -> LeftOutEffects | None:
-    """What the effects left out would change in the answer of a design.
+    """Find how much effects left out would change the answer of a design.
 
     Parameters
     ----------
     question : StudyQuestion
-        What is asked.
+        The question.
     scene : Scene
         The scene of the design.
     design : mapping of str to float

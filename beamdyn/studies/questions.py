@@ -11,8 +11,8 @@ from beamdyn.studies.batched import Refinement
 from beamdyn.studies.crossings import PossibleCrossing
 
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
-MODES = 3  # of frequencies and crossings by default
-WINDOW = (20.0, 30.0)  # of peaks by default [s]
+MODES = 3  # number of modes of frequencies and crossings by default
+WINDOW = (20.0, 30.0)  # window of peaks by default [s]
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Kind:
     Parameters
     ----------
     word : str
-        What one number is.
+        Name of one number.
     unit : str
         Its unit.
     has_speed : bool

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JUDGED = 8  # designs at which the model error is computed, beside the extremes
-_DIGITS = 4  # of the inputs of a design in words
+_DIGITS = 4  # digits of a design's inputs in words
 _MOST_AXES = 3  # inputs of which all extremes are combined
 
 
@@ -90,7 +90,7 @@ class Study(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The question, number of designs, range of the answer and error in a line; see `Result.headline`."""
         names = ", ".join(each.name for each in self.inputs)
         yield f"{self.what} of {counted(self.designs.count, 'design')} over {names}"
         yield spanned(self.value, self.unit)
@@ -127,7 +127,7 @@ class Study(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change at the designs of `left_out_places`: changes (p, m)."""
+        """Changes by effects left out, at the designs of `left_out_places`: shape (p, m)."""
         return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
 
     @cached_property
@@ -150,7 +150,7 @@ class Study(StatesModelError):
         return tuple(tuple(map(int, np.unravel_index(i, self.shape))) for i in at)
 
     def left_out_at(self, *place: int) -> LeftOutEffects | None:
-        """What the effects left out would change in the answer (m,) at a place; None if it has none."""
+        """Changes of the answer (m,) at a place by effects left out; None if it has no answer."""
         design = self.design(*place)
         return left_out_of_design(self.question, with_numbers(self.scene, design), design)
 

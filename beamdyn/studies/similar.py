@@ -59,7 +59,7 @@ _POWERS |= {
 _OF_TIP = ("mass", "offset", "inertia", "transverse_inertia", "axial_inertia")
 _OF_MOUNT = ("radius", "setting_angle", "bending_angle")
 _SPRINGS = ("root_stiffness", "second_root_stiffness")
-_WITHOUT_EFFECT = {"model.gravity"}  # on modes at a steady speed
+_WITHOUT_EFFECT = {"model.gravity"}  # inputs without effect on modes at a steady speed
 SIMILAR = {
     *_POWERS,
     *(f"beam.tip.{name}" for name in _OF_TIP),
@@ -101,7 +101,7 @@ class SimilarDesigns(FieldsOnly):
     first : mapping of str to float
         Inputs of the reference.
     columns : mapping of str to ndarray, shape (N,)
-        The same inputs of each design.
+        Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
         Values of each quantity between which the matrices are interpolated, where designs are some of many.
     """

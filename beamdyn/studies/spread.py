@@ -34,7 +34,7 @@ from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion
 from beamdyn.studies.result import Study
-from beamdyn.studies.sensitivities.result import Sensitivities, numbers_of
+from beamdyn.studies.sensitivities.result import numbers_of
 from beamdyn.studies.sensitivities.sensitivities import (
     critical_speed_sensitivities,
     crossing_sensitivities,
@@ -51,25 +51,33 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) ->
     Parameters
     ----------
     question : StudyQuestion
-        What is asked; crossings with their resonances.
+        The question; one of crossings with their resonances.
     inputs : sequence of SpreadInput
         The inputs.
     """
-    solve = {
-        "frequencies": _of_frequencies,
-        "critical_speed": _of_critical_speed,
-        "crossings": _of_crossings,
-    }.get(question.what)
     known = {number.name for number in numbers_of(question.scene)} | {SPEED}
     rows = {each.name: row for row, each in enumerate(inputs) if each.name in known}
-    if solve is None or not rows:
+    if question.kind.needs_motion or not rows:
         return KnownDerivatives()
+    scene, of_modes = question.scene, (question.speed, question.modes)
+    options: dict[str, Any] = {"inputs": [*rows], "discretization": question.discretization}
     try:
         with unannounced():
-            found, columns = solve(question, [*rows])
+            if question.what == "crossings":
+                found = crossing_sensitivities(scene, *of_modes, **options)
+            elif question.what == "critical_speed":
+                found = critical_speed_sensitivities(scene, tolerance=question.tolerance, **options)
+            else:
+                found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    value, error = (_columns(each, columns) for each in (found.derivative, found.error))
+    # Columns of the answers, in their order; nan for crossings that are missing, of others the lowest.
+    none = np.full(len(found.inputs), np.nan)
+    places = {name: k for k, name in reversed([*enumerate(found.answers)])}
+    value, error = (
+        np.stack([values[:, places[n]] if n in places else none for n in question.labels or places], axis=1)
+        for values in (found.derivative, found.error)
+    )
     return KnownDerivatives({rows[each.name]: (value[i], error[i]) for i, each in enumerate(found.inputs)})
 
 
@@ -85,35 +93,10 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
     return (f"first order: its slopes are those of designs, as derivatives are refused: {refusal}",)
 
 
-def _columns(values: np.ndarray, columns: Sequence[int | None]) -> np.ndarray:
-    """Those of the answers, in their order; nan for those that are missing."""
-    none = np.full(len(values), np.nan)
-    return np.stack([none if column is None else values[:, column] for column in columns], axis=1)
-
-
-def _of_frequencies(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
-    options = question.discretization, question.tolerance
-    found = frequency_sensitivities(question.scene, question.speed, question.modes, names, *options)
-    return found, [*range(question.modes)]
-
-
-def _of_critical_speed(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
-    options = question.discretization, question.tolerance
-    return critical_speed_sensitivities(question.scene, names, *options), [0]
-
-
-def _of_crossings(question: StudyQuestion, names: list[str]) -> tuple[Sensitivities, list[int | None]]:
-    """Those of the lowest crossing of each mode with each line."""
-    options = {"inputs": names, "discretization": question.discretization}
-    found = crossing_sensitivities(question.scene, question.speed, question.modes, **options)
-    wanted = [each.label for each in question.resonances]
-    return found, [found.answers.index(name) if name in found.answers else None for name in wanted]
-
-
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # of units
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 
@@ -156,7 +139,7 @@ def spread(
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
         128, else the next is used.
     seed : int
-        What the random designs follow from.
+        Seed from which the random designs follow.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
 
@@ -245,7 +228,7 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """That of all designs so far: how many worst cases take is not known before."""
+        """Progress over all designs so far: the number that worst cases need is not known before."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
@@ -274,22 +257,20 @@ def check_tolerances(
     """
     if not isinstance(inputs, Mapping) or not inputs:
         raise InvalidValue("inputs", inputs, "it names no input", _REMEDY)
-    return tuple(_check_tolerance(scene, name, given, speed) for name, given in inputs.items())
-
-
-def _check_tolerance(scene: Scene, key: object, given: str | Distribution, speed: float) -> SpreadInput:
-    name = check_path("inputs", key)
-    nominal, unit = nominal_value(scene, name, speed), unit_of(name) or ""
-    if name == SPEED and not nominal and isinstance(given, str) and "%" in given:
-        bound = "a percentage is of the speed, which is 0"
-        raise InvalidValue(f"tolerances[{SPEED!r}]", given, bound, "give spread a speed [rad/s], too")
-    if isinstance(given, str):
-        given = parse_tolerance(name, given, nominal, unit, _in_si(name, given, unit))
-    kind(name, given, Uniform | Normal, _REMEDY)
-    made = SpreadInput(name, unit, nominal, given)
-    check_holds(made)
-    check_reach(scene, made)
-    return made
+    made = []
+    for key, given in inputs.items():
+        name = check_path("inputs", key)
+        nominal, unit = nominal_value(scene, name, speed), unit_of(name) or ""
+        if name == SPEED and not nominal and isinstance(given, str) and "%" in given:
+            bound = "a percentage is of the speed, which is 0"
+            raise InvalidValue(f"tolerances[{SPEED!r}]", given, bound, "give spread a speed [rad/s], too")
+        if isinstance(given, str):
+            given = parse_tolerance(name, given, nominal, unit, _in_si(name, given, unit))
+        kind(name, given, Uniform | Normal, _REMEDY)
+        made.append(SpreadInput(name, unit, nominal, given))
+        check_holds(made[-1])
+        check_reach(scene, made[-1])
+    return tuple(made)
 
 
 def nominal_value(scene: Scene, name: str, speed: float) -> float:

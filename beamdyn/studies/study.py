@@ -47,7 +47,7 @@ _VERSIONS = (
     __version__,
     np.__version__,
     scipy.__version__,
-)  # of the programs on which the stored bits depend
+)  # versions of programs on which the stored bits depend
 _KIND = "beamdyn study"
 _BATCHED, _SINGLE = 1024, 16  # answers of a task
 _AT_ONCE = 100_000  # designs whose quantities are compared at once
@@ -252,7 +252,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
 
 
 def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
-    """What workers and executors run."""
+    """Answer the designs of a task; workers and executors run this."""
     return task.answers()
 
 
@@ -263,7 +263,7 @@ class SimilarTask:
     Parameters
     ----------
     question : StudyQuestion
-        What is asked of them.
+        Question that is asked of the designs.
     designs : SimilarDesigns
         N designs.
     columns : mapping of str to ndarray, shape (N,)
@@ -283,7 +283,7 @@ class SimilarTask:
         refinement = question.refinement(designs.reference)
         if question.what == "frequencies":
             own = np.full(designs.count, question.scene.damping_ratio)
-            ratio = self.columns.get("model.damping_ratio", own)  # of each design
+            ratio = self.columns.get("model.damping_ratio", own)  # ratio of each design
             return frequencies_of(designs, refinement, self.speeds, ratio if ratio.any() else None)
         if question.what == "critical_speed":
             return critical_speeds_of(designs, refinement, self._single)

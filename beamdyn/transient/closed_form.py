@@ -27,7 +27,7 @@ _WORTH_IT = 200  # number of steps below which these cost no more
 _ORDERS = (3, 5)  # powers of e that are tried
 _FIT_TIMES = 8  # times for each harmonic of e and g at which these are fitted
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
-_FIT_ERROR = 1e-3  # of e and g, over the accuracy
+_FIT_ERROR = 1e-3  # error of e and g, over the accuracy
 _SAME = 1e-9  # difference of frequencies that count as equal, over the largest
 _ABSENT = 1e-12  # factor of a line, over the largest, that is rounding error of the fit
 _MOST_HARMONICS = 400
@@ -243,7 +243,7 @@ def propagate_in_closed_form(
     for order in _ORDERS:
         try:
             motion = _solve(harmonics, C, K + harmonics.mean, order, q0, v0)
-        except np.linalg.LinAlgError:  # at resonance, without damping
+        except np.linalg.LinAlgError:  # singular at resonance without damping
             return None
         if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
             return None

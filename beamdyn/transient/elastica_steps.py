@@ -199,7 +199,7 @@ def propagate_elastica(
     known = None if like is None else _at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
     drives = iter(())
-    with np.errstate(over="ignore", invalid="ignore"):  # of a step that is too long, which is refused
+    with np.errstate(over="ignore", invalid="ignore"):  # a step that is too long overflows, and is refused
         for k in range(steps):
             if k % BLOCK == 0:
                 some = np.arange(k, min(k + BLOCK, steps))
@@ -218,7 +218,7 @@ def _at_nodes(given: int, wanted: int) -> np.ndarray:
     return legendre.legvander(2 * tableau(wanted).c - 1, given - 1) @ series
 
 
-Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # of a matrix, and the pivots
+Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and the pivots
 
 
 class Tangent(NamedTuple):

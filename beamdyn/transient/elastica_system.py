@@ -17,7 +17,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.elastica import Elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import RootMotion

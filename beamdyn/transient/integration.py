@@ -41,10 +41,10 @@ from beamdyn.transient.weakly_modulated import propagate_modulated
 _WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
 _TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
-_SERIES_SHARE = 0.1  # of the tolerance, for the truncated series of weakly modulated steps
-_ORDER_ACROSS_SAMPLES = 3  # of the error of steps in which the acceleration has kinks
+_SERIES_SHARE = 0.1  # share of the tolerance for the truncated series of weakly modulated steps
+_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps in which the acceleration has kinks
 _FEW_STEPS = 4  # samples in a step, from which on it is one over many
-_CEILED = 1.02  # by which whole numbers of steps exceed those wanted, of hundreds
+_CEILED = 1.02  # factor by which whole numbers of steps exceed those wanted, of hundreds
 
 
 def integrate(

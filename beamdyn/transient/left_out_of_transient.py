@@ -29,7 +29,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.problem import Solution, TransientProblem
 
 _MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
-_SHIFT, _PHASE = 1e-4, 1e-2  # of a frequency, relative, and of its phase at the end [rad], that matter
+_SHIFT, _PHASE = 1e-4, 1e-2  # relative change of a frequency, and of its phase at the end [rad], that matter
 _SHORT_RUN = 2000  # samples up to which a run is done with large deflection
 _BY_FREQUENCY = "by the first frequency"
 _BY_BACKBONE = (

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.directions import check_direction
+from beamdyn.equations.effects import check_direction
 from beamdyn.equations.elastica import QUANTITIES
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size

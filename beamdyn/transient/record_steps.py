@@ -37,14 +37,14 @@ from beamdyn.transient.gauss import (
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-_STRETCHES = 16  # of a run, each with steps as long as the motion in it allows
+_STRETCHES = 16  # stretches of a run, each with steps as long as the motion in it allows
 _FEWEST_PIECES = 16  # between samples: fewer are integrated one after the other
-_MOST_STEPS_IN_PIECE = 16  # on average: with more, the pieces are better integrated one after the other
-_PIECES_AT_ONCE = 4096  # in the steps of a block, whose matrices fit into memory
-_SLACK = 1e-6  # of a step, by which rounding may exceed it
+_MOST_STEPS_IN_PIECE = 16  # mean above which the pieces are better integrated one after the other
+_PIECES_AT_ONCE = 4096  # pieces in the steps of a block, whose matrices fit into memory
+_SLACK = 1e-6  # share of a step by which rounding may exceed it
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128  # most and fewest steps that are expanded about one mean motion
-_SAME_LENGTH = 1e-6  # of a step, by which lengths and ends of equal steps may differ
-_MANY_PIECES, _IN_EACH = 4, 5  # in a step, and nodes or stages in each, with which a quarter is as exact
+_SAME_LENGTH = 1e-6  # share of a step by which lengths and ends of equal steps may differ
+_MANY_PIECES, _IN_EACH = 4, 5  # pieces in a step, and nodes or stages in each: a quarter of them is as exact
 
 
 class StepCounter(Protocol):

@@ -15,7 +15,7 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
 
-_TIMES_CHECKED = 257  # of a run, at which the strain per coordinate is compared
+_TIMES_CHECKED = 257  # times of a run at which the strain per coordinate is compared
 
 
 @dataclass(frozen=True)

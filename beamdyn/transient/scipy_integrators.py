@@ -20,7 +20,7 @@ from beamdyn.transient.trajectory import SAMPLES
 
 _KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _JACOBIAN_METHODS = ("Radau", "BDF", "LSODA")
-_SCALING_TOLERANCE = 1e-2  # of the run that gives the magnitudes of the coordinates
+_SCALING_TOLERANCE = 1e-2  # tolerance of the run that gives the magnitudes of the coordinates
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from beamdyn.transient.trajectory import Trajectory
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
-_LOOSEST_TOLERANCE = 0.01  # of the free vibration of a mode whose phase is resolved
-_PARTS = 4  # of a segment in which the speed changes, each with its own step size
-_MOST_STEPS = 3_000_000  # of a run
+_LOOSEST_TOLERANCE = 0.01  # tolerance of the free vibration of a mode whose phase is resolved
+_PARTS = 4  # parts of a segment in which the speed changes, each with its own step size
+_MOST_STEPS = 3_000_000  # steps of a run
 _MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
 _ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
 _MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow

@@ -35,7 +35,7 @@ from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 
 _DIGITS = 4  # most of the headline
 _KIND = "beamdyn sweep"
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # on which the stored bits depend
+_VERSIONS = (__version__, np.__version__, scipy.__version__)  # stored bits depend on these
 
 
 class SweepInterrupted(RunInterrupted):
@@ -135,7 +135,7 @@ class Sweep(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Speeds, the largest peak and its error in one line; see `Result.headline`."""
         yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
         if np.isfinite(self.peaks).any():
             at = int(np.nanargmax(self.peaks))
@@ -160,11 +160,11 @@ class Sweep(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the largest peak (1,), by running its case again."""
+        """Changes of the largest peak (1,) by effects left out, found by running its case again."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        with unannounced():  # of a run that `warnings` speaks of
+        with unannounced():  # `warnings` has told what the run warns of
             run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 

@@ -15,7 +15,7 @@ from beamdyn.scene.motion import Motion, MotionSample
 from beamdyn.transient.gauss import components
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_MEAN_SAMPLES = 257  # of the root's motion, for the mean stiffness
+_MEAN_SAMPLES = 257  # samples of the root's motion, for the mean stiffness
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
 
 

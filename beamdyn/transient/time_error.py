@@ -17,8 +17,8 @@ from beamdyn.transient.record_steps import RecordSegment, RecordSteps, maps_of_r
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
 
-STAGES = 8  # of the Gauss collocation that is checked
-ERROR_ORDER = 2 * STAGES  # of its error, in the step size
+STAGES = 8  # stages of the Gauss collocation that is checked
+ERROR_ORDER = 2 * STAGES  # order of its error in the step size
 _MOST_CHECKED = 32  # steps of a segment at which the local error is measured
 _ROUGHEST = 2  # more of them for each coordinate, where the interpolation error is largest
 _GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
@@ -26,7 +26,7 @@ INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step wit
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
 _ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
 
-_PIECES_CHECKED = 128  # in the steps over samples that are checked, if these are not too few
+_PIECES_CHECKED = 128  # pieces in the steps over samples that are checked, if these are not too few
 _FEWEST_CHECKED = 48
 _POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
 _MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides those spread over the run

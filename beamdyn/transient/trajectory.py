@@ -16,8 +16,8 @@ from beamdyn.transient.system import ModalSystem
 
 SAMPLES = 8  # per step, if the caller gives no times
 _CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
-_REFINED = 4  # of these, after the first refinement
-_REFINEMENTS = 2  # of a maximum, each on a grid 17 times as fine; then parabolas err by less than 1e-12
+_REFINED = 4  # number of maxima refined after the first refinement
+_REFINEMENTS = 2  # refinements of a maximum, each 17 times as fine; then parabolas err by less than 1e-12
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
 
@@ -32,8 +32,8 @@ class Path(Protocol):
     2. Steps end at the motion's breakpoints, as `beamdyn.transient.step_size.split_at_breakpoints` has them.
     3. `samples` are several in each step, so that no maximum is missed; `at` interpolates between them.
     4. It estimates its time-integration error of the tip deflection [m], or states nan.
-    5. `TransientRequest` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs none
-       of this: it is passed as ``method=`` itself.
+    5. `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
+       none of this: it is passed as ``method=`` itself.
     """
 
     @property

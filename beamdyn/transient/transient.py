@@ -18,7 +18,7 @@ from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement
-from beamdyn.equations.directions import modelled_directions
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
 _TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-_OF_TIME_ERROR = 0.1  # of the path, that is part of a distance found along it
+_OF_TIME_ERROR = 0.1  # share of the path's time error that is part of a distance found along it
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"  # what a copy with further warnings keeps
 
 
@@ -96,7 +96,7 @@ class Transient(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Duration, largest deflection and errors in one line; see `Result.headline`."""
         error = f"time {error_at_most(self.time_error / (self.largest or 1.0))}"
         yield from (f"{number(self.path.end, 's')}: up to {self.say_length(self.largest)}", error)
         yield warned(self.warnings)
@@ -159,7 +159,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the largest deflection: changes of shape ()."""
+        """Changes of the largest deflection by effects left out, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
     @property

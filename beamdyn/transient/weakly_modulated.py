@@ -38,10 +38,10 @@ from beamdyn.transient.gauss import (
 
 _POINTS = (25, 37)  # Chebyshev points of a segment of changing speed that are tried; odd
 _FEWEST_STEPS = 6  # steps for each point, below which solving every step costs no more
-_MOST_VALUES = 4_000_000  # of the expanded maps of changing speed, some 30 MB
-_LARGEST_SAMPLED = 1.5  # of e anywhere, over the largest of some samples
-_SQUARINGS = 3  # of a matrix, whose norm then bounds the spectral radius closely
-_SAMPLES = 257  # of e, for its largest value
+_MOST_VALUES = 4_000_000  # values of the expanded maps of changing speed, some 30 MB
+_LARGEST_SAMPLED = 1.5  # largest e anywhere, over the largest of some samples
+_SQUARINGS = 3  # squarings of a matrix, whose norm then bounds the spectral radius closely
+_SAMPLES = 257  # samples of e, for its largest value
 _SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # steps solved as one batch
@@ -82,7 +82,7 @@ class _Steps(NamedTuple):
     system: ModulatedSystem
     first: float
     h: float
-    count: int
+    number: int
     table: Tableau
     accuracy: float
 
@@ -217,9 +217,9 @@ class _Expansion:
                 return None
             rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
             maps.append(Polynomials(values, size, allowed).shortened(rough))
-        change = float(ratio @ largest)  # by the first order, over the order before it
+        change = float(ratio @ largest)  # change by the first order, over the order before it
         X0, Y = chebyshev_coefficients(point.X0), chebyshev_coefficients(point.Y)
-        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # of accelerations, to displacements
+        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # from accelerations to displacements
         size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
         terms = Polynomials(X0, size, min(NEGLIGIBLE * accuracy, 1.0) * size.max())
         size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
@@ -251,7 +251,7 @@ class _Block:
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
         rows, columns = self.maps[0].shape[2:]
-        sums: dict[np.dtype, np.ndarray] = {}  # of single precision where that suffices
+        sums: dict[np.dtype, np.ndarray] = {}  # sums by precision: single where that suffices
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)
@@ -385,7 +385,7 @@ def _expand(steps: _Steps) -> _Expansion | None:
     width = 2 * n * (2 * n + s * len(system.P))
     for points in _POINTS:
         terms = points + points * d + points * d * d // 4
-        if steps.count < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
+        if steps.number < _FEWEST_STEPS * points or terms * width > _MOST_VALUES:
             return None
         if (found := _Expansion.of(steps, points)) is not None:
             return found

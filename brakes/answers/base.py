@@ -53,7 +53,7 @@ class Answer(Result, ABC):
     Attributes
     ----------
     design : BaseModel
-        What the file describes, in SI.
+        Design of the file, in SI.
     provenance : Provenance, optional
         Version, method, how the error was found, and the time taken; `BrakeType.answer` adds it.
     """

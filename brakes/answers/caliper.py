@@ -313,7 +313,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """Caliper or mechanism that tables describe."""
         mistakes = {}
         for part in PARTS:
-            if isinstance(text := tables.get(part), str):  # which is no list of tables
+            if isinstance(text := tables.get(part), str):  # text is no list of tables
                 form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
                 try:
                     tomllib.loads(f"parts = {text}")

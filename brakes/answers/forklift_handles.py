@@ -13,8 +13,8 @@ from beamdyn.common.screens.screens import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # of the position at rest of a moved point [m], [rad]
-_ITERATIONS = 30  # at most
+_TOLERANCE = 1e-7  # tolerance of the position at rest of a moved point [m], [rad]
+_ITERATIONS = 30  # most iterations
 _GROUND = 1.9  # end of the drawn ground, in wheelbases
 _REAR_AXLE = 0.75  # its drawn height, in radii of the front wheel
 Values = Callable[[float, float], dict[str, float]]
@@ -27,7 +27,7 @@ def truck_handles(stop: Stop) -> list[Handle]:
     t, sense = stop.truck, stop.conditions.sense
     beta = sense * float(stop.conditions.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
-    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # of row vectors
+    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # turns row vectors
 
     def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
         """A handle at coordinates along the slope and normal to it, in which `values` takes them, too."""
@@ -98,7 +98,7 @@ def _contact_at_rest(motion: ShoeMotion) -> np.ndarray:
 def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:
     """Place at rest of a pin that is drawn at (x, y); it changes the motion, and so is found by iteration."""
     turn = max(progress - 1, 0) * float(motion.drum_turn) - min(progress, 1) * float(motion.seating_turn)
-    back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # of row vectors
+    back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # turns row vectors
 
     def residual(pin: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, **{name: _pair(pin)})

@@ -285,7 +285,7 @@ class MechanismAnswer(PlanarAnswer):
         drawn = open_and_closed(self.equilibrium.position, now, title)
         if now.status == "self-locking":
             drawn = with_lock(drawn, now, unknown_loads(self._mechanism)[-1].name)
-        points = getattr(self.design, "points", {})  # of a file; a named caliper has dimensions
+        points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:

@@ -28,7 +28,7 @@ from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, P
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_ROWS = 5  # of a stroke's table
+_ROWS = 5  # rows of a stroke's table
 
 
 def units_of(load: Load) -> tuple[float, str, str]:
@@ -119,7 +119,7 @@ def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float
 # Friction in a mechanism: its forces without friction, squeezing and releasing, side by side -------------
 
 
-_ROUNDING = 1e-9  # of the largest load: what is shown as 0, such as a brake's torque without friction
+_ROUNDING = 1e-9  # share of the largest load that is shown as 0, such as a torque without friction
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ def unknown_loads(mechanism: Mechanism) -> list[Load]:
 # Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation -----------
 
 
-_FRAMES = 30  # of an animation
+_FRAMES = 30  # frames of an animation
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,8 @@ _INPUTS = {key: describe(SECTIONS[key]) for key in _PARTS}
 _POINTS = ("at", "to", "on", "at_other", "points")  # keys whose values are points
 _BODIES = ("body", "other", "bodies")
 _ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are joints and loads
-_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # in which a bare number is taken
-_FIRST = {  # of what is added
+_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # units in which a bare number is taken
+_FIRST = {  # first entries of what is added
     "direction": "-90 deg",
     "along": "0 deg",
     "normal": "90 deg",

@@ -112,7 +112,7 @@ class Stance:
         return mu * GRAVITY * (length - x) / holds if holds > 0 else math.inf
 
 
-_RTOL, _ATOL = 1e-12, 1e-12  # of the integration; the latter [m]
+_RTOL, _ATOL = 1e-12, 1e-12  # tolerances of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
 _MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 

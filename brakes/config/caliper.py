@@ -18,7 +18,7 @@ from brakes.calipers.stopping import check_wheels
 from brakes.planar.part import DescribedDirection, DescribedPoint
 from brakes.planar.rows import Point as Coordinates
 
-SHORT_TEXTS = ConfigDict(str_max_length=200)  # of titles and names: they are drawn
+SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names: they are drawn
 
 # Kinds of values ----------------------------------------------------------------------------------
 

@@ -148,7 +148,7 @@ class DrumInput(CoreSection):
         try:  # the second shoe is what [second_shoe] gives, and the rest of the first
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # which is no key
+            between = ": " if " " in error.field else "."  # text with a space is no key
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
         if self.brake.assembly == "single":
             if self.second_shoe is not None:

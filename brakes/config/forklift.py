@@ -39,7 +39,7 @@ def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
     Returns
     -------
     ForkliftInput
-        What the file describes; `brakes.answers.forklift.solve_stages` solves it.
+        Parts of the file; `brakes.answers.forklift.solve_stages` solves them.
 
     Raises
     ------

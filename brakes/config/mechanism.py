@@ -82,13 +82,13 @@ class PartSection(MadeSection):
         """The joint or load."""
         try:
             return super().core
-        except InvalidValue:  # which is put into the file's words where its key is known
+        except InvalidValue:  # it is put into the file's words where its key is known
             raise
         except ValueError as error:
             raise ValueError(in_small_units(str(error))) from None
 
 
-SECTIONS = {  # by table
+SECTIONS = {  # sections by the name of their table
     part.key(): section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
 }
 
@@ -132,7 +132,7 @@ class MechanismInput(CoreSection):
             if friction and not made.friction:
                 bound = "it is that of pins, and there is none; give friction at the slot or contact"
                 raise InvalidInput("run.friction", friction, bound)
-            rubs = made.friction or "friction" in self.run.model_fields_set  # which may be 0 in a sweep
+            rubs = made.friction or "friction" in self.run.model_fields_set  # friction may be 0 in a sweep
             if self.run.driver is not None and self.run.travel is None and not rubs:
                 raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
             return made

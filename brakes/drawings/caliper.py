@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-_HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # of the charts over the stroke, relative to one another
+_HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # heights of the charts over the stroke, relative to one another
 
 
 def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> Drawing:
@@ -200,7 +200,7 @@ def _symbols() -> Drawing:
         at = np.array([2.6 * (i % 2), -0.8 * (i // 2)])
         s.add(*(shape(at) for shape in shapes))
         s.labels.append(Label(words, at + np.array((0.4, 0.0)), "text", (1.0, 0.0), size=_LETTERS))
-    s.room = [(5.0, 0.0)]  # of the words on the right
+    s.room = [(5.0, 0.0)]  # room for the words on the right
     return s.drawing("Signs of joints", "How pins, bars, cables, springs, slots and contacts are drawn")
 
 

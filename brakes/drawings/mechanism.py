@@ -70,7 +70,7 @@ def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium
     straight = parts.two_force_bodies(position.mechanism)
     outlines = {body: parts.outline(position, body) for body in position.mechanism.bodies}
     for body, corners in outlines.items():
-        if body not in straight and len(corners):  # else nothing acts on it yet
+        if body not in straight and len(corners):  # otherwise nothing acts on it yet
             sketch.shapes.append(_body(corners))
             places = np.vstack([parts.label_place(outlines, body), corners.mean(axis=0)]) * _MM
             sketch.labels.append(Label(body, places, priority=_BODIES))
@@ -180,7 +180,7 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
     said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
     centre = (low + high) / 2
     for outer in forces:
-        aside = outer.at[0] - centre[0]  # from outside, where it would cross the middle
+        aside = outer.at[0] - centre[0]  # arrows that would cross the middle come from outside
         far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
         pressed = outer.along_bar and outer.force @ (centre - outer.at) > 0
         _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)

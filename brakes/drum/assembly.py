@@ -104,7 +104,7 @@ class BrakeResult(SlidesOrLocks):
     c_star, c_star_slope : ndarray
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Of the shoe that locks first.
+        Values of the shoe that locks first.
 
     Examples
     --------

@@ -31,7 +31,7 @@ from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
 
-_STEPS = 200  # of the iteration for the trailing share, at most; bisection alone needs about 60
+_STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
 _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
 
@@ -231,7 +231,7 @@ def _solve_from_torque(
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     r = levers.drum_radius
     B, D = T * (1 - u) / r, T * u / r
-    most = 1 - LEAST_MARGIN  # of the resultants, at which friction grows beyond all bounds
+    most = 1 - LEAST_MARGIN  # ratio of the resultants at which friction grows beyond all bounds
     balanced = (most * R_L > B) & (most * R_T > D)
     status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):

@@ -233,7 +233,7 @@ class Stop(Result):
     front_load, rear_load : ndarray
         Normal forces of the axles while it slides [N].
     standing_front_load, standing_rear_load : ndarray
-        The same at rest on the slope [N].
+        Normal forces of the axles at rest on the slope [N].
 
     Examples
     --------

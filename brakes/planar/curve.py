@@ -11,12 +11,12 @@ import numpy as np
 from brakes.planar.system import OutOfReachError, System, decompose
 
 _SMALL_STEP = 1e-9  # convergence is quadratic: the next step would be below rounding
-_GUIDING_STEP = 1e-5  # of nodes, which guide: positions asked for are solved to rounding
+_GUIDING_STEP = 1e-5  # step of nodes, which guide: positions asked for are solved to rounding
 _CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
 _FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
 _NODES = 20_000
-_HALVINGS = 12  # of a segment: as near as its cubic is to the curve, or nearer
+_HALVINGS = 12  # halvings of a segment: as near as its cubic is to the curve, or nearer
 
 
 class Node(NamedTuple):

@@ -32,7 +32,7 @@ from brakes.planar.system import (
     times,
 )
 
-MOST_POSITIONS = 100_000  # of a stroke: some seconds for the smallest mechanisms
+MOST_POSITIONS = 100_000  # positions of a stroke: some seconds for the smallest mechanisms
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
 
 
@@ -52,7 +52,7 @@ class Toggle:
     still : tuple of str
         Bodies that stand still there while others move.
     message : str
-        The same as a sentence.
+        Sentence that explains the status.
 
     Examples
     --------
@@ -395,7 +395,7 @@ def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.
     constraints = decompose(rows.gradient[:, :m], system.rounding)
     names, index = [*system.loads], [*system.loads.values()]
     rate = times(rows.gradient[:, index], constraints.vt[:, -1])
-    still = rank_tolerance(system.rounding)  # of rates per unit of motion, and of singular values
+    still = rank_tolerance(system.rounding)  # bound of rates per unit of motion, and of singular values
     single = (constraints.rank == system.size - 1)[:, None] & (np.abs(rate[:, [k]]) > still)
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
     known = [load.has_coordinate for load in mechanism.loads]

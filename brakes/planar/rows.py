@@ -96,7 +96,7 @@ class Totals(NamedTuple):
     couple: np.ndarray
 
 
-Arm = Callable[[str, Point], complex]  # from the centre of a body to a point of it, over L
+Arm = Callable[[str, Point], complex]  # distance from the centre of a body to a point of it, over L
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
 
 

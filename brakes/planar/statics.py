@@ -256,7 +256,7 @@ def collect_result(
         "dropped": forces.dropped,
         "multiplier": shown * system.unit,
     }
-    shape = position.coordinates.shape[:-1]  # without an axis where there is one position alone
+    shape = position.coordinates.shape[:-1]  # a single position has no axis
     return Equilibrium(
         position=position,
         **verdict,
@@ -300,7 +300,7 @@ def is_answer(status: str, forces: ArrayLike) -> bool:
     status : str
         As in `Equilibrium`.
     forces : array_like
-        What equilibrium gives [N, N m].
+        Forces and moments that equilibrium gives [N, N m].
     """
     return status in ("determined", "self-locking") and bool(np.isfinite(forces).all())
 

@@ -247,9 +247,9 @@ class OutOfReachError(ValueError):
     Parameters
     ----------
     reason : str
-        What is not reached, and where it ends.
+        Motion that is not reached, and where it ends.
     remedy : str
-        What to do.
+        Advice.
 
     Examples
     --------

@@ -35,7 +35,7 @@ _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining
 _R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
 _B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
 PressureZero = Literal["axis", "pivot"]
-_AXIS: PressureZero = _INPUT["pressure_zero"]  # where the pressure in (2) is 0
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # place where the pressure in (2) is 0
 _WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 
@@ -125,7 +125,8 @@ def errata() -> tuple[Erratum, ...]:
     short = np.radians(10.0)
     (K, S, C), (short_K, short_S, short_C) = _integrals(_LONGEST), _integrals(short)
     table, right, rho = table_1(), corrected(np.array([short, _LONGEST])), float(table_arm(_LONGEST))
-    half, near = np.pi / 2 - _START, _C + _MU * rho
+    half, near, trailing = np.pi / 2 - _START, _C + _MU * rho, right.shoes[1].torque[1]
+    halves = half + np.sin(_START) / 2, half + np.sin(2 * _START) / 2
     sum_17 = 2 * _MU * _P * rho * (_C + _A) * near / (near**2 - (_MU * _B1) ** 2)
     equal = brake_torque(simplex(_shoe(_B1)), friction=_MU, force=_P).torque
     locking = shoe_torque(_shoe(_B1), friction=_MU, force=_P).locking_friction
@@ -138,23 +139,13 @@ def errata() -> tuple[Erratum, ...]:
         "mixed_shoes": (of_wrong_shoe, "", C + _MU * S, C - _MU * S),
         "missing_half": ("part of N from friction over A pmax", "", 2 * _MU * C, _MU * C),
         "quarter": ("T over A pmax, the other terms as printed", "", _MU * S + 2 * C, _MU * S + C),
-        "double_angle": (
-            "N over A pmax on the symmetric arc of 120 deg",
-            "",
-            half + np.sin(_START) / 2,
-            half + np.sin(2 * _START) / 2,
-        ),
+        "double_angle": ("N over A pmax on the symmetric arc of 120 deg", "", *halves),
         "ratio": ("T / N of the components of a trailing shoe", "", _MU, (C + _MU * S) / (S - _MU * C)),
         "effective_arm": ("effective arm", "mm", *arms),
         "bound": ("effective arm over r at 10 deg", "", *bounds),
         "trend": ("total torque at 80 deg over that at 10 deg", "", *trends),
         "sign": ("MT1 with the arm of the table", "N m", _torque(rho, -_B1), _torque(rho, _B1)),
-        "second_shoe": (
-            "torque of the second shoe",
-            "N m",
-            _torque(rho, -_B2),
-            corrected(_LONGEST).shoes[1].torque,
-        ),
+        "second_shoe": ("torque of the second shoe", "N m", _torque(rho, -_B2), trailing),
         "sum": ("total torque for b1 = b2 = 20 mm", "N m", sum_17, equal),
         "self_locking": ("friction at self-locking, b = 20 mm", "", -_C / (rho - _B1), locking),
     }
@@ -176,10 +167,9 @@ def tables() -> dict[str, PrintedTable]:
     heads = ("rho [mm]", "MT1 [N m]", "MT2 [N m]")
     text = printed["difference"]["printed"]
     largest = [Cell(text, ours.difference, step(text))]
+    title = "Table 1: effective arm and torques, as printed"
     return {
-        "table_1": PrintedTable(
-            "Table 1: effective arm and torques, as printed", ("arc [deg]",), heads, rows
-        ),
+        "table_1": PrintedTable(title, ("arc [deg]",), heads, rows),
         "difference": PrintedTable("", (), ("largest MT2 - MT1 [N m]",), [((), largest)]),
     }
 
@@ -210,7 +200,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """What follows for a brake engineer, a paragraph each."""
+    """The conclusions for a brake engineer, a paragraph each."""
     printed, right, pivot = table_1(), corrected(), corrected(pressure_zero="pivot")
     short, long = (float(printed.total[i] / right.torque[i]) for i in (0, -1))
     yield (

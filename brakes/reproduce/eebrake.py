@@ -25,37 +25,28 @@ def sections() -> dict[str, list[Comparison]]:
     statics, travel, given = (printed[name] for name in ("statics", "travel", "stop"))
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")
     gap = (x_work - f_t) / x_work
-    percent, percent_error = 100 * gap, 100 * _ERROR
+    percent = statics["difference_percent"], 100 * gap, 100 * _ERROR, 1, "cut off, not rounded"
     equal = "with equal pads X = f_t follows from the mean pad travel; the page's tension is another"
     run = _stroke("equal force", _CABLE)
     finger, pad = 1e3 * float(run.finger[-1]), 1e3 * float(run.pad_travel[-1].mean())
     mean = float(run.finger[-1] / run.pad_travel[-1].sum())
     force, error = mean * travel["finger_force"], 1e-8 * mean
     stopped = stop(given["mass"], given["speed"] / 3.6, force, given["friction"])
+    by_hand = given["distance"], stopped.distance, 1e-6, 2
     return {
         "eeBrake, open: forces for a force of 1 on the right pad": [
             Comparison("f_t of the strut", page, statics["f_t"], f_t, _ERROR, 3),
             Comparison("X, tension 2 delta_R", page, statics["X"], x_work, _ERROR, 3),
             Comparison("X, equal pad forces", page, statics["X"], x_equal, _ERROR, 3, equal),
             Comparison("difference (X - f_t)/X", page, statics["difference"], gap, _ERROR, 4),
-            Comparison(
-                "difference (X - f_t)/X [%]",
-                page,
-                statics["difference_percent"],
-                percent,
-                percent_error,
-                1,
-                "cut off, not rounded",
-            ),
+            Comparison("difference (X - f_t)/X [%]", page, *percent),
         ],
         "eeBrake: travel, mechanical advantage, stop": [
             Comparison("travel of finger [mm]", page, 1e3 * travel["finger"], finger, 1e-9, 0),
             Comparison("mean travel of a pad [mm]", page, 1e3 * travel["pad"], pad, 1e-8, 2),
             Comparison("advantage, mean of the stroke", page, travel["advantage"], mean, error, 1),
             Comparison("force of each pad [N]", page, travel["pad_force"], force, 40 * error, 0),
-            Comparison(
-                "stop of 80 kg from 30 km/h [m]", "by hand", given["distance"], stopped.distance, 1e-6, 2
-            ),
+            Comparison("stop of 80 kg from 30 km/h [m]", "by hand", *by_hand),
         ],
     }
 
@@ -66,7 +57,7 @@ def tangential_forces(split: str) -> tuple[float, float]:
     pivot, pin = np.array(design.pivot), np.array(design.upper_pin)
     radial = (pin - pivot) / np.linalg.norm(pin - pivot)
     inboard_right, inboard_left = np.array((-radial[1], radial[0])), np.array((radial[1], radial[0]))
-    strut = -run.reactions["strut end"][0]  # on the right lever
+    strut = -run.reactions["strut end"][0]  # force on the right lever
     unit = float(run.pad_force[0, 0])
     return -float(strut @ inboard_right) / unit, float(run.reactions["pin O"][0] @ inboard_left) / unit
 

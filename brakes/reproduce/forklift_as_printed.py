@@ -30,7 +30,7 @@ from brakes.reproduce.common import Erratum, errata_of
 
 VEHICLE, BRAKE = ("table_2", "table_3", "table_4"), ("table_5", "table_6", "table_7")
 FORCES = ("A", "B", "Q", "P_L")
-Tables = dict[tuple[str, str], np.ndarray]  # by table and quantity, e.g. ("table_4", "torque")
+Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g. ("table_4", "torque")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class PrintedStop(Stop):
 
     @property
     def message(self) -> str:
-        """What the status means, in one sentence; of many cases, how many do not stop."""
+        """Sentence that explains the status; of many cases, how many do not stop."""
         return _LIFTED.get(str(self.status)) or super().message
 
 
@@ -99,7 +99,7 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     design : ForkliftInput
         The file.
     stages : tuple of str
-        Of "vehicle", "kinematics", "forces".
+        Stages among "vehicle", "kinematics", "forces".
 
     Returns
     -------

@@ -31,7 +31,7 @@ INTRODUCTION = (
     "0.3019 rad (17.3 deg), 20 km/h, friction 0.7 on the ground, front wheels of 0.40 m radius."
 )
 _INPUT = values_alone(PAPER["input"])
-_HEADS = {  # of inputs and quantities of the tables
+_HEADS = {  # headings of inputs and quantities of the tables
     "friction": "friction",
     "speed": "V [km/h]",
     "slope": "slope [rad]",
@@ -66,22 +66,13 @@ def _table(name: str, ours: as_printed.Tables, right: as_printed.Tables) -> Prin
     for place in np.ndindex(*(len(values) for values in inputs.values())):
         cells = []
         for quantity in quantities:
-            printed = str(np.array(data[quantity]["printed"])[place])
-            unit = data[quantity].get("step") or step(
-                printed, padded["digits"] if printed in padded["value"] else None
-            )
-            unit = float(np.broadcast_to(unit, ours[name, quantity].shape)[place])
+            printed, computed = str(np.array(data[quantity]["printed"])[place]), ours[name, quantity]
+            digits = padded["digits"] if printed in padded["value"] else None
+            unit = np.broadcast_to(data[quantity].get("step", step(printed, digits)), computed.shape)[place]
             there = misfit["where"].startswith(f"Table {number}, {quantity}") and misfit["printed"] == printed
-            corrected = right.get((name, quantity))
-            cells.append(
-                Cell(
-                    printed,
-                    float(ours[name, quantity][place]),
-                    unit,
-                    "the one misfit (1)" if there else "",
-                    None if corrected is None else float(corrected[place]),
-                )
-            )
+            reason, corrected = "the one misfit (1)" if there else "", right.get((name, quantity))
+            true = None if corrected is None else float(corrected[place])
+            cells.append(Cell(printed, float(computed[place]), float(unit), reason, true))
         given = zip(inputs.values(), place, strict=True)
         rows.append((tuple(f"{values[i]:g}" for values, i in given), cells))
     fixed = data["fixed"].replace("clearance 0.0106", "clearance 0.0106 m")
@@ -103,7 +94,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """What follows for a brake engineer, a paragraph each."""
+    """The conclusions for a brake engineer, a paragraph each."""
     printed, right = _stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)

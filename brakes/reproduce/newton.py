@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
 from brakes.forklift import Levers, equilibrium_equations
 
-_TOLERANCE = 1e-12  # on the largest left-hand side, in units of T/r and r
+_TOLERANCE = 1e-12  # tolerance of the largest left-hand side, in units of T/r and r
 _DIVERGED = 1e30  # the same, past which an iteration is given up
 SCALED_START = (-1.5, 0.1, 0.1, 0.7, 0.6, 0.1, 0.05, -0.3, 0.5, 1.4)
 
@@ -40,7 +40,7 @@ class NewtonResult(Result):
     residual : float
         Largest left-hand side, in units of T/r and r.
     condition_number : float
-        Of the Jacobian at the end, in the units of the iteration.
+        Condition number of the Jacobian at the end, in the units of the iteration.
     """
 
     field_units: ClassVar[dict[str, str]] = {"N": "unknowns"}

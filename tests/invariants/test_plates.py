@@ -47,13 +47,17 @@ CANTILEVER_PLATES = [
     (2.0, (3.4392, 14.8014, 21.4332, 48.176, 60.148, 92.516)),
     (5.0, (3.3973, 21.2654, 33.9133, 59.669, 103.73)),
 ]
-SOLIDS = [((0.05, 0.01, 0.0002), 655.99), ((0.1, 0.02, 0.002), 1586.8)]  # first torsional mode [Hz]
+SOLIDS = [  # sides [m], and first torsional mode [Hz]
+    *(((0.05, 0.01, 0.0002), 655.99), ((0.1, 0.02, 0.002), 1586.8), ((0.1, 0.02, 0.004), 3004.8)),
+    *(((0.1, 0.02, 0.01), 5926.0), ((0.1, 0.02, 0.02), 7214.0)),
+]
 
 
 @pytest.fixture
 def thin(monkeypatch):
     """Sections without what their thickness adds to warping and turning."""
     monkeypatch.setattr(Rectangle, "warping_factor", ONE)
+    monkeypatch.setattr("beamdyn.scene.rectangle._THICK_CAMBER", 0.0)
     monkeypatch.setattr(Strip, "rotary_inertia", ONE.scaled(0.0))
 
 
@@ -97,7 +101,8 @@ def test_cantilever_plates(wide, ratio, expected):
 def test_first_torsional_mode_is_that_of_a_solid(sides, expected):
     scene = bd.Scene(strip(sides, 0.3), physics=PLATE)
     found = bd.natural_modes(scene, modes=5, discretization=bd.Ritz(8)).frequency
-    assert found[np.abs(found - expected).argmin()] == pytest.approx(expected, rel=1e-2)
+    nearest = found[np.abs(found - expected).argmin()]
+    assert nearest == pytest.approx(expected, rel=4e-3)  # 0.25 % of random ones, and the meshes of these
 
 
 def test_without_poissons_ratio_bending_is_that_of_the_beam():

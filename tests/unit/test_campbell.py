@@ -18,7 +18,7 @@ from matplotlib.text import Text
 import beamdyn as bd
 from beamdyn.cli import BAD_INPUT, DONE
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.equations.directions import words_of_directions
+from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.modal.line_roots import find_roots
 from benchmarks.cases.scenes import HARVESTER
 from benchmarks.cases.uniform_blade import UNIFORM_BLADE

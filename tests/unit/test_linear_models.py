@@ -335,3 +335,14 @@ def test_bad_densities_are_refused_by_the_command(tmp_path, capsys):
         assert said in capsys.readouterr().err
     assert main(["random", FILE]) == BAD_INPUT
     assert "--psd, --road, --roughness: give one of the three" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("functions", [6, 8, 12])
+def test_a_given_basis_with_functions_without_mass_serves_as_many_modes_as_have_mass(functions):
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.002, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(beam, bd.Mount(0.2), damping_ratio=0.01, physics=bd.Physics(shear=True))
+    flat = bd.PowerSpectrum([5.0, 500.0], [1.0, 2.0])
+    own = bd.random_response(scene, 10.0, flat, input="bending", discretization=bd.Ritz(functions))
+    chosen = bd.random_response(scene, 10.0, flat, input="bending")
+    assert own.rms == pytest.approx(chosen.rms, rel=1e-6)
+    assert own.rms_error == np.inf  # there is no larger model in these functions

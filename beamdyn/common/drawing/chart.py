@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
-_MOST_POINTS = 400  # of a curve on the page: more are not seen, and take time to send
+_MOST_POINTS = 400  # points of a curve on the page: more are not seen, and take time to send
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
     Returns
     -------
     Axes
-        The same.
+        The axes that were given.
     """
     colours = [_PALE if n is None else COLOURS[n % len(COLOURS)] for n in chart.colour_numbers]
     for curve, colour in zip(chart.curves, colours, strict=True):

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-_CELL = 2.5  # of the grid [pt]
+_CELL = 2.5  # size of a cell of the grid [pt]
 _APART = 2.0  # least distance of two texts [pt]
-_GAP = 5.0  # from an anchor to its label [pt]
-FAR = 18.0  # from here on a line leads from the label to its anchor [pt]
+_GAP = 5.0  # distance from an anchor to its label [pt]
+FAR = 18.0  # distance from which on a line leads from the label to its anchor [pt]
 _STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])  # distances beyond the gap [pt]
 _TURNS = 12  # directions around an anchor
 _TURNED = 9.0  # cost of a direction at a right angle to the wanted one [pt]
@@ -92,7 +92,7 @@ class Obstacles:
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
-        """The same sums over cells with symbols and ends of lines."""
+        """Sums from the upper left corner over cells with symbols or ends of lines, like `_covered`."""
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
         around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]
@@ -156,7 +156,7 @@ class _Candidates:
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
 _WAYS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
 _SPREAD = 1 / np.abs(_WAYS).clip(1e-9)
-_CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])  # of a box, at the anchor
+_CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])  # corners of a box
 _AWAY = np.concatenate([_WAYS, _CORNERS / np.sqrt(2.0)])
 _BESIDE = np.repeat(
     [0.0, 12.0], [_TURNS, len(_CORNERS)]
@@ -293,7 +293,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     requests : sequence of LabelRequest
         The labels.
     obstacles : Obstacles
-        What is drawn already.
+        Shapes that are drawn already.
 
     Returns
     -------
@@ -329,9 +329,9 @@ def keep_places(
     before : sequence of Place
         Where the labels stood.
     requests : sequence of LabelRequest
-        The same labels now.
+        Labels as they are now.
     obstacles : Obstacles
-        What is drawn now.
+        Shapes that are drawn now.
 
     Returns
     -------

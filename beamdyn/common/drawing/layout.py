@@ -14,7 +14,7 @@ from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size
 
 Frame = tuple[float, float, float, float]  # left, top, right, bottom
 _HEADING = 11.0  # size of the title's letters
-_SMALL = 8.5  # of the key's
+_SMALL = 8.5  # size of the key's letters
 _EDGE = 4.0  # between the frame and texts
 _MARGINS = (14.0, 36.0, 60.0, 90.0)  # between the frame and what is drawn, tried one by one
 _CROWDED = 30.0  # a label farther than this from its point asks for a larger margin

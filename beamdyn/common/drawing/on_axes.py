@@ -81,7 +81,7 @@ def draw_on(ax: Axes, drawing: Drawing, fit: Fit | None = None) -> Axes:
     Returns
     -------
     Axes
-        The same, without ticks.
+        The axes that were given, without ticks.
     """
     return _fill(ax, arrange(drawing, frame_of(ax), fit))
 

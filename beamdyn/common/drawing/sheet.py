@@ -10,7 +10,7 @@ from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, follow
 from beamdyn.common.drawing.shapes import Drawing
 
 Rows = Sequence[Sequence[Drawing]]
-WIDTH = 680.0  # of a sheet
+WIDTH = 680.0  # width of a sheet
 _LOWEST, _HIGHEST = 300.0, 600.0  # heights of a row
 _DETAIL = 0.65  # width of a detail over that of a drawing beside it
 _AROUND = 100.0  # room for title, key and labels around what is drawn
@@ -26,7 +26,7 @@ class Paper:
 
     @property
     def height(self) -> float:
-        """Of all rows."""
+        """Height of all rows together."""
         return sum(self.heights)
 
     @classmethod

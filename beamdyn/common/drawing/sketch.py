@@ -13,11 +13,11 @@ from beamdyn.common.drawing.symbols import typeset
 
 Sketcher = Callable[[Mapping[str, str]], Rows]  # entries of a form in, drawings out
 
-WIDTH = 272.0  # of the paper [pt]: a form's, with letters about as large as its own
+WIDTH = 272.0  # width of the paper [pt]: a form's, with letters about as large as its own
 _LETTERS = 11.0
 _LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0  # heights of a row, and room around what is drawn [pt]
 _THIN, _DASHED = 0.8, (4.0, 2.5)
-_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # where beside a length its symbol may stand
+_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # places beside a length where its symbol may stand
 
 Point = tuple[float, float] | np.ndarray
 

@@ -28,7 +28,7 @@ class Pen(NamedTuple):
     width: float = 1.0
     dash: tuple[float, ...] = ()
     fill: str = ""
-    opacity: float = 1.0  # of the fill
+    opacity: float = 1.0  # opacity of the fill
 
 
 @dataclass(frozen=True, eq=False)

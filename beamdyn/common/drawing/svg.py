@@ -24,7 +24,7 @@ def svg_of(rows: Rows, paper: Paper | None = None) -> str:
     Parameters
     ----------
     rows : sequence of sequences of Drawing
-        What stands beside one another, row by row.
+        Rows of drawings that stand beside one another.
     paper : Paper, optional
         Its size; by what is drawn if not given.
 

@@ -116,7 +116,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
             source, ["its lists or tables are nested too deeply; give a file of tables"]
         ) from None
     except ValueError as error:
-        if "set_int_max_str_digits" in f"{error}":  # of Python, to its programmers
+        if "set_int_max_str_digits" in f"{error}":  # Python's advice is one to programmers
             raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
         remedy = 'a quantity stands in quotes: length = "50 mm"'
         if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):
@@ -148,7 +148,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
         raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
-_LONGEST_KEY = 60  # that is shown whole
+_LONGEST_KEY = 60  # length of the longest key that is shown whole
 _WORDS = {
     "bool_type": "give true or false",
     "dict_type": "give a table",
@@ -216,7 +216,7 @@ def _wholes(field: str) -> Iterator[str]:
 
 
 def _found(given: Any, place: str) -> Any:
-    """What stands at a place of a table, such as "width.values[1]"; None if there is nothing."""
+    """The entry at a place of a table, such as "width.values[1]"; None if there is nothing."""
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
         try:
             given = given[int(index) if index else key]
@@ -243,7 +243,7 @@ def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: 
 
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
-    """What a refusal by the core says of what is given at a place of a file, as that has it."""
+    """The message of a refusal by the core, with the place in a file and the value as the file has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return str(_as_written(kind(**said), given))

@@ -22,7 +22,7 @@ from beamdyn.common.results.files import as_path
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:(?:[eEdDqQ]|(?=[+-]))([+-]?\d+))?", re.ASCII)
 _WORD = re.compile(r"'[^']*'|\"[^\"]*\"|[^\s,]+")
 _MOST_BYTES = 20_000_000  # a deck has some ten thousand
-_ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # by the mark at the start
+_ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # encodings by the mark at the start of a file
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ class InputSweep(Result):
     unanswered: tuple[tuple[int, str], ...] = ()
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """The results, the number of designs and the varied inputs in one line; see `Result.headline`."""
         shown = ", ".join(self.results[:_MOST_NAMED]) + ", ..." * (len(self.results) > _MOST_NAMED)
         yield f"{shown} of {counted(self.designs.count, 'design')} over {', '.join(self.inputs)}"
         yield warned(self.warnings)

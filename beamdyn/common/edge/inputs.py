@@ -47,7 +47,7 @@ def _known_as(section: type[Section]) -> str:
 
 def _empty_section(module: str, known: str) -> Section:
     """A section without its values, for pickle to fill."""
-    import_module(module)  # which defines it, unless what made it has been imported before
+    import_module(module)  # its import defines what is missing, unless that has been imported before
     section = _SECTIONS[known]
     return section.__new__(section)
 

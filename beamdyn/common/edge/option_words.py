@@ -45,7 +45,7 @@ _QUOTED = re.compile(r"^(--[\w-]+ = )'([^'\"]*)'")
 
 
 def as_typed(sentence: str) -> str:
-    """What the core says, with the options of the command that is run in place of its arguments.
+    """A message of the core, with the options of the command that is run in place of its arguments.
 
     "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." where the command has that option.
     """
@@ -59,7 +59,7 @@ def as_typed(sentence: str) -> str:
 
 
 def as_given(error: Exception) -> str:
-    """What a refusal says, its number in the unit in which the option that gave it was typed."""
+    """The message of a refusal, its number in the unit in which the option that gave it was typed."""
     from beamdyn.common.edge.wording import in_unit_of
     from beamdyn.common.inputs.checks import InvalidValue  # here, for the time that it takes to import
 

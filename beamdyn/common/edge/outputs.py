@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Flag = Annotated[bool, Parameter(negative="")]
 
-_TABLES = (".csv", ".tsv", ".txt", "")  # without a suffix the name promises nothing
+_TABLES = (".csv", ".tsv", ".txt", "")  # suffixes of tables; without a suffix the name promises nothing
 _SUFFIXES = {
     "json": (".json", ".txt", ""),
     "csv": _TABLES,

@@ -34,7 +34,7 @@ def png(figure: Figure, kind: str = "png") -> bytes:
     file = io.BytesIO()
     metadata = {"Date": None} if kind == "svg" else {}
     with rc_context({"svg.hashsalt": "beamdyn"}), np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of a layout that has too little room
+        warnings.simplefilter("ignore", UserWarning)  # layouts warn where they have too little room
         figure.savefig(file, format=kind, dpi=150, metadata=metadata)
     return file.getvalue()
 

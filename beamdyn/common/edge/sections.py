@@ -22,7 +22,7 @@ class MadeSection(CoreSection):
     """A table made from a core class; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
-    key_of: ClassVar[Mapping[str, str]]  # by argument; those of a pair are named "tip[0]" and "tip[1]"
+    key_of: ClassVar[Mapping[str, str]]  # keys by argument; those of a pair are named "tip[0]" and "tip[1]"
 
     @property
     def given(self) -> dict[str, Any]:
@@ -117,7 +117,7 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
 
 
 def _core_of(value: Any) -> Any:
-    """What the core takes for a value of a table."""
+    """The value as the core takes it: the object of a section, a tuple of a list, else itself."""
     if isinstance(value, CoreSection):
         return value.core
     return tuple(value) if isinstance(value, list) else value

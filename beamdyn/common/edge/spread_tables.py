@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _DIGITS = 6  # most of an answer
 _WIDTH, _GAP, _OF_SHARES = 119, 3, 20  # characters of a table, between columns, of two shares
 _HEADLINES = 6
-_SIGNS = "+-."  # that heads of inputs and answers keep
+_SIGNS = "+-."  # signs that heads of inputs and answers keep
 _SMALL = 0.01  # share of a variance that is not told from others below it
 
 

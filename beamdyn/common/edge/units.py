@@ -25,14 +25,14 @@ _UNITS = rf"(?<=\s)1/{_FACTOR}|{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNITS})?)\s*", re.ASCII)
 _NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
-_MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"  # as copied from printed pages
+_MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"  # signs as copied from printed pages
 _PLAIN = str.maketrans(
     {"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*", "\uff0e": "."}
     | dict.fromkeys(_MINUS_SIGNS, "-")
     | dict.fromkeys(_SPACES, " ")
-    | {0xFF10 + digit: str(digit) for digit in range(10)}  # of full width
+    | {0xFF10 + digit: str(digit) for digit in range(10)}  # digits of full width
 )
-_KNOWN_SIGNS = "°µμΩ"  # of units
+_KNOWN_SIGNS = "°µμΩ"  # signs of units that are no letters
 
 _KINDS = {
     "m": "length",
@@ -211,7 +211,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """What is wrong with a value that is not a number with a unit, and what to give."""
+    """The reason why a value is not a number with a unit, and how to write it."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"

@@ -30,7 +30,7 @@ def folder(_: object, tokens: Sequence[Token]) -> Path:
 
 
 Folder = Annotated[Path | None, Parameter(converter=folder)]
-SomeFolder = Annotated[Path, Parameter(converter=folder)]  # of an option that has one by default
+SomeFolder = Annotated[Path, Parameter(converter=folder)]  # folder of an option that has one by default
 
 
 def _check_workers(_: object, value: object) -> None:
@@ -81,7 +81,7 @@ class VaryOptions:
                 raise ValueError(f"--{name} goes with {OPTION}: there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """What runs the designs; `kind` and `versions` are as for `TaskRunner`."""
+        """The runner of the designs' tasks; `kind` and `versions` are as for `TaskRunner`."""
         from beamdyn.common.parallel.tasks import TaskRunner
 
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)

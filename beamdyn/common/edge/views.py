@@ -33,7 +33,7 @@ _WIDTH = 120  # characters of a table as text
 _NOT_SHOWN = ("provenance", "warnings")
 _DEEPEST = 1  # deepest level of objects within a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]  # or columns, which are in display units, too
+Rows = Iterable[Sequence[object]]  # rows, or columns, which are in display units, too
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def rows_of(result: Result) -> Rows:
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:
-    """What draws the picture of a result, by its view or its `plot`; None if it has neither."""
+    """A function that draws the picture of a result, by its view or its `plot`; None if it has neither."""
     made = view_of(result).figure
     if made is not None:
         return lambda: made(result)

@@ -19,7 +19,7 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
     rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
 )
-_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
+_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # marks between numbers
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
@@ -90,14 +90,14 @@ def _decades(number: float) -> float:
 
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
-    """The same error, about an angle, in degrees."""
+    """Convert the numbers of an error about an angle to degrees."""
     value = math.degrees(error.value) if isinstance(error.value, float) else error.value
     limit = None if error.limit is None else math.degrees(error.limit)
     return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
 
 
 def in_millimetres(error: InvalidValue) -> InvalidValue:
-    """The same error in mm, if it is about a length below a metre; else unchanged."""
+    """Convert the numbers of an error about a length below a metre to mm; others are unchanged."""
     if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
         return error
     limit = None if error.limit is None else 1e3 * error.limit
@@ -105,7 +105,7 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
 
 
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
-    """The same in the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
+    """Convert an error to the unit at the end of a text, as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
     if not isinstance(error.value, float):
         return error
     last = _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])

@@ -78,7 +78,7 @@ class InvalidValue(ValueError):
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
 
     def by_case(self) -> dict[int, InvalidValue]:
-        """What is refused in each bad case, by the case."""
+        """A refusal of each bad case by itself, by the number of the case."""
         if self.cases is None:
             return {}
         bad, value, limit = self.cases.bad, self.cases.value, self.cases.limit
@@ -116,7 +116,7 @@ OUT_OF_RANGE = (
 
 
 def reason_of(error: Exception) -> str:
-    """What an error says; Python's and numpy's own words of a number out of range in a user's."""
+    """The message of an error; of numbers out of range a plain one, in place of that of Python or numpy."""
     beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
     return OUT_OF_RANGE if beyond else str(error)
 
@@ -329,7 +329,7 @@ def check_used(what: str, options: Mapping[str, Collection[str]], **given: objec
     what : str
         Name of the answer.
     options : mapping of str to collection of str
-        Of each answer that there is, the options on which it depends.
+        Options on which each answer depends, by the answer.
     **given : object
         The options; None is one that is not given.
 

@@ -23,13 +23,13 @@ class Described:
     symbol : str
         Symbol in formulas.
     meaning : str
-        What it is, for people: a phrase without a full stop.
+        Meaning for people: a phrase without a full stop.
     above, below : float, optional
         Bounds that the value must not reach [unit].
     least, most : float, optional
         Smallest and largest value [unit].
     remedy : str
-        What to do about a value out of bounds.
+        Advice about a value out of bounds.
     key : str
         Its key in files, if that is not the name of the argument.
     required : bool

@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, one_of
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 1_000_000  # whose answers fit into memory
+MOST_DESIGNS = 1_000_000  # number of designs whose answers fit into memory
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class Designs:
         return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
 
     def without(self, name: str) -> Designs:
-        """The same without an input."""
+        """A copy without one of the inputs."""
         return Designs([each for each in self.inputs if each.name != name], self.combine)
 
     def extremes(self) -> Iterator[dict[str, float]]:
@@ -127,7 +127,7 @@ def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "var
     most : int
         Largest number of them.
     option : str
-        What the inputs are called in the message.
+        Name of the inputs in the message.
 
     Raises
     ------

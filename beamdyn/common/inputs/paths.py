@@ -14,11 +14,11 @@ from typing import Any, get_type_hints
 from beamdyn.common.inputs.described import description
 
 _STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
-_AXES = "xy"  # of points
+_AXES = "xy"  # names of the coordinates of points
 
 
 def part_at(whole: Any, path: str) -> Any:
-    """What stands at a path of an object; None if there is nothing."""
+    """The part of an object at a path; None if there is nothing."""
     for step in _steps(path):
         whole = _part(whole, step)
     return whole

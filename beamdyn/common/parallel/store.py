@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.common.results.files import ASIDE, write_text
 from beamdyn.common.results.records import DamagedRecord, seal, unseal
 
-_PACKAGES = ("beamdyn", "brakes")  # in whose classes fields that equality leaves out change no result
+_PACKAGES = ("beamdyn", "brakes")  # fields of their classes that equality leaves out change no result
 _MARKER = "store.json"  # tells a store from a folder with other content
 _RECORD = re.compile(r"[0-9a-f]{32}\.json")  # the file of a record: see `fingerprint`
 _REMEDY = "name a folder that does not exist yet, or an earlier store"
@@ -33,7 +33,7 @@ class Store:
     path : str or Path
         The folder; its parents must exist.
     kind : str
-        What is stored: a store of another kind is refused.
+        Kind of results: a store of another kind is refused.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def _parts(value: Any) -> list[Any]:
         return [getattr(value, f.name) for f in dataclasses.fields(value) if f.compare or not ours]
     try:
         return [pickle.dumps(value, protocol=4)]
-    except Exception as error:  # which one depends on the object
+    except Exception as error:  # the kind of exception depends on the object
         raise ValueError(f"{value!r} cannot be stored: it cannot be pickled ({error})") from None
 
 

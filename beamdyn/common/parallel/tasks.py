@@ -35,7 +35,7 @@ class RunInterrupted(RuntimeError):
         Whether those that are done are in a store.
     """
 
-    parts = "designs"  # as the message calls them
+    parts = "designs"  # name of the parts in messages
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
         super().__init__(done, total, stored)
@@ -93,9 +93,9 @@ class TaskRunner:
     store : str or Path, optional
         Folder in which results are kept; those found there are not computed again.
     kind : str
-        What the store holds.
+        Kind of results in the store.
     versions : tuple of str
-        Of the programs on which the bits of a result depend.
+        Versions of the programs on which the bits of a result depend.
     progress : callable, optional
         Called as progress(done, total) with the numbers of designs, at the start and after each task.
     interrupted : type
@@ -259,7 +259,7 @@ class _TaskRun:
                 self._report()
 
     def _key(self, made: Any) -> str:
-        """What names the result of a task: a hash of the versions, of the function and of the task."""
+        """The name of a stored result: a hash of the versions, of the function and of the task."""
         stored = self.runner.store is not None
         return fingerprint(self.runner.versions, self.solve, made) if stored else ""
 

@@ -138,7 +138,7 @@ def serve() -> None:
         except EOFError:
             return
         except BrokenPipeError:  # the caller was killed
-            os._exit(0)  # without a last try to send what is left
+            os._exit(0)  # ends without a last try to send what is left
 
 
 def _answer(task: bytes) -> bytes:

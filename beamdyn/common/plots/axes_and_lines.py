@@ -14,8 +14,8 @@ from matplotlib.ticker import ScalarFormatter
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend
 
-_LETTERS = 15.0  # of a note, in an inch
-_COLOUR = "#5a4200"  # of notes
+_LETTERS = 15.0  # letters of a note in an inch
+_COLOUR = "#5a4200"  # colour of notes
 
 
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
@@ -150,7 +150,7 @@ def note_below(figure: Figure, sentences: Sequence[str]) -> Figure:
     Returns
     -------
     Figure
-        The same.
+        The figure that was given.
     """
     width = int(_LETTERS * figure.get_size_inches()[0])
     lines = [line for sentence in sentences for line in textwrap.wrap(sentence, width)]

@@ -19,10 +19,10 @@ from beamdyn.common.results.pictures import COLOURS
 _MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 _HEADROOM = 1.06
 _MOST_HIDDEN = 2  # modes above the picture that the legend names
-_APART = 0.042  # of the height: least distance of two labels
+_APART = 0.042  # least distance of two labels, over the height
 _LONGEST = 36  # letters of an entry of the legend above which it has two columns
-_SAME = 0.03  # of the height: distance of two labels of one name below which one of them will do
-_GREY, _DARK = "0.45", "0.1"  # of per-rev lines, and of the motion's
+_SAME = 0.03  # distance of two labels of one name below which one of them will do, over the height
+_GREY, _DARK = "0.45", "0.1"  # colours of per-rev lines, and of the motion's
 _PER_REV = re.compile(r"\d+P")  # names of per-rev lines
 _MARKS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
@@ -51,7 +51,7 @@ class Curves:
     solid : ndarray of bool, shape (S, m), optional
         Where a mode is drawn solid, else dashed.
     directions : tuple of str, optional
-        What is drawn solid and dashed, for the legend.
+        Names of the solid and the dashed lines, for the legend.
     """
 
     speeds: np.ndarray

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
 
 SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
-SERIES_SUFFIXES = (".xdmf",)  # with the numbers as text, for which it does not
+SERIES_SUFFIXES = (".xdmf",)  # their numbers are written as text
 _DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, relative to the length
 
 

@@ -140,7 +140,7 @@ def mark_critical(
     speed : float
         Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
     label : str
-        What to call it.
+        Name of the critical speed.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 

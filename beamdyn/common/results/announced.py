@@ -54,7 +54,7 @@ def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answ
 
 
 def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """The same for an analysis about the straight beam alone, which physics "auto" does not bend."""
+    """Make an analysis about the straight beam alone warn; physics "auto" does not bend its beam."""
     return _announcing(analysis, "")
 
 

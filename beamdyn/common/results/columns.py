@@ -18,7 +18,7 @@ class Column:
     Parameters
     ----------
     name : str
-        What it holds, as in the heads of files: "relative_error".
+        Name as in the heads of files: "relative_error".
     values : sequence
         Numbers in the unit, or words.
     unit : str
@@ -38,7 +38,7 @@ class Column:
         return "_".join(filter(None, (self.name, unit_in_heads(self.unit), str(self.number))))
 
     def in_units(self, units: DisplayUnits) -> Column:
-        """The same in the display unit of its quantity."""
+        """A column of the same values in the display unit of their quantity."""
         shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit("m")}.get(self.unit)
         if shown is None or (unit := shown()).per_si == 1.0:
             return self
@@ -66,7 +66,7 @@ class Columns:
         yield from zip(*(column.cells() for column in self.columns), strict=True)
 
     def in_units(self, units: DisplayUnits) -> Columns:
-        """The same in display units; a column stays where another one has its quantity in that unit."""
+        """A copy in display units; a column stays where another has its quantity in that unit."""
         heads = {column.head for column in self.columns}
         shown = ((column, column.in_units(units)) for column in self.columns)
         return Columns(*(column if new.head in heads else new for column, new in shown))

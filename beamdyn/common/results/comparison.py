@@ -24,7 +24,7 @@ class Verdict:
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """The verdict as tables print it: "agrees", or "differs" with the reason."""
         if self.agrees:
             return "agrees" if not self.reason else "agrees, which is unexpected"
         return f"differs: {self.reason or 'unexpected'}"
@@ -37,7 +37,7 @@ class Comparison(Verdict):
     Parameters
     ----------
     what : str
-        What is compared.
+        Name of the value.
     source : str
         Who published it.
     published : float or pair of floats

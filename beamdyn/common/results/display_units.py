@@ -90,7 +90,7 @@ class DisplayUnits:
         return cls(**(given or {}))
 
     def with_others(self, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
-        """The same, with the units that are given in place of its own."""
+        """A copy with the given units in place of its own."""
         new = DisplayUnits.of(given)
         return DisplayUnits(new.speed or self.speed, new.length or self.length)
 
@@ -125,12 +125,12 @@ class InDisplayUnits:
         return spanned(np.multiply(speeds, unit.per_si), unit.name)
 
     def say_length(self, lengths: np.ndarray | float) -> str:
-        """The same of lengths."""
+        """A length, or from where to where several go, in its display unit, for the headline."""
         unit = self.display_units.length_unit()
         return spanned(np.multiply(lengths, unit.per_si), unit.name)
 
     def in_units(self, speed: str = "", length: str = "") -> Self:
-        """The same result, whose tables, columns and pictures are in other units; its numbers stay SI.
+        """A copy with tables, columns and pictures in other units; its numbers stay SI.
 
         Parameters
         ----------

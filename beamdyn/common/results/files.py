@@ -22,7 +22,7 @@ def as_path(name: str, value: object, wanted: str = "a file") -> Path:
     value : object
         Text or path.
     wanted : str
-        What it names.
+        Kind of thing that it names.
 
     Raises
     ------

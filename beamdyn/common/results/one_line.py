@@ -26,13 +26,13 @@ class OneLine:
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
-        """What matters most, in parts: of a class that says nothing else, the fields that it was given."""
+        """Parts of the line that shows an object; a class that defines none shows the fields it was given."""
         return given_fields(self)
 
     def __repr__(self) -> str:
         try:
             parts = [" ".join(part.split()) for part in self.headline() if part]
-        except Exception:  # of an object that is not complete, in a debugger or in the middle of an error
+        except Exception:  # an incomplete object may raise anything, in a debugger or amid an error
             parts = ["..."]
         return _fitted(type(self).__name__, parts)
 
@@ -65,7 +65,7 @@ def given_fields(thing: Any) -> Iterator[str]:
 def _is_default(each: dataclasses.Field[Any], value: object) -> bool:
     try:
         return each.default is not dataclasses.MISSING and bool(value == each.default)
-    except ValueError:  # of arrays
+    except ValueError:  # the truth of an array is not defined
         return False
 
 
@@ -105,7 +105,7 @@ def number(value: Any, unit: str = "") -> str:
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"
-    size += 0.0  # of a negative zero
+    size += 0.0  # a negative zero becomes 0
     text = f"{size:.0f}" if 1e3 <= abs(size) < 1e6 else f"{size:.{_DIGITS}g}"
     return f"{text}{unit and ' ' + unit}"
 

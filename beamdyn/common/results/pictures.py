@@ -52,7 +52,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
         If it cannot be written.
     """
     path = check_writable(path, SUFFIXES, force)
-    figure: Any = drawn.figure  # of axes, a subfigure perhaps; of a figure, itself
+    figure: Any = drawn.figure  # that of axes may be a subfigure, that of a figure is itself
     content = BytesIO()  # matplotlib does not close a file that it cannot write
     figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
     with replacing(path) as aside:
@@ -165,7 +165,7 @@ def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
 
 
 def _free_places(taken: set[int], own: set[int]) -> dict[int, int]:
-    """What each of our own colours becomes: one behind those taken, or a free one if these do not do."""
+    """New places in the row of colours for our own: behind those taken, or free ones if these do not do."""
     behind = {place: place + len(taken) for place in own}
     free = [place for place in range(len(COLOURS) - 1) if place not in taken]
     if max(behind.values()) < len(COLOURS) or len(free) < len(own):

@@ -27,7 +27,7 @@ def plain(value: Any) -> Any:
 
 
 def nullified(value: Any) -> Any:
-    """The same with null for numbers that are not finite, which JSON does not have."""
+    """Replace numbers that are not finite, which JSON does not have, by null."""
     if isinstance(value, dict):
         return {key: nullified(v) for key, v in value.items()}
     if isinstance(value, list):

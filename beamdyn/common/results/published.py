@@ -15,7 +15,7 @@ def load(package: str, name: str) -> dict[str, Any]:
     package : str
         The package, e.g. ``"beamdyn.published"``.
     name : str
-        Of the file, without its ending, e.g. ``"lee_yoo_2019"``.
+        Name of the file without its ending, e.g. ``"lee_yoo_2019"``.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def available(package: str) -> list[str]:
 
 
 def values_alone(entry: Any) -> Any:
-    """What a published file has, with each quantity as its ``value`` alone, without unit and source."""
+    """Reduce the contents of a published file: each quantity is its ``value``, without unit and source."""
     if isinstance(entry, dict):
         return entry["value"] if "value" in entry else {key: values_alone(v) for key, v in entry.items()}
     return [values_alone(item) for item in entry] if isinstance(entry, list) else entry

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 Units = DisplayUnits | Mapping[str, str] | None
-_MOST_PARTS = 6  # of a headline that nobody wrote
+_MOST_PARTS = 6  # most parts of a headline that nobody wrote
 
 
 class Shown(OneLine, InDisplayUnits):
@@ -31,16 +31,16 @@ class Shown(OneLine, InDisplayUnits):
             cls.plot = labelled(vars(cls)["plot"])  # pyright: ignore[reportAttributeAccessIssue]
 
     def headline(self) -> Iterable[str]:
-        """What the result says in one line: its main numbers with units, their error, and what is amiss."""
+        """Parts of the line that shows a result: main numbers with units and errors, and what is amiss."""
         return _first_fields(self)
 
     @property
     def plot_label(self) -> str:
-        """What the result is called in a picture of several: the label of its scene."""
+        """Name of the result in a picture of several: the label of its scene."""
         return getattr(getattr(self, "scene", None), "label", "")
 
     def without_waiting(self) -> Any:
-        """The same, of which nothing has to be computed to be shown; see `_repr_html_`."""
+        """A copy without the parts that would have to be computed first; see `_repr_html_`."""
         return self
 
     def to_table(self, units: Units = None) -> str:

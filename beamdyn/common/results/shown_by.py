@@ -2,5 +2,5 @@
 
 from __future__ import annotations
 
-SHOWN_BY: dict[str, str] = {}  # by where a class stands, such as "beamdyn.modes": the module with its `VIEWS`
+SHOWN_BY: dict[str, str] = {}  # module with `VIEWS` by where a class stands, such as "beamdyn.modes"
 MEDIA: list[str] = []  # the module that makes texts, data frames and pages of any result

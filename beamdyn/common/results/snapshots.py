@@ -19,7 +19,7 @@ import numpy as np
 
 from beamdyn.common.results.statements import Words
 
-_PACKAGES = ("beamdyn", "brakes")  # whose classes may be named in a file
+_PACKAGES = ("beamdyn", "brakes")  # packages whose classes may be named in a file
 
 
 class LeftOut:
@@ -186,6 +186,6 @@ def _modules_that_define(kind: str, package: str) -> Iterator[str]:
 
 
 def _describe(value: object) -> str:
-    """What a part is that is left out."""
+    """Class or function that a left-out part is, with its module."""
     name = getattr(value, "__qualname__", "") or type(value).__qualname__
     return f"{name} of {getattr(value, '__module__', None) or type(value).__module__}"

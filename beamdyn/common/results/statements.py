@@ -19,11 +19,11 @@ OUTSIDE = "outside linear theory"  # the beam bends further than the theory of t
 MODEL_ERROR = "model error"  # what the model leaves out changes the answer too much, or may
 TOLERANCE = "tolerance"  # a numerical error exceeds what was asked for
 GROWING = "unstable"  # the motion grows
-NO_ANSWER = "no answer"  # of some of many cases, or of a part of the question
+NO_ANSWER = "no answer"  # no answer to some of many cases, or to a part of the question
 INPUT = "input"  # something given has no effect, or is doubtful
 EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
 IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
-LIMITS = "limits"  # of other validity: large strain, few vibrations
+LIMITS = "limits"  # limits of other validity: large strain, few vibrations
 
 
 class _Unit(Protocol):
@@ -158,13 +158,13 @@ class Statement(Words):
     *parts : str
         Parts of the sentence.
     kind : str
-        What it is about; one of the kinds in `beamdyn.common.results.statements`.
+        Subject; one of the kinds in `beamdyn.common.results.statements`.
     quantity : str
         The quantity that it is about, such as "tip deflection over the length"; empty if it is about none.
     value, limit : float
         The quantity, and what it should not pass; nan where there is no such number.
     remedy : str
-        What to do about it; empty where the sentence has no advice.
+        Advice; empty where there is none.
 
     Examples
     --------

@@ -103,9 +103,9 @@ class ChartBoard:
     Parameters
     ----------
     words : str
-        What they show.
+        Description of the charts.
     writer : PageWriter
-        What writes them while something is held.
+        Writer of the charts while something is held.
     """
 
     def __init__(self, words: str, writer: PageWriter) -> None:

@@ -12,9 +12,9 @@ import numpy as np
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.style import INKS
 
-_DIGITS = 5  # of numbers on the page; of places on an axis, over its length
-_MOST_DIGITS = 10  # of a curve that varies little
-_WIDE = 0.15  # of the axis: a narrower band has no room for its text
+_DIGITS = 5  # digits of numbers on the page; those of places on an axis are over its length
+_MOST_DIGITS = 10  # digits of a curve that varies little
+_WIDE = 0.15  # share of the axis: a narrower band has no room for its text
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
 # Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
@@ -24,10 +24,10 @@ _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
 _FEW = 8  # decades of an axis up to which its small ticks are drawn, too
 _NAMED, _PALE = 12, 11  # sizes of letters [px]
-_WIDE_CHART = 700  # from which on a chart is wide [px]
-_LETTERS, _LETTERS_WIDE = 52, 100  # in a row of the legend of a narrow chart, and of a wide one
+_WIDE_CHART = 700  # width from which on a chart is wide [px]
+_LETTERS, _LETTERS_WIDE = 52, 100  # letters in a row of the legend of a narrow chart, and of a wide one
 _SAVE_SIGN = "path://M4.7,22.9L29.3,45.5L54.7,23.4M4.6,43.6L4.6,58L53.8,58L53.8,43.6M29.2,45.1L29.2,0"
-_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # of curves that are compared with, in turn
+_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # dashes of curves that are compared with, in turn
 
 
 def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:

@@ -118,7 +118,7 @@ class DraggableDrawing:
             self._how.set_visibility(bool(sheet.handles))
             for element in self._handles:
                 toggle(element, "away", not sheet.handles)
-            if sheet.handles:  # else the last ones stay, hidden: one of them may be held
+            if sheet.handles:  # without new ones the last stay, hidden: one may be held
                 self._put_handles(sheet, words)
 
     def _put_handles(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:

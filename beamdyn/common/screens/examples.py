@@ -39,7 +39,7 @@ class Example:
     text: str
 
 
-_KNOWN: dict[str, tuple[Example, ...]] = {}  # by program: it takes a second to check them
+_KNOWN: dict[str, tuple[Example, ...]] = {}  # examples by program: it takes a second to check them
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:

@@ -73,7 +73,7 @@ class Form:
         self._inputs = {entry.path: entry for entry in inputs}
         self._units: dict[str, str] = {}  # of bare numbers, by path
         self._tables: dict[str, Any] = {}
-        self._places: dict[str, Any] = {}  # of the fields
+        self._places: dict[str, Any] = {}  # places of the fields
         self._drags = {drag.path: drag for drag in screen.drags}
         entries, headings = work.entries, work.document.headings
         for section in screen.sections:
@@ -114,7 +114,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # else it has followed the field
+            if at is not None and at != place():  # otherwise it has followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def hold(held: bool) -> None:

@@ -67,9 +67,9 @@ class Page:
     Parameters
     ----------
     program : Program
-        What it is.
+        The program that the page belongs to.
     solver : RunsTasks
-        What makes the answers.
+        Solver that makes the answers.
     """
 
     def __init__(self, program: Program, solver: RunsTasks) -> None:

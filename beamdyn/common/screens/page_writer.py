@@ -86,7 +86,7 @@ class PageWriter:
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # by which a field would ask the page to update it
+            element.run_method = _do_nothing  # a field would ask the page by it for an update
         try:
             yield
         finally:

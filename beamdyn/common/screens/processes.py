@@ -24,7 +24,7 @@ _SPARE = 0.5  # time after which a task that still runs has an idle process star
 _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
-Task = Callable[..., Any]  # of a document, one of its screens, and what else is submitted
+Task = Callable[..., Any]  # function of a document, one of its screens, and what else is submitted
 
 
 class TakesTooLong(Exception):
@@ -62,7 +62,7 @@ class Processes:
         self._all: set[_Worker] = set()
         self._waiting: deque[asyncio.Future[_Worker]] = deque()
         self._starts: set[asyncio.Task[None]] = set()
-        self._count = 0  # of processes, with those that are being started
+        self._count = 0  # number of processes, with those that are being started
 
     @property
     def ids(self) -> set[int]:

@@ -50,7 +50,7 @@ class ScreenView:
     edited : callable
         Called after a field of this screen has changed.
     solver : RunsTasks
-        What makes the answers.
+        Solver that makes the answers.
     """
 
     def __init__(

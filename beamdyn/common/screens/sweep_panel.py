@@ -86,7 +86,7 @@ class SweepPanel:
 
     def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: RunsTasks) -> None:
         self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
-        self._future: asyncio.Future[tasks.Swept] | None = None  # of a sweep that is under way
+        self._future: asyncio.Future[tasks.Swept] | None = None  # the sweep that is under way
         self._found: tuple[_Request, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")

@@ -43,7 +43,7 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """The same with exact derivatives and their errors (k,) of some inputs, where these are finite."""
+        """A copy with exact derivatives and errors (k,) of some inputs, where these are finite."""
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)
@@ -93,7 +93,7 @@ def _slope_weights(steps: np.ndarray) -> np.ndarray:
 
 
 def _parabola_weights(steps: np.ndarray) -> np.ndarray:
-    """The same for a parabola through 0, the last step and the one that is its half or at the other end."""
+    """Weights as `_slope_weights`, of a parabola through 0, the last step and one of two others."""
     used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
     weights = np.zeros(len(steps))
     weights[used] = _slope_weights(steps[used])
@@ -114,7 +114,7 @@ class FirstOrderRange:
     mean, deviation : ndarray, shape (k,)
         Mean and standard deviation [units of the answers].
     error : ndarray, shape (k,)
-        What the errors of the slopes make at most of these four [units of the answers].
+        Largest effect of the errors of the slopes on these four [units of the answers].
     share : ndarray, shape (d, k)
         Share of each input in the variance.
     slope, slope_error : ndarray, shape (d, k)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DIGITS, _MOST_DIGITS = 4, 10  # of the one line
+_DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline
 _APART = 3.0  # standard errors by which two indices differ for sure
 
 
@@ -35,9 +35,9 @@ class Spread(Result):
     Parameters
     ----------
     what : str
-        What was asked for.
+        The question.
     answers, units : tuple of str, length k
-        What each answer is, such as "mode 1", and its unit.
+        Name of each answer, such as "mode 1", and its unit.
     inputs : tuple of SpreadInput, length d
         Each with its `name`, `unit`, `nominal` value, `distribution` and the `text` of its tolerance.
     nominal : ndarray, shape (k,)
@@ -69,7 +69,7 @@ class Spread(Result):
     sampled_answers : ndarray, shape (2 n, k)
         Their answers [`units`]; not finite where there is none.
     warnings : tuple of str
-        What limits the answers.
+        Limits of the answers.
     provenance : Provenance
         How it was found.
 
@@ -101,7 +101,7 @@ class Spread(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line, of its first answer; see `Result.headline`."""
+        """The range of the first answer, and what matters most to it, in one line; see `Result.headline`."""
         k = next((k for k, share in enumerate(self.scatter.no_answer) if share < 1), 0)
         first, unit, names = self.first_order, f" {self.units[k]}".rstrip(), self.matters_most(k)
         error = first.error[k] + np.nan_to_num(self.error[k], posinf=np.inf) * abs(self.nominal[k])
@@ -180,7 +180,7 @@ def draw_scatter(
     values : ndarray, shape (n,)
         Answers of random designs; those that are not finite count, but are not drawn.
     label : str
-        Of the axis.
+        Label of the axis.
     marks : sequence of (label, style, colour, places)
         Vertical lines at places.
     ax : Axes, optional

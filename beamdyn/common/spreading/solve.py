@@ -32,7 +32,7 @@ class SpreadAnswers:
     Parameters
     ----------
     answers, units : tuple of str, length k
-        What each is, and its unit.
+        Name of each answer, and its unit.
     value : ndarray, shape (N, k)
         Answers; not finite where there is none.
     error : ndarray, shape (N, k)
@@ -40,7 +40,7 @@ class SpreadAnswers:
     status : ndarray of str, shape (N, k)
         Their states.
     warnings : tuple of str
-        What limits them.
+        Limits of the answers.
     method, compared_with : str
         As of `Provenance`.
     """
@@ -87,7 +87,7 @@ def solve_spread(
     Parameters
     ----------
     what : str
-        What is asked for.
+        Answers that are asked for.
     inputs : sequence of SpreadInput
         The d inputs.
     samples, seed : int
@@ -151,7 +151,7 @@ class _FurtherAnswers:
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # which answers some design has
+    wanted: Any  # answers that some design has
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)

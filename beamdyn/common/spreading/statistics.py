@@ -3,6 +3,13 @@
 Samples come in blocks whose points were scrambled independently, so that the scatter over blocks says how far
 a mean is from the truth: no assumption on the answers is made, and what the even distribution of the points
 gains is in it.  A statistic is a mean or a ratio of means over blocks, and its error that of its linear part.
+
+Designs of a spread: random ones for its statistics, the nominal one, and those about it for slopes.
+
+Of random designs there are two samples A and B (n each), and for each input one with the values of A but for
+that input, whose values are those of B (Saltelli et al., Computer Physics Communications 181 (2010) 259).
+Both are points of scrambled Sobol' sequences, `BLOCKS` of them, each scrambled by itself: what they differ by
+says how far a statistic may be from the truth.
 """
 
 from __future__ import annotations
@@ -21,7 +28,7 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 BLOCKS = 16
 LEAST, MOST = 128, 2**17  # samples: below, blocks are too small to say how far off they are
 MOST_SEED = 2**63
-_STEP = 1 / 8  # of the way to an end, for slopes: far above rounding, and near enough to be straight
+_STEP = 1 / 8  # share of the way to an end, for slopes: far above rounding, and near enough to be straight
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
 
@@ -54,7 +61,7 @@ class SpreadDesigns:
     samples : int
         Number n of designs of each random sample.
     seed : int
-        What the samples follow from.
+        Seed from which the samples follow.
     """
 
     inputs: Sequence[SpreadInput]
@@ -113,7 +120,7 @@ class SpreadDesigns:
         nominal : ndarray, shape (k,)
         beside : ndarray, shape (d, 4, k)
         random : ndarray, shape (2 + d, n, k)
-            Of A, of B, and of A with each input of B.
+            Answers of the samples A, of B, and of A with each input of B.
         """
         k, slopes = answers.shape[1], 1 + 4 * self.count
         beside = answers[1:slopes].reshape(self.count, 4, k)
@@ -139,11 +146,11 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
     return np.clip(points, 2.0**-40, 1 - 2.0**-40)
 
 
-# Statistics of the answers of random designs, with their standard error ---------------------------
+# Statistics of the answers ------------------------------------------------------------------------
 
 
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
-_LEAST_BLOCKS = 8  # with answers, from whose scatter an error follows
+_LEAST_BLOCKS = 8  # fewest blocks with answers, from whose scatter an error follows
 _ROUNDING = 1e-12  # relative scatter that is no scatter
 
 

@@ -57,10 +57,7 @@ class Uniform:
         """Smallest and largest value of a worst case."""
         return self.low, self.high
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Smallest and largest value of a sample."""
-        return self.low, self.high
+    reach = ends  # smallest and largest value of a sample
 
     @property
     def mean(self) -> float:
@@ -172,7 +169,7 @@ def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Co
     Parameters
     ----------
     name : str
-        Of the input.
+        Name of the input.
     nominal : float
         Its value [unit].
     unit : str

@@ -20,7 +20,7 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 
 RISES, FALLS, BOTH, NEITHER = "rises", "falls", "rises and falls", "does not change"
 _MOST_TURNING = 6  # inputs of which all ends are combined
-_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # of a search, over the width of a tolerance
+_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # steps of a search, over the width of a tolerance
 ROUNDING = 1e-12  # relative change of an answer that is none
 
 # Designs (N, d) in; answers (N, k) out, not finite where there is none, and their absolute errors (N, k), nan

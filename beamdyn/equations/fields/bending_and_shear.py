@@ -18,7 +18,7 @@ from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditi
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Term
 from beamdyn.equations.fields.transverse import Pair, TransverseField
-from beamdyn.scene.beam import Beam, PointSpring, TipMass
+from beamdyn.scene.beam import PointSpring, TipMass
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
@@ -55,18 +55,14 @@ class Bending(TransverseField):
         stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
         if stiffness is not None:
             if self.direction == 0 and pair.rows.scene.physics.plate:
-                stiffness = stiffness.scaled(_hindered_camber(pair.rows.scene.beam))
+                section = pair.rows.scene.beam.section
+                assert section is not None, "a scene of a plate has a section"
+                stiffness = stiffness * section.camber_stiffening
             yield pair.term("bending stiffness", pair.integrate(stiffness, 2))
         spring = pair.rows.scene.mount.root_stiffnesses[self.direction]
         if pair.rows is pair.columns and math.isfinite(spring):
             slope = pair.rows.space.evaluate(np.zeros(1), 1)[:, 0] / pair.rows.beam.length
             yield pair.term("root spring", spring * np.outer(slope, slope))
-
-
-def _hindered_camber(beam: Beam) -> float:
-    """Stiffness of a strip that cannot camber over that of one that does."""
-    assert beam.section is not None and beam.section.poissons_ratio is not None
-    return 1 / (1 - beam.section.poissons_ratio**2)
 
 
 class SecondBending(Bending):

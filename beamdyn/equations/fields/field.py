@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from beamdyn.equations.discretization import Functions, Space, Spaces
+from beamdyn.equations.discretization import Functions, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
@@ -86,13 +86,27 @@ class Deflection:
     direction: int = 0
 
 
+class Coordinates(Protocol):
+    """What the equations of motion ask of the functions of a field; a `Space` has more."""
+
+    @property
+    def size(self) -> int:
+        """Number of functions."""
+        ...
+
+    @property
+    def coarse(self) -> np.ndarray | None:
+        """Indices of functions that span those of the coarser discretization; None where no few do."""
+        ...
+
+
 @dataclass(frozen=True)
 class FieldEquations:
     """Contribution of a field to the equations of motion of a scene.
 
     Parameters
     ----------
-    space : Space
+    space : Coordinates
         Functions of which the coordinates are coefficients.
     terms : tuple of Term
         Terms of the left-hand side.
@@ -104,7 +118,7 @@ class FieldEquations:
         Whether the first coordinate turns the beam about its root.
     """
 
-    space: Space
+    space: Coordinates
     terms: tuple[Term, ...]
     loads: tuple[Load, ...]
     deflection: Deflection | None = None

@@ -44,7 +44,6 @@ from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
-from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
@@ -204,9 +203,9 @@ class Strip:
     def stiffness(self, rows: Deflection, columns: Deflection, warping: Profile = ONE) -> np.ndarray:
         """Stiffness of the plate [N/m], with a factor of its bending along the beam by warping."""
         section, EI = self.section, self.scene.beam.bending_stiffness
-        nu, D = section.poissons_ratio, plate_stiffness(self.scene.beam)
-        bend, cross = self.integrate, (D * _root(warping)).scaled(nu)
-        GJ = (EI * section.torsion_factor).scaled(2 / (1 + nu))
+        D, bend = EI * section.camber_stiffening, self.integrate
+        cross = D * _root(warping) * section.camber_ratio
+        GJ = (EI * section.torsion_factor).scaled(2 / (1 + (section.poissons_ratio or 0.0)))
         return (
             bend(D * warping, (rows, "w_xx"), (columns, "w_xx"))
             + bend(D, (rows, "w_yy"), (columns, "w_yy"))
@@ -218,12 +217,6 @@ class Strip:
 
 def _root(factor: Profile) -> Profile:
     return combine(lambda values: np.sqrt(values)[None], factor)[0]
-
-
-def plate_stiffness(beam: Beam) -> Profile:
-    """Stiffness D b = E I/(1 - nu^2) of a strip that cannot camber [N m2]."""
-    assert beam.section is not None and beam.section.poissons_ratio is not None
-    return beam.bending_stiffness.scaled(1 / (1 - beam.section.poissons_ratio**2))
 
 
 @dataclass(frozen=True)

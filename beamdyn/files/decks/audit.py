@@ -23,7 +23,7 @@ from beamdyn.scene.scene import Scene
 SHAPE_NAMES: Mapping[str, str] = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
 PLACES = np.linspace(0, 1, 401)  # x/L at which shapes are compared and fitted
 _POWERS = np.arange(2, 7)
-_TOLERANCE = 1e-6  # of the frequencies of the shapes
+_TOLERANCE = 1e-6  # tolerance of the frequencies of the shapes
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class ModePolynomial:
     mode : str
         Such as "flap 1".
     coefficients : tuple of float
-        Those of the powers 2 to 6; they add up to 1, the deflection at the tip.
+        Coefficients of the powers 2 to 6; they add up to 1, the deflection at the tip.
     difference : float
         Largest difference from the mode shape with the same deflection at the tip, relative to it.
     frequency : float
@@ -82,7 +82,7 @@ def fit_mode_polynomials(scene: Scene, speed: float) -> tuple[ModePolynomial, ..
 def _fit(scene: Scene, mode: str, speed: float) -> ModePolynomial:
     shape, frequency = shape_of(scene, mode, speed)
     last = PLACES ** _POWERS[-1]
-    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]  # of each 0 at the tip: the sum stays 1
+    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]  # each is 0 at the tip: the sum stays 1
     first = np.linalg.lstsq(others, shape - last, rcond=None)[0].round(6)  # as many digits as are written
     coefficients = (*map(float, first), round(1 - float(first.sum()), 6))
     difference = float(np.abs(polynomial(coefficients) - shape).max())
@@ -131,7 +131,7 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
 
 
 STEEP = 3.0  # factor between neighbouring stations from which a step is named
-_SUM_ERROR = 1e-3  # of the coefficients of a mode shape, which ElastoDyn lets pass
+_SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn lets pass
 _SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
@@ -235,7 +235,7 @@ class DeckAudit(Result):
     shape_speed : float
         Speed at which shapes are compared [rad/s].
     warnings : tuple of str
-        What looks like a mistake in the deck.
+        Signs of mistakes in the deck.
 
     Examples
     --------
@@ -265,7 +265,7 @@ class DeckAudit(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Stations, mass, centre and steep steps of the blade in one line; see `Result.headline`."""
         yield f"{counted(self.stations, 'station')}, {number(self.mass, 'kg')}"
         yield f"centre at {number(self.centre, 'm')}"
         yield counted(len(self.steps), "steep step") if self.steps else ""

@@ -199,7 +199,7 @@ def _check_positive(text: DataText, lines: Sequence[int], column: Column, values
         raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")
 
 
-# What every deck says of a blade, in the words of this package, whateve ---------------------------
+# Blades -------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -248,9 +248,9 @@ class Blade:
     Parameters
     ----------
     kind : str
-        What the deck is.
+        Kind of deck.
     title : str
-        What the deck says it is of; it may be empty.
+        Title that the deck has; it may be empty.
     sources : tuple of Path
         The files that were read, the one that was asked for first.
     length, hub_radius : float
@@ -272,7 +272,7 @@ class Blade:
     polynomials : dict of ndarray, shape (5,)
         Coefficients of x/L to the powers 2 to 6 of the deck's mode shapes, by mode, such as "flap 1".
     ignored : tuple of IgnoredProperty
-        What of the deck is not in this blade.
+        Properties of the deck that are not in this blade.
     doubts : tuple of str
         What the deck's own program would read otherwise.
     """
@@ -295,7 +295,7 @@ class Blade:
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:
-    """What is ignored of some values: nothing where all are zero."""
+    """The record of a property that is left out, with its range; none where all its values are zero."""
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if not array.any():
         return ()

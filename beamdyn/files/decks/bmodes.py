@@ -71,16 +71,6 @@ _MAIN_NAMES = {plain_name(name): name for name in _NEEDED}
 _MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult")
 
 
-def is_section_file(text: DataText) -> bool:
-    """Whether the text is that of a file of section properties."""
-    return bool(named_values(text, {"nsecs"}))
-
-
-def is_main_file(text: DataText) -> bool:
-    """Whether the text is that of a main file."""
-    return bool(named_values(text, {"secpropsfile"}))
-
-
 def read_main_file(text: DataText) -> Blade:
     """Read the main file and the section properties that it names."""
     found = named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
@@ -114,7 +104,7 @@ def read_main_file(text: DataText) -> Blade:
         sources=(text.path, *blade.sources),
         tip=tip,
         pitch=values["blthp"],
-        speed=(speed * values.get("rpmmult", values.get("romgmult", 1.0))),
+        speed=speed * values.get("rpmmult", values.get("romgmult", 1.0)),
         precone=values["precone"],
         ignored=(*left_out, *blade.ignored),
     )

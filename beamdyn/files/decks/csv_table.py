@@ -12,7 +12,7 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.csv_files import RADIUS, read_station_file
 from beamdyn.files.decks.blade import Blade, ignore
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # of other programs, whose sense is the opposite
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # heads of twist in other programs, whose sense is the opposite
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")

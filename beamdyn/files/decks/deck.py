@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.data_text import DataText, read_data
+from beamdyn.common.edge.data_text import DataText, named_values, read_data
 from beamdyn.common.inputs.checks import InvalidValue, moderate, not_negative, size
 from beamdyn.common.results.files import check_writable, write_text
 from beamdyn.common.results.one_line import counted, number
@@ -36,15 +36,15 @@ class Deck(Result):
     Parameters
     ----------
     kind : str
-        What the files are.
+        Kind of files.
     title : str
-        What they say they are of.
+        Title that the files have.
     sources : tuple of str
         The files that were read.
     scene : Scene
         The blade on its hub: it points outward, flap out of the plane of rotation, edge in it.
     ignored : tuple of IgnoredProperty
-        What of the files the scene does not have.
+        Properties of the files that the scene does not have.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Deck(Result):
     blade: Blade = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Kind and title of the deck, and length of its blade, in one line; see `Result.headline`."""
         yield self.kind
         yield repr(self.title) if self.title else ""
         yield f"{number(self.scene.beam.length, 'm')} long"
@@ -179,24 +179,25 @@ def read_deck(
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:
     """The blade of a file, whatever program wrote it."""
-    if elastodyn.is_blade_file(text):
-        return elastodyn.read_blade_file(text, *_needed(text, given, "the main file has TipRad and HubRad"))
-    if elastodyn.is_main_file(text):
-        _needed(text, given, "", length=False, hub_radius=False)
-        return elastodyn.read_main_file(text)
-    if elastodyn.is_openfast_file(text):
-        _needed(text, given, "", length=False, hub_radius=False)
-        return elastodyn.read_openfast_file(text)
-    if bmodes.is_main_file(text):
-        _needed(text, given, "", length=False, hub_radius=False)
-        return bmodes.read_main_file(text)
-    if bmodes.is_section_file(text):
-        return bmodes.read_section_file(text, *_needed(text, given, "the main file (.bmi) has both"))
+    for read, names, remedy in _READERS:
+        if len(named_values(text, names)) == len(names):
+            needed = _needed(text, given, remedy, length=bool(remedy), hub_radius=bool(remedy))
+            return read(text, *(needed if remedy else ()))
     if csv_table.is_csv(text):
         length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
         remedy = "a column r [m], from the axis of rotation, says both"
         return csv_table.read_csv_blade(text, *_needed(text, given, remedy, length, hub_radius))
     raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])
+
+
+# Readers, the values that tell their files from others, and what says length and hub radius if they do not.
+_READERS: tuple[tuple[Callable[..., Blade], set[str], str], ...] = (
+    (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad"),
+    (elastodyn.read_main_file, {"tiprad", "bldfile1"}, ""),
+    (elastodyn.read_openfast_file, {"edfile"}, ""),
+    (bmodes.read_main_file, {"secpropsfile"}, ""),
+    (bmodes.read_section_file, {"nsecs"}, "the main file (.bmi) has both"),
+)
 
 
 def _needed(

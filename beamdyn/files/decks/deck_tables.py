@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def deck_tables(deck: Deck) -> list[RenderableType]:
-    """What the deck is, its audit, and what of it is ignored."""
+    """Tables of a deck: its title and size with its audit, and its properties that are ignored."""
     scene = deck.scene
     size = f"{scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
     parts = audit_tables(deck.audit, f"{deck.title or 'Blade'} ({deck.kind}), {size}")

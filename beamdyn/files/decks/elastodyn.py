@@ -88,36 +88,14 @@ _ELASTODYN = 1  # CompElast: 2 is BeamDyn's blades with ElastoDyn's hub, 3 a sim
 _MAIN_MORE = {plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
 
 
-def is_blade_file(text: DataText) -> bool:
-    """Whether the text is that of a blade file."""
-    return bool(named_values(text, {"nblinpst"}))
-
-
-def is_main_file(text: DataText) -> bool:
-    """Whether the text is that of a main file of ElastoDyn or FAST 7."""
-    return len(named_values(text, {"tiprad", "bldfile1"})) == 2
-
-
-def is_openfast_file(text: DataText) -> bool:
-    """Whether the text is that of a main file of OpenFAST, which names that of ElastoDyn."""
-    return bool(named_values(text, {"edfile"}))
-
-
 def read_openfast_file(text: DataText) -> Blade:
     """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
     found = named_values(text, {"edfile", "compelast"})
     blade = read_main_file(read_data(named_file(text, found["edfile"])))
-    ignored = (*_other_elastic_model(text, found), *blade.ignored)
-    return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
-
-
-def _other_elastic_model(text: DataText, found: Mapping[str, NamedValue]) -> tuple[IgnoredProperty, ...]:
-    """What to say where the turbine's blades are not those of ElastoDyn."""
     model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
-    if model == _ELASTODYN:
-        return ()
     reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
-    return ignore("CompElast", model, "", reason)
+    ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *blade.ignored)
+    return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
 
 
 def read_main_file(text: DataText) -> Blade:
@@ -178,6 +156,12 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
     damping = numbers(*_DAMPING) / 100
     # What the file says it is of: its second line, or that below two lines of dashes in FAST 7.
     plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
+    # The factor of each column; positive.
+    factors = {}
+    for name, column in _FACTORS.items():
+        named = found[plain_name(name)]
+        factors[column] = named_number(text, named)
+        check_named(text, named, factors[column] > 0, "above 0")
     return Blade(
         kind="ElastoDyn blade file",
         title=next(plain, ""),
@@ -185,7 +169,7 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
         length=length,
         hub_radius=hub_radius,
         stations=table.columns["BlFract"],
-        columns=_properties(table, _factors(text, found)),
+        columns=_properties(table, factors),
         damping=float(damping[0]) if np.ptp(damping) == 0 else 0.0,
         polynomials={mode: numbers(*names) for mode, names in _SHAPES.items()},
         ignored=(*_ignored_settings(damping, numbers(*_TUNERS)), *ignore_columns(table, _USED, _REASONS)),
@@ -206,16 +190,6 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
             f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
         )
         yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
-
-
-def _factors(text: DataText, found: Mapping[str, NamedValue]) -> dict[str, float]:
-    """The factor of each column; positive."""
-    factors = {}
-    for name, column in _FACTORS.items():
-        named = found[plain_name(name)]
-        factors[column] = named_number(text, named)
-        check_named(text, named, factors[column] > 0, "above 0")
-    return factors
 
 
 def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.ndarray]:

@@ -12,7 +12,7 @@ from beamdyn.scene.points import TipMass
 
 _UNITS = {"twist": "deg"} | PROPERTY_UNITS
 _TIP_UNITS = {name: each.unit for name, each in descriptions(TipMass).items()}
-_DIGITS = 15  # of numbers in the file: those that a float keeps
+_DIGITS = 15  # digits of numbers in the file: those that a float keeps
 
 
 def tables_of(blade: Blade) -> dict[str, Any]:

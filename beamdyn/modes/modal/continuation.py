@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7  # arc lengths of a step
-_ITERATIONS = 12  # of Newton's method
+_ITERATIONS = 12  # iterations of Newton's method
 _EASY = 4  # iterations up to which the next step is longer
 _CONVERGED = 1e-14  # change of the slope angles [rad]
 _STALLED = 1e-9  # change of the slope angles from which on rounding may end the iteration [rad]

@@ -31,9 +31,9 @@ TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
 FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
 PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
-_MOST_SEGMENTS = 200  # of a beam between its stations and breakpoints
+_MOST_SEGMENTS = 200  # segments of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
-_FEW_SEGMENTS = 6  # on more, moments over the whole beam need fewer functions than polynomials on each
+_FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
 _MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more functions, and lose digits
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
@@ -42,7 +42,7 @@ _ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of ha
 _OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
 _MANY = 10_000  # modes, more than any discretization gives
 _NAMES = "ritz", "fem"
-_FEWEST_FUNCTIONS = 9  # with fewer, the coarser basis lacks one function only, which may not affect a mode
+_FEWEST_FUNCTIONS = 9  # fewest functions: else the coarser basis lacks only one, which may not affect a mode
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
 
@@ -198,9 +198,8 @@ def list_models(
         )
     if named := isinstance(discretization, str):
         first = _first_ritz if discretization == "ritz" else _first_fem
-        discretization = first(scene, segments, modes, target, cheapest, has_layers)
-        while not _fits(discretization, modes, segments) and (finer := discretization.finer()) is not None:
-            discretization = finer
+        smallest = first(scene, segments, modes, target, cheapest, has_layers)
+        discretization = refine(smallest, lambda d: d.finer(), lambda d: _fits(d, modes, segments))
     if not _fits(discretization, modes, segments):
         most = _most_that_fit(discretization, modes, segments)
         bound = f"{discretization} gives at most {most} modes with an estimate of their error"
@@ -300,7 +299,7 @@ def check_discretization(discretization: object) -> None:
 
 _LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
-_SHORTEST = 1e-4  # and the shortest
+_SHORTEST = 1e-4  # length of the shortest layer
 _TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies
 
 

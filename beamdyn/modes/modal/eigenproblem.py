@@ -163,17 +163,17 @@ class Solver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """By the largest eigenvalue of the inverse problem."""
+        """Inverse of the largest eigenvalue of the inverse problem."""
         return float(1 / _largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
 
     @property
     def softening(self) -> float:
-        """By the lowest growth of the stiffness; on springs, without that of the shift."""
+        """The lowest growth of the stiffness, reversed; on springs, without the growth by the shift."""
         return self._softening[0]
 
     @property
     def critical_rounding(self) -> float:
-        """By that of the softening, which is relative to the largest growth."""
+        """Rounding error of the softening, which is relative to the largest growth."""
         return self._softening[1]
 
     @cached_property
@@ -229,7 +229,7 @@ class Solver(Eigensolver):
         return 1j / np.sqrt(inverse_squares(mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """By a factorization at one speed, else in the coordinates of the solver: each is by itself."""
+        """One speed is solved by a factorization, others in the coordinates of the solver, each by itself."""
         if self.pencil.shift:
             return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
         if (L := self.factor(speeds)) is not None:

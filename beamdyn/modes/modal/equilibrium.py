@@ -169,7 +169,7 @@ def follow_to(
         ]
         if pending and (
             load.transverse or q.any()
-        ):  # else the straight beam is in equilibrium at every speed
+        ):  # otherwise the straight beam is in equilibrium at every speed
             found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
     return found
 

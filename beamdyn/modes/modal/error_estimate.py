@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES
+from beamdyn.accuracy.margins import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
@@ -23,13 +23,12 @@ _OF_ENTRIES = 3 * np.finfo(float).eps  # three deviations of the rounding of the
 _LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
 _SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
 _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
-_ROUNDING = 1.5  # of rounding errors: two models with the same matrices have the same, which does not show
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
 # Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
-_ABOVE = 0.99  # of the lowest square at rest: so much may a scale of errors be too low
+_ABOVE = 0.99  # share of the lowest square at rest: so much may a scale of errors be too low
 _FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
 
 
@@ -84,13 +83,13 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # of moments some may depend on others
+    if model.solver.size < modes:  # some moments may depend on others
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
-    compared = coarse.shape[1]  # of moments that depend on each other there may be fewer than modes
+    compared = coarse.shape[1]  # there may be fewer independent moments than modes
     s = fine.eigenvalue[:, :compared]
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
@@ -124,7 +123,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
             margin = SLOW_BASES.factor if scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
             parts = parts_of_distances(scene, model.discretization)
             truncation = _ritz_error(distance, squared, lowest, margin, parts)
-    error = truncation + _ROUNDING * fine.rounding[:, :compared] + model.discretization.rounding
+    error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     # But for rotation, nothing holds a root without a spring, or on the axis: a frequency within rounding of
     # 0 is 0 then.
@@ -141,7 +140,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def extrapolation_error(
     distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
 ) -> np.ndarray:
-    """What extrapolation leaves of the error of a number, by its distances over three meshes.
+    """Estimate the error of a number that extrapolation leaves, by its distances over three meshes.
 
     Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
     of the one before; where they are longer than a layer, or cross a steep change, it falls less.
@@ -217,7 +216,9 @@ def error_of_assumed_modes(
     margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(distance) / (2 * np.abs(squared))
-        error = _ritz_error(distance, squared, lowest_at_rest, margin, parts) + _ROUNDING * rounding
+        error = (
+            _ritz_error(distance, squared, lowest_at_rest, margin, parts) + ROUNDING_OF_TWO.factor * rounding
+        )
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
     resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)

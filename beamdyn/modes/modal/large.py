@@ -22,7 +22,7 @@ from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
 _MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
-_RESTARTS = 50  # of the iteration, which converges after a few, if at all
+_RESTARTS = 50  # restarts of the iteration, which converges after a few, if at all
 
 
 class LargeSolver(Eigensolver):
@@ -45,19 +45,19 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """By the iteration."""
+        """Inverse of the largest eigenvalue, which the iteration finds."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """By full matrices."""
+        """The softening by full matrices."""
         return self.dense.softening
 
     @property
     def critical_rounding(self) -> float:
-        """By full matrices."""
+        """The rounding error by full matrices."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:

@@ -33,7 +33,7 @@ from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
-_MOST_SPEEDS = 1000  # of each design at once, which bounds the memory
+_MOST_SPEEDS = 1000  # speeds of each design at once, which bounds the memory
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class PencilStack:
     K2: np.ndarray
 
     def part(self, coordinates: np.ndarray) -> PencilStack:
-        """The same over some of the coordinates."""
+        """Extract the matrices of some of the coordinates."""
         places = ..., *np.ix_(coordinates, coordinates)
         return PencilStack(self.K0[places], self.M[places], self.K2[places])
 
@@ -158,7 +158,7 @@ class StackedSolver:
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
 
-        Of the multiple 0: at which the stiffness is singular.  Modes ascend; a value that is not positive
+        At the multiple 0 the stiffness is singular.  Modes ascend; a value that is not positive
         says that the mode meets the line at no speed.  The rounding error is that of the value.
         """
         n = self.growth.shape[1]

@@ -19,7 +19,7 @@ from beamdyn.scene.motion import Motion
 
 FEWEST_MODES = 2  # size of the first basis where no number is given
 SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
-_MOST_MODES = 60  # with more, the time steps that the fastest modes need are too small
+_MOST_MODES = 60  # number of modes above which the steps that the fastest need are too small
 _MASSLESS = 1e-14  # pivot of the mass, over the largest, that rounding makes of 0
 _DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
 

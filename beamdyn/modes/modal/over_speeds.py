@@ -19,8 +19,8 @@ from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 _FEW = 160  # speeds that are solved each
 _INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
 _HIGHEST = 3  # the last third of the coefficients: where it is small, the series falls faster than that
-_MISFIT = 1e-12  # of interpolated squared frequencies, beside their rounding: it is in the stated error
-_MISFIT_OF_MODES = 1e-7  # of interpolated modes, relative to their largest coordinate: they are only compared
+_MISFIT = 1e-12  # misfit of interpolated squared frequencies beside their rounding; the stated error has it
+_MISFIT_OF_MODES = 1e-7  # misfit of interpolated modes over their largest coordinate: they are only compared
 _LEBESGUE = 3.0  # growth of rounding errors at the points by interpolation: constant of 17 to 33 points
 
 Solve = Callable[[np.ndarray], Eigen]  # modes at given speeds
@@ -164,7 +164,7 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # of each mode, with the largest sum of MACs
+    successor = mac.argmax(axis=2)  # successor of each mode, with the largest sum of MACs
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])

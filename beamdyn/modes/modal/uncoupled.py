@@ -30,9 +30,8 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
     if len(pencil.M) <= LARGE:
         return Solver(pencil)
-    from beamdyn.modes.modal.large import (
-        LargeSolver,  # here, for the time that sparse algebra takes to import
-    )
+    # It is imported here for the time that sparse algebra takes to import.
+    from beamdyn.modes.modal.large import LargeSolver
 
     return LargeSolver(pencil)
 

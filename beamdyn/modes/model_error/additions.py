@@ -48,35 +48,6 @@ class Addition:
         return self.effect.name
 
 
-def add_effect(scene: Scene, effect: Effect) -> Addition:
-    """Add an effect that a scene leaves out to it.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    effect : Effect
-        The effect, which a model can have.
-
-    Returns
-    -------
-    Addition
-
-    Raises
-    ------
-    InvalidValue
-        If the beam lacks a property that the effect needs, or the effect cannot be combined with the others.
-    """
-    try:
-        return Addition(effect, add_effects(scene, [effect]))
-    except InvalidValue:
-        beam = _assume_shear(scene.beam) if scene.physics.shear or effect is SHEAR else None
-        if beam is None:
-            raise
-    assumed = f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
-    return Addition(effect, add_effects(replace(scene, beam=beam), [effect]), assumed)
-
-
 def _assume_shear(beam: Beam) -> Beam | None:
     """The beam with the shear stiffness of usual materials; None unless its sections are seen as rectangles.
 
@@ -84,7 +55,7 @@ def _assume_shear(beam: Beam) -> Beam | None:
     """
     if beam.shear_stiffness is not None or beam.axial_stiffness is None or beam.outer_fibre is None:
         return None
-    xi = np.linspace(0, 1, 33)  # of rectangles of outer fibre h/2, EI = EA h^2 / 12
+    xi = np.linspace(0, 1, 33)  # rectangles with outer fibre h/2 have EI = EA h^2 / 12
     gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
     if not np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0):
         return None
@@ -109,8 +80,17 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
         left_out.remove(SECOND_PLANE)
     additions, not_known = [], {}
     for effect in (effect for effect in left_out if effect.switch):
-        try:
-            additions.append(add_effect(scene, effect))
-        except InvalidValue as error:
-            not_known[effect.name] = f"give {error.other}" if error.other else str(error)
+        scenes, refusal = [(scene, "")], None
+        if scene.physics.shear or effect is SHEAR:
+            beam, assumed = _assume_shear(scene.beam), f"Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
+            scenes += [] if beam is None else [(replace(scene, beam=beam), f"with {assumed}")]
+        for given, assumed in scenes:
+            try:
+                additions.append(Addition(effect, add_effects(given, [effect]), assumed))
+                break
+            except InvalidValue as error:
+                refusal = error
+        else:
+            assert refusal is not None
+            not_known[effect.name] = f"give {refusal.other}" if refusal.other else str(refusal)
     return additions, not_known, tuple(e.name for e in left_out if not e.switch)

@@ -17,13 +17,13 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.accuracy.margins import EFFECTS
+from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_changes import (
     EXCLUDED,
@@ -36,9 +36,9 @@ from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_SMALL = 0.1  # of the tolerance, below which no effect is added
-_SOLVED = 0.1  # of the tolerance, to which the modes are solved that the effects change
-_MODES = 3  # of which a motion consists
+_SMALL = 0.1  # share of the tolerance below which no effect is added
+_SOLVED = 0.1  # share of the tolerance to which the modes are solved that the effects change
+_MODES = 3  # modes of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
 _BENDING = LARGE_DEFLECTION.name
@@ -106,15 +106,16 @@ def choose_physics(
         return solve_to_tolerance(candidate, "ritz", some, modes, target)
 
     def judge(candidate: Scene) -> EffectSizes:
-        found = solve(candidate)
+        found, bent, rough = solve(candidate), candidate.physics.large_deflection, math.nan
         s = found.eigen.eigenvalue[:, :modes]
-        effects = left_out_of_modes(found.model, some, s)
-        counts = vibrate(s)
-        if (
-            candidate.physics.large_deflection
-        ):  # then others are judged on the straight beam, where it is stable
+        effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
+        if bent:  # then others are judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        return _judged_by(candidate, effects, counts, _rough_size(found.model, some))
+        elif bends(found.model):  # a generous size of large deflection is known by the static one
+            # Where the straight beam is unstable, though rotation bends it before, nothing of it is right.
+            ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
+            rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
+        return _sizes_in_modes(candidate, effects, counts, rough)
 
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
@@ -139,7 +140,7 @@ def plain_physics(scene: Scene) -> Scene:
     return replace(scene, physics=Physics()) if scene.chooses_physics else scene
 
 
-def _judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
+def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
     """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
 
     An effect that turns modes into others can be added: that its size is not known is no reason against it.
@@ -159,17 +160,6 @@ def _judged_by(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough:
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return EffectSizes(sizes, nothing | assumed | refused)
-
-
-def _rough_size(model: Model, speeds: np.ndarray) -> float:
-    """A generous size of large deflection, by the static deflection; nan if the beam stays straight.
-
-    Where the straight beam is unstable, though rotation bends it before, nothing of it is right: inf.
-    """
-    if model.scene.physics.large_deflection or not bends(model):
-        return math.nan
-    ratio = np.linalg.norm(model.static_tips(speeds), axis=1) / model.scene.beam.length
-    return math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
 
 
 def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
@@ -257,7 +247,7 @@ class _Candidate:
         return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
-        """The same, with a reason why an effect cannot be added."""
+        """Give a reason why an effect cannot be added."""
         return replace(self, reasons={name: reason} | self.reasons)
 
     def add(self, name: str, judge: Judge) -> _Candidate:
@@ -274,7 +264,7 @@ class _Candidate:
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
-            size = judged.sizes.get(other, math.nan)  # as before where it is not known any more
+            size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
@@ -314,7 +304,7 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(_BENDING, judge)  # and what it is combined with
+            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
             best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
@@ -324,21 +314,28 @@ def choose_by(
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
     """Add effects, but for the barred, until those that can be added are worth half the tolerance."""
-    while True:
-        sizes = {name: size for name, size in candidate.addable().items() if name not in barred}
-        largest = max(sizes, key=sizes.__getitem__, default="")
-        if sum(sizes.values()) <= EFFECTS.factor * tolerance or sizes[largest] <= _SMALL * tolerance:
-            return candidate
+
+    def sizes(found: _Candidate) -> dict[str, float]:
+        return {name: size for name, size in found.addable().items() if name not in barred}
+
+    def larger(found: _Candidate) -> _Candidate:
+        largest = max(known := sizes(found), key=known.__getitem__)
         try:
-            candidate = candidate.add(largest, judge)
+            return found.add(largest, judge)
         except (InvalidValue, ArithmeticError) as error:
-            candidate = candidate.without(largest, reason_of(error))
+            return found.without(largest, reason_of(error))
+
+    def meets(found: _Candidate) -> bool:
+        left = sizes(found).values()
+        return sum(left) <= EFFECTS.factor * tolerance or max(left) <= _SMALL * tolerance
+
+    return refine(candidate, larger, meets)
 
 
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
-    """What was chosen, in numbers: each effect by its size, and what the choice costs."""
+    """Describe the choice in numbers: each effect by its size, and what it costs."""
     without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without

@@ -17,8 +17,7 @@ from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.model_error.reference_modes import (
@@ -153,7 +152,7 @@ def _bent_change_at(
     except (
         ArithmeticError,
         np.linalg.LinAlgError,
-    ) as error:  # of a hinge, with no one equilibrium
+    ) as error:  # a hinged beam has no single equilibrium
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -189,7 +188,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     base = BaseEquations.of(without_large_deflection(model), 1)
     pencil = base.equations.steady()
     v = buckling_mode(pencil, critical)
-    known = shift_critical_speed(pencil, critical, v)  # in the spaces of the effects
+    known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effects
 
     def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         return np.array(shift_critical_speed(equations.steady(), known, embed(v)) / known - 1)
@@ -221,7 +220,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """What the model assumes in place of each effect, and how to include it."""
+    """Reasons: what the model assumes in place of each effect, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 

@@ -23,7 +23,7 @@ _MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and
 
 @dataclass(frozen=True)
 class LeftOutEffects:
-    """What the effects that a model leaves out would change.
+    """Changes of an answer by the effects that a model leaves out.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class LeftOutEffects:
         return bool(self.not_known.keys() - self.changes.keys())
 
     def at(self, index: Any) -> LeftOutEffects:
-        """The same for some of the values."""
+        """Select the changes of some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
         return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape)
 
@@ -210,7 +210,7 @@ class StatesModelError(OfChosenPhysics):
     judged_by_solving: ClassVar[bool] = False  # whether the model error takes longer than the answer
 
     def without_waiting(self) -> Any:
-        """The same, with model errors that take long and were not asked for left out: to be shown at once."""
+        """Leave out model errors that take long and were not asked for: the result can be shown at once."""
         if not self.judged_by_solving or "left_out_effects" in vars(self):
             return self
         shape = np.shape(getattr(self, "left_out_speeds", 0.0))

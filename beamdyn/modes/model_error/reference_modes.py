@@ -28,9 +28,9 @@ from beamdyn.scene.scene import Scene
 
 _MOST = 160  # coordinates of a model: an estimate of a change needs no more
 _APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
-_STEPS = 8  # of inverse iteration at most: one will do unless the effect is large, or modes are close
+_STEPS = 8  # steps of inverse iteration: one will do unless the effect is large or modes are close
 _CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
-KEPT = 0.5  # of a mode's squared product by mass with that found: below it, it is another mode
+KEPT = 0.5  # squared product by mass with the mode found, below which it is another mode
 EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
 
 
@@ -140,7 +140,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
     modes = (v / scale[:, None]).T
-    with np.errstate(divide="ignore", invalid="ignore"):  # of singular equations, which give none
+    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations give no mode
         each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
     return np.array(each, dtype=complex)
 

@@ -188,11 +188,11 @@ def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
     return tuple(np.unique(real_array("breakpoints", times)).tolist())
 
 
-# Checks that a motion is consistent with its derivatives, and that it c ---------------------------
+# Checks of consistency ----------------------------------------------------------------------------
 
 
 _SAMPLES = 1000  # times at which functions are compared with their derivatives
-_STEP = 1e-7  # of the finite differences, relative to the interval
+_STEP = 1e-7  # step of the finite differences, relative to the interval
 _ZOOMS = 3  # refinements of a step with a misfit before it is reported as a jump
 _MISFIT = 1e-6  # allowed misfit, relative to the largest derivative
 

@@ -17,7 +17,7 @@ from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 if TYPE_CHECKING:  # scipy.interpolate is slow to import
     from scipy.interpolate import CubicSpline
 
-_GAP = 1.5  # of the usual interval, beyond which samples are missing
+_GAP = 1.5  # gap over the usual interval, beyond which samples are missing
 _AXES = ("along_n1", "along_n2", "along_n3")
 
 BetweenSamples = Literal["linear", "cubic"]

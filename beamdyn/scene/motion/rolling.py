@@ -21,7 +21,7 @@ from beamdyn.scene.motion.base import (
 )
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
 
-_MOST_WAVES = 1e12  # of the road per turn; with more, the phase of the road has few right digits
+_MOST_WAVES = 1e12  # waves of the road per turn; with more, the phase of the road has few right digits
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
-from beamdyn.equations.directions import first_drawn, name_directions
+from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -80,7 +80,7 @@ class Campbell(StatesModelError):
     unit : {"rad/s", "rpm"}
         Unit of speeds in the picture and the tables.
     warnings : tuple of str
-        What limits the answer.
+        Limits of the answer.
     provenance : Provenance
         How it was found.
 
@@ -108,7 +108,7 @@ class Campbell(StatesModelError):
     scene: Scene = field(repr=False)  # the first one
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of crossings, lines and scenes, and the error, in one line; see `Result.headline`."""
         found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
         yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
         yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
@@ -127,7 +127,7 @@ class Campbell(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """What the effects left out would change in the speed of each crossing (k,)."""
+        """Changes of the speed of each crossing by effects left out, shape (k,)."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
@@ -151,7 +151,7 @@ class Campbell(StatesModelError):
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # without their model error
+        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # model errors are left out
         return super().to_dict() | {"loci": loci}
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -254,10 +254,17 @@ def campbell(
     """
     start = perf_counter()
     by_label, orders, bounds = _check_scenes(scenes), _check_orders(per_rev), flag("bounds", bounds)
-    unit = _check_unit(unit, next(iter(by_label.values())))
+    if unit is None:
+        own = next(iter(by_label.values())).units.speed
+        unit = own if own in UNITS else UNITS[0]
+    one_of("unit", unit, UNITS)
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
-    speeds = _with_operation(speeds, rated, operating)
+    # The operating speeds stand among the others, in place of those that they repeat but for rounding.
+    added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
+    if added.size:
+        far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
+        speeds = np.union1d(speeds[far], added)
     loci = [frequency_locus(s, speeds, modes, discretization, tolerance) for s in by_label.values()]
     names = [_name_modes(locus) for locus in loci]
     lines, unknown = _all_lines(orders, loci, [*by_label])
@@ -294,7 +301,7 @@ _METHODS = "method", "compared_with"
 
 
 def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
-    """The scenes by their labels."""
+    """The scenes by their labels; by numbers if several have none, or the same."""
     if isinstance(scenes, Scene):
         return {"": scenes}
     by_label: dict[str, Any]
@@ -303,35 +310,18 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
         for label in by_label:
             kind("scenes", label, str, "labels are text")
     else:
-        by_label = _with_labels(scenes)
+        try:
+            numbered = {f"scene {i}": scene for i, scene in enumerate(scenes, 1)}
+        except TypeError:
+            numbered = {"": scenes}
+        own = {name: scene.label if isinstance(scene, Scene) else "" for name, scene in numbered.items()}
+        by_label = {own[name] or name: scene for name, scene in numbered.items()}
+        by_label = by_label if len(by_label) == len(numbered) else numbered
     if not by_label:
         raise InvalidValue("scenes", scenes, "it is empty; give at least one scene")
     for label, scene in by_label.items():
         kind(f"scenes[{label!r}]" if label else "scenes", scene, Scene, "give a beamdyn.Scene, or several")
     return by_label
-
-
-def _with_labels(scenes: Any) -> dict[str, Any]:
-    """One scene or several by their labels; by numbers if several have none, or the same."""
-    try:
-        each = [*scenes]
-    except TypeError:
-        return {_label_of(scenes): scenes}
-    numbered = {f"scene {i}": scene for i, scene in enumerate(each, 1)}
-    named = {_label_of(scene) or number: scene for number, scene in numbered.items()}
-    return named if len(named) == len(each) else numbered
-
-
-def _label_of(scene: object) -> str:
-    return scene.label if isinstance(scene, Scene) else ""
-
-
-def _check_unit(unit: str | None, scene: Scene) -> str:
-    """The unit that is given, or that of the scene."""
-    if unit is not None:
-        one_of("unit", unit, UNITS)
-        return unit
-    return scene.units.speed if scene.units.speed in UNITS else UNITS[0]
 
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
@@ -389,17 +379,6 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
     return min(value, top)
 
 
-def _with_operation(
-    speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
-) -> np.ndarray:
-    """Put the operating speeds among the others, in place of those that they repeat but for rounding."""
-    added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
-    if not added.size:
-        return speeds
-    far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
-    return np.union1d(speeds[far], added)
-
-
 # Names, lines, warnings ---------------------------------------------------------------------------
 
 
@@ -426,7 +405,7 @@ def _all_lines(
             others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
-    distinct = distinct_lines([*per_rev, *others])  # of two at one frequency the first
+    distinct = distinct_lines([*per_rev, *others])  # the first of two at one frequency is kept
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
 
 

@@ -1,4 +1,18 @@
-"""Derivatives of the matrices of a model, and of its coarser one, by the numbers of its scene."""
+"""Derivatives of the matrices of a model, and of its coarser one, by the numbers of its scene.
+
+Derivatives of matrices that depend on a number, by interpolation between places near it.
+
+The matrices are polynomials, quotients of them or sines of most numbers, and more of a place along the beam,
+which moves over functions of high degree.  They are evaluated at eight places, and the polynomial through
+these values is differentiated; the last term of that polynomial says how well it is resolved.  Eigenvalues,
+which have far fewer digits, are not differenced.
+
+First-order change of eigenvalues and critical speeds, from the derivatives of the equations' matrices.
+
+With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
+eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
+Systems, 1966, section 7).
+"""
 
 from __future__ import annotations
 
@@ -29,11 +43,11 @@ class Nearby(Generic[Evaluated]):
     Parameters
     ----------
     values : list
-        What was evaluated, at `PLACES` places.
+        Matrices at `PLACES` places.
     weights : ndarray, shape (PLACES,)
         The derivative is their sum times the values [1 / unit of the number].
     last : ndarray, shape (PLACES,)
-        The same of the last term of the polynomial through the values, for what the polynomial misses.
+        Weights of the last term of that polynomial, which bounds what it misses.
     width : float
         Half of the interval [unit of the number].
     """
@@ -72,7 +86,13 @@ def evaluate_nearby(
         found = False
         for low, high in intervals:
             try:
-                nearby = _evaluate_between(low, high, number.value, evaluate)
+                middle, half = (low + high) / 2, (high - low) / 2
+                points = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+                values = [evaluate(float(middle + half * t)) for t in points]
+                terms = np.polynomial.chebyshev.chebvander(points, PLACES - 1) * 2 / PLACES
+                terms[:, 0] /= 2
+                slopes = np.array([_slope(k, (number.value - middle) / half) for k in range(PLACES)]) / half
+                nearby = Nearby(values, terms @ slopes, terms[:, -1] * slopes[-1], half)
             except InvalidValue as error:
                 refused = error
             else:
@@ -82,19 +102,6 @@ def evaluate_nearby(
             return
     assert refused is not None
     raise refused
-
-
-def _evaluate_between(
-    low: float, high: float, at: float, evaluate: Callable[[float], Evaluated]
-) -> Nearby[Evaluated]:
-    """Evaluate something at the Chebyshev points of an interval, for derivatives at a place within."""
-    middle, half = (low + high) / 2, (high - low) / 2
-    points = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
-    values = [evaluate(float(middle + half * t)) for t in points]
-    terms = np.polynomial.chebyshev.chebvander(points, PLACES - 1) * 2 / PLACES
-    terms[:, 0] /= 2
-    slopes = np.array([_slope(k, (at - middle) / half) for k in range(PLACES)]) / half
-    return Nearby(values, terms @ slopes, terms[:, -1] * slopes[-1], half)
 
 
 def _slope(degree: int, t: float) -> float:
@@ -111,7 +118,7 @@ def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
     yield [(low, number.value) for low in lowest if low < number.value]
 
 
-# First-order change of eigenvalues and critical speeds, from the deriva ---------------------------
+# Changes of eigenvalues and critical speeds -------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -190,7 +197,7 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """What P(s) would change the eigenvalues by if all its entries had one sign, shape (k,).
+        """Changes of the eigenvalues if all entries of P(s) had one sign, shape (k,).
 
         Rounding errors are relative to this.
         """
@@ -240,11 +247,11 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
-# Derivatives of the matrices of a model, and of its coarser one, by the ---------------------------
+# Derivatives of the matrices ----------------------------------------------------------------------
 
 
 _EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
-_RESOLVED = 1e-13  # of the matrices, within an interval: what the last term of a polynomial may be
+_RESOLVED = 1e-13  # share of the matrices within an interval: what the last term of a polynomial may be
 _ROUNDED = 1e-10  # what rounding alone may be, as of damping by modes
 _CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
@@ -257,7 +264,7 @@ class Changes:
     Parameters
     ----------
     of : tuple of list of PencilChange
-        Those of the model, and those of the coarser one.
+        Changes of the model, and those of the coarser one.
     missed : list of PencilChange
         What those of the model may lack, as their dependence on a number is not resolved.
     rounding : ndarray, shape (n,)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TOUCHING = 1e-6  # distance over the length at which a point stands beside another
-_STEP = 0.01  # of a value, or of the size of its kind
+_STEP = 0.01  # step, as a share of a value or of the size of its kind
 _NEAR = 0.8  # similarity of a mistyped name: all begin alike
 
 
@@ -171,7 +171,7 @@ class Sensitivities(Result):
     Parameters
     ----------
     answers : tuple of str
-        What each answer is, such as "mode 1", shape (k,).
+        Name of each answer, such as "mode 1", shape (k,).
     unit : str
         Unit of the answers.
     value : ndarray, shape (k,)
@@ -207,7 +207,7 @@ class Sensitivities(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of answers and inputs, and which input matters most, in one line; see `Result.headline`."""
         yield f"{counted(len(self.answers), 'answer')} by {counted(len(self.inputs), 'number')}"
         if self.derivative.size and np.isfinite(self.relative).any():
             size = np.nan_to_num(np.abs(self.relative))

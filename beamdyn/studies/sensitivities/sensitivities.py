@@ -66,7 +66,7 @@ def frequency_sensitivities(
     Returns
     -------
     Sensitivities
-        Of frequencies [Hz].
+        Derivatives of frequencies [Hz].
 
     Raises
     ------
@@ -95,7 +95,7 @@ def frequency_sensitivities(
     if names is None or SPEED in names:
         numbers = (*numbers, SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
-        with np.errstate(invalid="ignore"):  # of a mode that does not vibrate
+        with np.errstate(invalid="ignore"):  # a mode may not vibrate
             of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
         derivative = np.vstack([derivative, rate])
         error = np.vstack([error, np.abs(rate - other) + of_shapes])
@@ -127,7 +127,7 @@ def critical_speed_sensitivities(
     Returns
     -------
     Sensitivities
-        Of one answer [rad/s].
+        Derivatives of one answer [rad/s].
 
     Raises
     ------
@@ -187,7 +187,7 @@ def crossing_sensitivities(
     Returns
     -------
     Sensitivities
-        Of the speed of each crossing [rad/s], in their order.
+        Derivatives of the speed of each crossing [rad/s], in their order.
 
     Raises
     ------
@@ -278,13 +278,13 @@ def _compared(
     Parameters
     ----------
     changes : Changes
-        Those of the matrices by n numbers.
+        Changes of the matrices by n numbers.
     rate : callable
         The change of the answers by the model, 0, or by the coarser one, 1, where their matrices change.
     scale : ndarray, shape (k,), or float
         By how much a relative change of the matrices changes the answers.
     part, unit : callable, float
-        What of a change is that of the answers, and in which unit.
+        Part of a change that is one of the answers, and their unit.
     """
     shape, of_models = (len(changes.rounding), np.size(scale)), (*enumerate(changes.of), (0, changes.missed))
     fine, coarse, missed = (

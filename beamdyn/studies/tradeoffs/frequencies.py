@@ -19,8 +19,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import frequency_bounds
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
-from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.static_load import bends
+from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
@@ -144,9 +143,7 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
-    if (
-        not scene.physics.stretch
-    ):  # with it modes may cross: a tracked locus then differs from the lowest modes
+    if not scene.physics.stretch:  # modes may cross then: a tracked locus differs from the lowest modes
         cases = (Setting(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
 
@@ -216,7 +213,7 @@ def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is left aside
-_BETTER = 0.5  # of the error of the model as given: what is not below it has gained nothing by more physics
+_BETTER = 0.5  # share of the error of the model as given: more physics that stays above it has gained nothing
 _COMPARED = (STRETCH.name,)  # effects that are modelled to compare with papers only
 
 

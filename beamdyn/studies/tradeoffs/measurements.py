@@ -19,7 +19,7 @@ from beamdyn.common.results.result import Result
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_DIGITS = 14  # of `cost_per_digit`; double precision has 16
+_MOST_DIGITS = 14  # most digits of `cost_per_digit`; double precision has 16
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class Diagram(Result):
     skipped: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Title, number of measurements and resolved digits in one line; see `Result.headline`."""
         yield self.title
         yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
         yield f"reference to {number(self.resolved)}"
@@ -187,8 +187,8 @@ class Diagram(Result):
 # Measurement of error and time of settings within a time budget -----------------------------------
 
 
-RUNS = 7  # of a setting; the shortest counts, because other programs can only add time
-_REPEATS = 0.4  # of a setting's share of the budget, for repetitions
+RUNS = 7  # runs of a setting; the shortest counts, because other programs can only add time
+_REPEATS = 0.4  # part of a setting's share of the budget that is for repetitions
 
 
 @dataclass(frozen=True)

@@ -30,14 +30,14 @@ STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _TOLERANCES = tuple(10.0**-k for k in range(1, 11))
 _STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
 _TIGHTEST = 1e-11  # tolerance of the reference
-_CHECK_RTOL = 1e-11  # of DOP853, which checks the reference
-_CHECKED_PART = 0.05  # of the run, from its start
-_CHECK_SHARE = 0.15  # of the budget
+_CHECK_RTOL = 1e-11  # tolerance of DOP853, which checks the reference
+_CHECKED_PART = 0.05  # part of the run that is checked, from its start
+_CHECK_SHARE = 0.15  # share of the budget for this check
 _INSTANTS = 20_001  # times at which tip deflections are compared
 AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
 _MODES = tuple(range(1, 11))
 _MODES_AT_ENDS = (1, 2, 3, 4, 6)
-_ALL_MODES = 8  # of the reference, at each of two speeds
+_ALL_MODES = 8  # modes of the reference, at each of two speeds
 _MODES_TOLERANCE = 1e-7
 _ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
 _TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
@@ -184,9 +184,9 @@ def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
 
 
 _HARMONICS = tuple(range(6))
-_ALL_HARMONICS = 6  # of the reference
+_ALL_HARMONICS = 6  # harmonics of the reference
 _STEADY_MODES = tuple(range(1, 9))
-_ALL_STEADY_MODES = 12  # of the reference
+_ALL_STEADY_MODES = 12  # modes of the reference
 _PHASES = 24  # samples of each phase, at which tip deflections are compared
 _ERROR_OF_STEADY = "the tip deflection, largest over phases and speeds, over the sum of the lines"
 _EPS = float(np.finfo(float).eps)

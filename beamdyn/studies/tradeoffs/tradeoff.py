@@ -35,10 +35,10 @@ from beamdyn.studies.tradeoffs.responses import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_MODES = 20  # that the references resolve, also beside those of a second plane
+MOST_MODES = 20  # number of modes that the references resolve, also beside those of a second plane
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
 _REMEDY = "the times of fewer tell how those of more grow"
-_DEFAULT_PERIODS = 100  # of the first mode, after the start, in a run whose length is not given
+_DEFAULT_PERIODS = 100  # periods of the first mode, after the start, in a run whose length is not given
 _LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
 _LOCUS, _STEADY = 101, 50  # numbers of speeds
 _SHARES = {
@@ -86,7 +86,7 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """What it says in one line; see `Result.headline`."""
+        """Numbers of diagrams and measurements, and the speed, in one line; see `Result.headline`."""
         yield f"{counted(len(self.diagrams), 'diagram')} at {self.say_speed(self.speed)}"
         yield counted(sum(len(each.measurements) for each in self.diagrams), "measurement")
         yield warned(self.warnings)
@@ -192,7 +192,7 @@ def _end(scene: Scene) -> float:
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
     start = scene.motion.steady_start if scene.motion.steady_start <= _LONGEST_START * period else 0.0
-    return min(float(f"{(start + _DEFAULT_PERIODS * period):.1e}"), scene.motion.end)
+    return min(float(f"{start + _DEFAULT_PERIODS * period:.1e}"), scene.motion.end)
 
 
 def _list_diagrams(
