@@ -1,0 +1,145 @@
+"""What solid bodies say of beams: references of random rectangular cantilevers by CalculiX, kept in a file.
+
+Run: python -m benchmarks.solids [--make N] [--first K] [--workers 1].  With --make it computes the references
+of N cases, known by their numbers, and adds those that the file lacks.  It prints how well the references are
+known.  What is compared with them needs the file alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+from benchmarks.peers.solids import BENDING, SolidMode, Strip, random_strip, reference
+from benchmarks.resumable import Cases
+from benchmarks.rows import Row, show, time_text
+
+SEED = 31
+FILE = Path(__file__).parent / "cases" / "data" / "solids.jsonl"
+LISTED = 3  # modes of bending that a beam lists, to the last of which the solid's modes are kept
+_LEAST = 4  # modes kept, at least
+
+
+# References ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The modes of one strip as a solid, from the lowest frequency, as columns.
+
+    `strip` are the fields of `Strip`; `frequency` [Hz] is extrapolated, with the relative `error`; `coarse`,
+    `medium` and `fine` are the frequencies of the three meshes; `share` is that of the kind in the shape.
+    """
+
+    number: int
+    strip: dict[str, float]
+    time: float
+    kind: tuple[str, ...] = ()
+    frequency: tuple[float, ...] = ()
+    error: tuple[float, ...] = ()
+    coarse: tuple[float, ...] = ()
+    medium: tuple[float, ...] = ()
+    fine: tuple[float, ...] = ()
+    share: tuple[float, ...] = ()
+    refusal: str = ""
+
+    def body(self) -> Strip:
+        """The strip."""
+        return Strip(**self.strip)
+
+    def modes(self) -> list[SolidMode]:
+        """The columns as modes, numbered within their kinds."""
+        known = zip(self.kind, self.frequency, self.error, self.share, strict=True)
+        meshes = zip(self.coarse, self.medium, self.fine, strict=True)
+        return [
+            SolidMode(kind, 1 + self.kind[:k].count(kind), frequency, error, by_mesh, share)
+            for k, ((kind, frequency, error, share), by_mesh) in enumerate(zip(known, meshes, strict=True))
+        ]
+
+    @property
+    def complete(self) -> bool:
+        """Whether the modes reach the last of bending that a beam lists."""
+        return self.kind.count(BENDING) >= LISTED
+
+
+def measure(number: int, seed: int) -> list[Reference]:
+    """The reference of the case with this number."""
+    strip, start = random_strip(np.random.default_rng([seed, number])), perf_counter()
+    try:
+        modes = reference(strip)
+    except (ValueError, OSError, subprocess.SubprocessError) as error:
+        return [Reference(number, asdict(strip), _digits(perf_counter() - start, 3), refusal=str(error))]
+    last = next((k for k, m in enumerate(modes) if (m.kind, m.number) == (BENDING, LISTED)), len(modes))
+    modes = modes[: max(_LEAST, last + 1)]
+    coarse, medium, fine = zip(*(mode.by_mesh for mode in modes), strict=True)
+    return [
+        Reference(
+            number,
+            asdict(strip),
+            _digits(perf_counter() - start, 3),
+            tuple(mode.kind for mode in modes),
+            tuple(_digits(mode.frequency, 8) for mode in modes),
+            tuple(_digits(mode.error, 2) for mode in modes),
+            *(coarse, medium, fine),
+            tuple(_digits(mode.share, 4) for mode in modes),
+        )
+    ]
+
+
+def _digits(value: float, digits: int) -> float:
+    """Rounded to so many digits."""
+    return float(f"{value:.{digits}g}")
+
+
+def cases(seed: int = SEED) -> Cases[Reference]:
+    """The random strips of a seed."""
+    return Cases(partial(measure, seed=seed), Reference)
+
+
+def known(path: Path = FILE) -> list[Reference]:
+    """References in the file, by number."""
+    return sorted(cases().load(path), key=lambda each: each.number)
+
+
+def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
+    """How many there are, and how well they are known."""
+    solved = [each for each in references if not each.refusal]
+    yield "references", f"{len(solved)}", "200"
+    for each in references:
+        if each.refusal:
+            yield f"... refused: case {each.number}", each.refusal, ""
+    yield "... whose modes reach the third of bending", str(sum(each.complete for each in solved)), "all"
+    kinds = np.array([kind for each in solved for kind in each.kind])
+    errors = np.array([error for each in solved for error in each.error])
+    for kind in sorted(set(kinds)):
+        own = errors[kinds == kind]
+        found = ", ".join(f"{error:.1e}" for error in (*np.quantile(own, [0.5, 0.95]), own.max()))
+        yield f"{kind}: own error of {len(own)} modes: median, 95 %, worst", found, ""
+    if solved:
+        times = np.array([each.time for each in solved])
+        yield "median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--make", type=int, default=0, help="so many references; those in the file are kept")
+    parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
+    parser.add_argument("--workers", type=int, default=1)
+    given = parser.parse_args()
+    if given.make:
+        cases().resume(FILE, range(given.first, given.first + given.make), given.workers)
+    show("references", lambda: summarize_references(known()))
+
+
+if __name__ == "__main__":
+    main()
