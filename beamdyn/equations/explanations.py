@@ -234,7 +234,6 @@ TIP_INERTIA = Condition(
 TENSIONED = Condition(lambda s: s.is_nonzero("root_axial"), _say_untensioned)
 LOADED = Condition(lambda s: any(map(s.is_nonzero, _transverse(s))), _say_unloaded)
 OBLIQUE = Condition(
-    _has_oblique_inertia,
-    "sections and tip body have no product of inertia about the axis of rotation",
+    _has_oblique_inertia, "sections and tip body have no product of inertia about the axis of rotation"
 )
 ON_SPRINGS = Condition(_is_on_springs, _say_root)

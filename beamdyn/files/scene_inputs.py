@@ -238,8 +238,7 @@ class StiffnessInput(_BeamInput):
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
     ] = None
     second_rotary_inertia: Annotated[
-        Along | None,
-        Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0),
+        Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0)
     ] = None
 
     @cached_property

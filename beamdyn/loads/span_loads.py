@@ -284,11 +284,7 @@ class AskedLoads:
 
     @classmethod
     def of(
-        cls,
-        scene: Scene,
-        at: Positions | None,
-        points: SectionPoints | None,
-        youngs_modulus: float | None,
+        cls, scene: Scene, at: Positions | None, points: SectionPoints | None, youngs_modulus: float | None
     ) -> AskedLoads:
         """Check the stations, the points of the sections and Young's modulus of a request."""
         start, stations = perf_counter(), stations_at(scene.modelled_beam, at)

@@ -20,12 +20,7 @@ from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import (
-    check_speeds,
-    warn_of_left_out,
-    warn_of_static_deflection,
-    warn_of_strain,
-)
+from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
 _MODES = 3  # modes of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0

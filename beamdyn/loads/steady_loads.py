@@ -11,14 +11,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.span_loads import (
-    SPEEDS,
-    AskedLoads,
-    Case,
-    SpanLoads,
-    refuse_large_deflection,
-    with_unit,
-)
+from beamdyn.loads.span_loads import SPEEDS, AskedLoads, Case, SpanLoads, refuse_large_deflection, with_unit
 from beamdyn.loads.stations import (
     UNITS,
     Positions,

@@ -35,9 +35,7 @@ from beamdyn.modes.modal.discretization_choice import (
     check_discretization,
     warn_of_missed_tolerance,
 )
-from beamdyn.modes.modal.error_estimate import (
-    UNRESOLVED,
-)
+from beamdyn.modes.modal.error_estimate import UNRESOLVED
 from beamdyn.modes.modal.model import Model, bends, static_load
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by

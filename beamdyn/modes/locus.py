@@ -15,30 +15,18 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.modes.modal.discretization_choice import (
-    TOLERANCES,
-    DiscretizationChoice,
-    solve_to_tolerance,
-)
+from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import (
-    check_speeds,
-)
+from beamdyn.scene.validity import check_speeds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-from beamdyn.modes.modes import (
-    drawn_order,
-    frequency_of,
-    provenance_of,
-    status_of,
-    warn_of_modes,
-)
+from beamdyn.modes.modes import drawn_order, frequency_of, provenance_of, status_of, warn_of_modes
 
 _MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
 _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones

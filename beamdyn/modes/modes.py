@@ -28,12 +28,7 @@ from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import (
-    check_speeds,
-    warn_of_left_out,
-    warn_of_static_deflection,
-    warn_of_strain,
-)
+from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

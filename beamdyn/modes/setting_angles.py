@@ -16,10 +16,7 @@ from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
-from beamdyn.modes.modal.discretization_choice import (
-    DiscretizationChoice,
-    choose_model,
-)
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain

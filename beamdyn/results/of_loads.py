@@ -100,7 +100,7 @@ def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
     return [supported(float(v), float(e), _MOST_DIGITS) for v, e in zip(values, errors, strict=True)]
 
 
-def _largest_lines(result: SpanLoads, **window: Any) -> list[Text]:
+def _largest_lines(result: Any, **window: float) -> list[Text]:
     """A sentence on the largest of each quantity that has values."""
     return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
 

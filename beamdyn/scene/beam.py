@@ -9,27 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import (
-    InvalidValue,
-    kind,
-    positive,
-    refuse,
-    set_fields,
-    several,
-    size,
-)
+from beamdyn.common.inputs.checks import InvalidValue, kind, positive, refuse, set_fields, several, size
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
-from beamdyn.scene.profile import (
-    Profile,
-    Property,
-    as_profile,
-    check_positive,
-    merge_breakpoints,
-    to_profile,
-)
+from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
 
 _ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
@@ -288,10 +273,10 @@ class Beam(FieldsOnly, OneLine):
             "second_rotary_inertia": second_rotary_inertia,
         }
         length = size("length", length, "m")
+        given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
         made: dict[str, Any] = {
             name: (to_profile if name == "twist" else as_profile)(name, value, breakpoints)
             for name, value in given.items()
-            if value is not None or name in _REQUIRED
         }
         beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
         bending, axial = beam.bending_stiffness, beam.axial_stiffness

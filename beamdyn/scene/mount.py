@@ -97,8 +97,7 @@ class Mount(OneLine):
         float, Described("N m/rad", "k2", "the same for bending in the direction across", **_SPRING)
     ] = math.inf
     precone: Annotated[
-        float,
-        Described("rad", "eta", "angle of an outward beam out of the plane of rotation", **_PRECONE),
+        float, Described("rad", "eta", "angle of an outward beam out of the plane of rotation", **_PRECONE)
     ] = 0.0
 
     def __post_init__(self) -> None:

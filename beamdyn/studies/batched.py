@@ -24,12 +24,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.many_designs import PencilStack, solve_many, speeds_of_meeting
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import (
-    LARGE_DEFLECTION,
-    LARGE_STRAIN,
-    warn_of_static_deflection,
-    warn_of_strain,
-)
+from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, warn_of_static_deflection, warn_of_strain
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 

@@ -74,11 +74,7 @@ def rest_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) ->
 
 
 def attempt_elastica(
-    system: ElasticaSystem,
-    y0: np.ndarray,
-    t_end: float,
-    step_size: StepSize,
-    before: Attempt | None = None,
+    system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize, before: Attempt | None = None
 ) -> Attempt:
     """Integrate twice with equal steps in each segment, of 8 and of 10 stages; shorter ones if not solved.
 

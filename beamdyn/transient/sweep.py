@@ -392,10 +392,7 @@ def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[floa
 
 @one_blas_thread()
 def _find_mode_error(
-    request: SweepRequest,
-    speeds: tuple[float, ...],
-    samples: Sequence[Transient] | None,
-    unwanted: Event,
+    request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient] | None, unwanted: Event
 ) -> float:
     """Modal truncation error of the samples, which are run unless they are given, as long as it is wanted."""
     while_wanted = partial(takewhile, lambda _: not unwanted.is_set())

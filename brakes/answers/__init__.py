@@ -19,5 +19,5 @@ def _drum() -> BrakeType[Any]:
 
 
 STANDARD = {  # by the name of the command: what it shows, and what gives the type
-    "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum),
+    "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum)
 }

@@ -21,9 +21,7 @@ HEADINGS = {
 
 
 def make_document(
-    brake: BrakeType[Any],
-    screens: tuple[Screen, ...] = (),
-    check: Callable[[str, str], object] | None = None,
+    brake: BrakeType[Any], screens: tuple[Screen, ...] = (), check: Callable[[str, str], object] | None = None
 ) -> Document:
     """Make a document of a type of brake, which opens with the example of its name.
 

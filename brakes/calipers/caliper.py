@@ -12,15 +12,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import count, not_negative, one_of, positive, real, real_array
 from beamdyn.common.inputs.described import Described
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
-from brakes.planar import (
-    Equilibrium,
-    Joint,
-    Mechanism,
-    Position,
-    solve,
-    solve_with_friction,
-    stroke,
-)
+from brakes.planar import Equilibrium, Joint, Mechanism, Position, solve, solve_with_friction, stroke
 from brakes.planar.kinematics import MOST_POSITIONS, driver_at_travel
 from brakes.planar.part import OneWay, check_inputs
 from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolerance

@@ -156,10 +156,7 @@ class PivotFriction(Result):
     True
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "m": "cable",
-        "N": "tension squeezing_tension releasing_tension",
-    }
+    field_units: ClassVar[dict[str, str]] = {"m": "cable", "N": "tension squeezing_tension releasing_tension"}
 
     coefficient: float
     cable: float

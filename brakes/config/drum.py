@@ -15,15 +15,7 @@ from beamdyn.common.edge.inputs import Quantity, Section
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.inputs.checks import InvalidValue
-from brakes.drum import (
-    BrakeResult,
-    DrumBrake,
-    Shoe,
-    brake_torque,
-    duplex,
-    simplex,
-    wheel_cylinder_force,
-)
+from brakes.drum import BrakeResult, DrumBrake, Shoe, brake_torque, duplex, simplex, wheel_cylinder_force
 
 __all__ = ["DrumInput", "drum_from_dict", "load_drum", "parse_drum"]
 

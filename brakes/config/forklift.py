@@ -16,13 +16,7 @@ from beamdyn.common.edge.wording import of_file
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.forklift.vehicle import SlopeAngle
 
-__all__ = [
-    "STAGES",
-    "ForkliftInput",
-    "forklift_from_dict",
-    "load_forklift",
-    "parse_forklift",
-]
+__all__ = ["STAGES", "ForkliftInput", "forklift_from_dict", "load_forklift", "parse_forklift"]
 
 StageName = Literal["vehicle", "kinematics", "forces"]
 STAGES: tuple[StageName, ...] = ("vehicle", "kinematics", "forces")

@@ -49,11 +49,7 @@ def title_of(caliper: Caliper, run: CaliperStroke, cable: float) -> str:
 
 
 def caliper_figure(
-    caliper: Caliper,
-    run: CaliperStroke,
-    closed: Equilibrium,
-    cable: float | None = None,
-    caption: str = "",
+    caliper: Caliper, run: CaliperStroke, closed: Equilibrium, cable: float | None = None, caption: str = ""
 ) -> Figure:
     """Draw a caliper open and closed, and its advantage, pad ratio and reactions over the stroke.
 

@@ -27,10 +27,7 @@ def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: Intern
 
 
 def answer_drawings(
-    stop: Stop | None,
-    followed: Kinematics | None,
-    forces: InternalForces | None,
-    outlines: Kinematics | None,
+    stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None, outlines: Kinematics | None
 ) -> list[list[Drawing]]:
     """Rows of drawings, as far as they are given.
 

@@ -115,11 +115,7 @@ class BrakeResult(SlidesOrLocks):
     (True, False)
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "N": "force",
-        "N m": "torque",
-        "Pa": "peak_pressure",
-    }
+    field_units: ClassVar[dict[str, str]] = {"N": "force", "N m": "torque", "Pa": "peak_pressure"}
 
     brake: DrumBrake
     reverse: bool

@@ -70,10 +70,7 @@ class Stage:
     True
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "m": "travel",
-        "rad": "turn",
-    }
+    field_units: ClassVar[dict[str, str]] = {"m": "travel", "rad": "turn"}
 
     mechanism: Mechanism = field(repr=False)
     position: Position = field(repr=False)

@@ -9,14 +9,7 @@ import numpy as np
 from beamdyn.common.results.statements import IN_LINE, Statement
 from brakes.planar.kinematics import assemble
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
-from brakes.planar.statics import (
-    Balance,
-    Equilibrium,
-    balance_at,
-    collect_result,
-    solve,
-    tell_where,
-)
+from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, solve, tell_where
 from brakes.planar.system import System, check_moves, decompose, join_names, rank_tolerance, times
 
 _RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients

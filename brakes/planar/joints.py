@@ -80,8 +80,7 @@ class Pin(Joint):
     at: DrawnPoint
     at_other: DrawnPoint | None = None
     radius: Annotated[
-        float,
-        Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot"),
+        float, Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot")
     ] = 0.0
     friction: Coefficient = 0.0
 

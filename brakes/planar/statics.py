@@ -282,12 +282,7 @@ def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str
     amplitudes, friction = (
         {name: physical[:, row] for name, row in each.items()} for each in (system.loads, system.friction)
     )
-    return {
-        "reactions": reactions,
-        "magnitudes": magnitudes,
-        "amplitudes": amplitudes,
-        "friction": friction,
-    }
+    return {"reactions": reactions, "magnitudes": magnitudes, "amplitudes": amplitudes, "friction": friction}
 
 
 def is_answer(status: str, forces: ArrayLike) -> bool:

@@ -49,7 +49,8 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
         colour = colour_of.get(mark.curve, _CURSOR)
         ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
         height, place = (_GAP, _BESIDE) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
-        ax.text(mark.at, height, f" {mark.text} ", color=colour, fontsize=_LETTERS, transform=across, **place)
+        text = ax.text(mark.at, height, f" {mark.text} ", color=colour, fontsize=_LETTERS, transform=across)
+        text.set(**place)
     if chart.cursor is not None:
         ax.axvline(chart.cursor, color=_CURSOR, linewidth=1, linestyle=":")
     for band in chart.bands:

@@ -116,12 +116,7 @@ class DesignsDialog:
         self._dialog.open()
 
     def _row(
-        self,
-        name: str,
-        kind: str,
-        entries: Callable[[], Entries],
-        comparable: bool,
-        deletes: bool = False,
+        self, name: str, kind: str, entries: Callable[[], Entries], comparable: bool, deletes: bool = False
     ) -> None:
         def button(word: str, act: Callable[[], object], closes: bool = True) -> None:
             async def run() -> None:

@@ -47,12 +47,7 @@ COLUMNS = (
     Column("tc_offst", "m", required=True),
 )
 _LINE = "the axes of mass, shear and tension are one straight line"
-_REASONS = {
-    "tor_stff": "no torsion is modelled",
-    "cg_offst": _LINE,
-    "sc_offst": _LINE,
-    "tc_offst": _LINE,
-}
+_REASONS = {"tor_stff": "no torsion is modelled", "cg_offst": _LINE, "sc_offst": _LINE, "tc_offst": _LINE}
 _USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
 # By the name that Beam.from_stiffness has: column and multiplier.
 _PROPERTIES = {

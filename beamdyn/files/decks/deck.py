@@ -201,11 +201,7 @@ _READERS: tuple[tuple[Callable[..., Blade], set[str], str], ...] = (
 
 
 def _needed(
-    text: DataText,
-    given: dict[str, float | None],
-    remedy: str,
-    length: bool = True,
-    hub_radius: bool = True,
+    text: DataText, given: dict[str, float | None], remedy: str, length: bool = True, hub_radius: bool = True
 ) -> tuple[float, float]:
     """Length and radius of the hub, each of which must be given where it is needed, and only there."""
     needed = {"length": length, "hub_radius": hub_radius}

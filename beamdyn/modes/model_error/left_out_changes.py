@@ -149,10 +149,7 @@ def _bent_change_at(
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
-    except (
-        ArithmeticError,
-        np.linalg.LinAlgError,
-    ) as error:  # a hinged beam has no single equilibrium
+    except (ArithmeticError, np.linalg.LinAlgError) as error:  # a hinged beam has no single equilibrium
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):

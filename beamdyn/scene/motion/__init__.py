@@ -8,13 +8,7 @@ is accurate to 1.5e-8 rad.  At a jump, a motion takes the values after it.
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, check_consistent, check_picklable
 from beamdyn.scene.motion.records import SampledTranslation
 from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
-from beamdyn.scene.motion.rotations import (
-    Rotation,
-    RotationFunction,
-    SampledRotation,
-    SpinUp,
-    SteadyRotation,
-)
+from beamdyn.scene.motion.rotations import Rotation, RotationFunction, SampledRotation, SpinUp, SteadyRotation
 
 KINDS: dict[str, type[Motion]] = {
     "steady": SteadyRotation,

@@ -23,13 +23,7 @@ from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.measurements import (
-    Diagram,
-    Family,
-    Setting,
-    measure_families,
-    number_of,
-)
+from beamdyn.studies.tradeoffs.measurements import Diagram, Family, Setting, measure_families, number_of
 
 Mesh = Literal["graded", "uniform"]
 
@@ -274,8 +268,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     speeds, segments = np.array([speed]), _segments(scene)
     families = [
         Family(
-            c.name,
-            _basis_settings(c.scene, speeds, _count(c.scene, modes), "legendre", _FUNCTIONS, segments),
+            c.name, _basis_settings(c.scene, speeds, _count(c.scene, modes), "legendre", _FUNCTIONS, segments)
         )
         for c in (given, *choices)
     ]
