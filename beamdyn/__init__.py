@@ -17,11 +17,11 @@ SHOWN_BY.update(
     for module, rooms in {
         "common.edge.spread_tables": ("common",),
         "files.decks.deck_tables": ("files",),
-        "results.of_linear_models": ("linear",),
-        "results.of_loads": ("loads",),
-        "results.of_modes": ("equations", "modes", "scene"),
-        "results.of_motion": ("steady", "transient"),
-        "results.of_studies": ("studies",),
+        "analyses.results.of_linear_models": ("linear",),
+        "analyses.results.of_loads": ("loads",),
+        "analyses.results.of_modes": ("equations", "modes", "scene"),
+        "analyses.results.of_motion": ("steady", "transient"),
+        "analyses.results.of_studies": ("studies",),
     }.items()
     for room in rooms
 )

@@ -174,10 +174,10 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     """Answer all designs."""
     import numpy as np
 
+    from beamdyn.analyses.results.cautions import warnings_of
+    from beamdyn.analyses.results.of_studies import study_table
     from beamdyn.common.edge.progress import at_work
     from beamdyn.common.edge.wording import of_file
-    from beamdyn.results.cautions import warnings_of
-    from beamdyn.results.of_studies import study_table
     from beamdyn.studies.answers import NO_ANSWERS
 
     inputs = {axis.input.path: axis.values for axis in axes}

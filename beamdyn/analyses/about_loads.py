@@ -105,14 +105,14 @@ class CycleOptions:
 
     def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
         """Counted cycles, and the equal cycles that do the same damage."""
-        from beamdyn.results.of_loads import cycles_table, equivalents_table
+        from beamdyn.analyses.results.of_loads import cycles_table, equivalents_table
 
         made: list[RenderableType] = [cycles_table(cycles)]
         return [*made, equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
-        from beamdyn.results.of_loads import cycles_csv
+        from beamdyn.analyses.results.of_loads import cycles_csv
 
         if self.cycles_file is None:
             return
@@ -276,7 +276,7 @@ def _in_transient(
     where: dict[str, Any],
     basis: dict[str, Any],
 ) -> tuple[SpanLoads, list[RenderableType]]:
-    from beamdyn.results.of_loads import transient_loads_table
+    from beamdyn.analyses.results.of_loads import transient_loads_table
 
     if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")

@@ -99,7 +99,7 @@ def modes(
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     """
-    from beamdyn.results.cautions import warnings_of
+    from beamdyn.analyses.results.cautions import warnings_of
 
     result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
     if shapes is not None:
@@ -126,7 +126,7 @@ def locus(
     """
     import numpy as np
 
-    from beamdyn.results.cautions import warnings_of
+    from beamdyn.analyses.results.cautions import warnings_of
 
     result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
     unstable = np.isin(result.status, _GROWING).any(axis=1)
@@ -172,8 +172,8 @@ def limits(
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
+    from beamdyn.analyses.results.cautions import critical_label
     from beamdyn.common.plots.plots import mark_critical
-    from beamdyn.results.cautions import critical_label
 
     critical = bd.critical_point(result.scene)
     mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
@@ -182,8 +182,8 @@ def _draw_locus(result: Locus, ax: Axes) -> None:
 def _write_shapes(result: Modes, path: Path, force: bool) -> None:
     import numpy as np
 
+    from beamdyn.analyses.results.cautions import labels_of
     from beamdyn.common.plots.export import write_shapes
-    from beamdyn.results.cautions import labels_of
 
     x = np.linspace(0, result.scene.beam.length, 101)
     write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)

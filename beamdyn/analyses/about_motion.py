@@ -129,7 +129,7 @@ def simulate(
     animation
         Write an animation of the same: .gif.
     """
-    from beamdyn.results.of_motion import transient_table
+    from beamdyn.analyses.results.of_motion import transient_table
 
     span = None if window is None else parse_window(window, t_end)
     run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)
@@ -184,9 +184,9 @@ def _write_close_up(
     """Write the motion over a few periods around the largest deflection in a window."""
     import numpy as np
 
+    from beamdyn.analyses.results.cautions import notes_of
+    from beamdyn.analyses.results.of_motion import time_of_peak
     from beamdyn.common.plots.export import animate, write_series
-    from beamdyn.results.cautions import notes_of
-    from beamdyn.results.of_motion import time_of_peak
 
     if series is None and animation is None:
         return

@@ -290,10 +290,10 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     NoAnswer
         With the refusal, after everything has been written.
     """
+    from beamdyn.analyses.results.cautions import describe_choice, noted, warnings_of
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.edge.tables import show
     from beamdyn.common.edge.views import picture_of, rows_of, tables_of
-    from beamdyn.results.cautions import describe_choice, noted, warnings_of
 
     result, refusal = answer.result, answer.refusal
     draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
+from beamdyn.analyses.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.app.inputs import read
 from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
@@ -24,7 +25,6 @@ from beamdyn.common.screens.screens import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
 from beamdyn.modes.model_error.effect_choice import plain_physics
-from beamdyn.results.cautions import critical_label, notes_of, warnings_of
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing

@@ -14,6 +14,7 @@ from pydantic import Field, create_model
 from rich.console import RenderableType
 
 from beamdyn.analyses.analysis import Analysis, Answer
+from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
 from beamdyn.app.inputs import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
 from beamdyn.common.edge.file_words import as_in_files
@@ -28,7 +29,6 @@ from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
 from beamdyn.common.screens.screens import FoldedPart, Screen
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError, say_change
-from beamdyn.results.cautions import describe_choice, notes_of, warnings_of
 
 _LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
 _DECADE = 3  # letters of a bar for a decade

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
+from beamdyn.analyses.results.cautions import warnings_of
 from beamdyn.app.inputs import inputs_of, read
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import (
@@ -30,7 +31,6 @@ from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.screens.form_entries import entries_of
 from beamdyn.common.screens.screens import Sweeps
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR
-from beamdyn.results.cautions import warnings_of
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse
 

@@ -13,6 +13,8 @@ from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import natural_modes
+from beamdyn.analyses.results.cautions import notes_of, warnings_of
+from beamdyn.analyses.results.of_studies import diagram_csv, diagram_table
 from beamdyn.app.inputs import DRAGS, read_aside, read_at_speed
 from beamdyn.app.mode_shapes import headline as headline_of_modes
 from beamdyn.app.scene_screen import left_out_table, scene_screen
@@ -24,8 +26,6 @@ from beamdyn.common.screens.screens import Drag, KeyResult
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
-from beamdyn.results.cautions import notes_of, warnings_of
-from beamdyn.results.of_studies import diagram_csv, diagram_table
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit

@@ -10,6 +10,8 @@ import numpy as np
 from rich.console import RenderableType
 
 from beamdyn import resonance_speeds, simulate
+from beamdyn.analyses.results.cautions import describe_choice
+from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.app.drawings import bent_beam, drawn_larger
 from beamdyn.app.inputs import first_frequency, read_aside, read_scene
 from beamdyn.app.scene_screen import brief, left_out_table, scene_screen
@@ -21,8 +23,6 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screens import KeyResult, Slider
 from beamdyn.equations.effects import modelled_directions
-from beamdyn.results.cautions import describe_choice
-from beamdyn.results.of_motion import time_of_peak, transient_table
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
 from beamdyn.transient.transient import Transient

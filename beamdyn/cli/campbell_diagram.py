@@ -82,7 +82,7 @@ def campbell(
     outputs
         Output files.
     """
-    from beamdyn.results.of_studies import crossings_of_lines_csv
+    from beamdyn.analyses.results.of_studies import crossings_of_lines_csv
 
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}

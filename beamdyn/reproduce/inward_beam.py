@@ -16,11 +16,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_motion import sweep_peaks
 from beamdyn.common.results.comparison import Comparison
 from beamdyn.common.results.published import values_alone
 from beamdyn.modes.modal.model import Model
 from beamdyn.published import load
-from beamdyn.results.of_motion import sweep_peaks
 
 PAPER = load("lee_yoo_2019")
 VALUES = values_alone(PAPER)

@@ -10,10 +10,10 @@ import pytest
 from rich.console import Console
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_linear_models import response_table
 from beamdyn.linear.convergence import model_at_speed
 from beamdyn.linear.inputs_outputs import as_excitation, as_observation
 from beamdyn.linear.transfer import modal_sums, respond
-from beamdyn.results.of_linear_models import response_table
 
 STRIP = bd.Beam.rectangular(
     0.3, 0.00505, 0.005, youngs_modulus=200e9, density=7850.0, poissons_ratio=0.3

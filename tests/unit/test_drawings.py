@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_modes import rotor_csv
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
 from beamdyn.common.drawing.layout import Fit, arrange, follow
@@ -23,7 +24,6 @@ from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.results.of_modes import rotor_csv
 from brakes import calipers
 from brakes.app.program import BRAKES
 from brakes.drawings.caliper import caliper_drawing

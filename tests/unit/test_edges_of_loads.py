@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.analyses.results.cautions import warnings_of
+from beamdyn.analyses.results.of_studies import study_csv, study_table
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.announced import unannounced
-from beamdyn.results.cautions import warnings_of
-from beamdyn.results.of_studies import study_csv, study_table
 from beamdyn.scene.validity import warn_of_elastic_limit
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 2e11, "density": 7850.0}

@@ -8,10 +8,10 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.analyses.about_linear_models import parse_frequencies, parse_input, parse_output
+from beamdyn.analyses.results.of_linear_models import random_csv, response_csv
 from beamdyn.cli import BAD_INPUT, DONE, main
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.model import Model
-from beamdyn.results.of_linear_models import random_csv, response_csv
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2, np.pi), damping_ratio=0.01)

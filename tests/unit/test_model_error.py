@@ -13,6 +13,7 @@ import pytest
 from rich.console import Console
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_modes import locus_csv, locus_table, modes_table
 from beamdyn.cli.program import main
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
@@ -20,7 +21,6 @@ from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
 from beamdyn.modes.model_error.reference_modes import shift_eigenvalues
-from beamdyn.results.of_modes import locus_csv, locus_table, modes_table
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.analyses.results.cautions import critical_label, labels_of, notes_of, warnings_of
+from beamdyn.analyses.results.of_modes import modes_csv
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.results.cautions import critical_label, labels_of, notes_of, warnings_of
-from beamdyn.results.of_modes import modes_csv
 from beamdyn.scene.validity import warn_of_static_deflection
 from beamdyn.studies.tradeoffs.measurements import Diagram
 from beamdyn.studies.tradeoffs.tradeoff import tradeoff

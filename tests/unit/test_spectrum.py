@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_modes import locus_csv, locus_table, modes_csv, modes_table
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.results.of_modes import locus_csv, locus_table, modes_csv, modes_table
 from benchmarks.cases.scenes import HARVESTER
 
 COUPLED = bd.Scene(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.analyses.results.cautions import notes_of, warnings_of
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.statements import (
     GROWING,
@@ -19,7 +20,6 @@ from beamdyn.common.results.statements import (
     of_kind,
     said_in,
 )
-from beamdyn.results.cautions import notes_of, warnings_of
 from beamdyn.scene.validity import LARGE_DEFLECTION
 from benchmarks.cases.scenes import HARVESTER
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.analyses.results.of_studies import study_csv
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
-from beamdyn.results.of_studies import study_csv
 from beamdyn.scene.numbers import number_at, units, with_numbers
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}

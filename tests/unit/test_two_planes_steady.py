@@ -17,11 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.discretization_choice import choose_model
-from beamdyn.modes.modal.model import Model
-from beamdyn.results.of_motion import (
+from beamdyn.analyses.results.of_motion import (
     crossings_csv,
     crossings_table,
     steady_csv,
@@ -30,6 +26,10 @@ from beamdyn.results.of_motion import (
     sweep_table,
     transient_csv,
 )
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.modal.discretization_choice import choose_model
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import periodic_system

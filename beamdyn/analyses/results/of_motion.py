@@ -10,13 +10,7 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.tables import set_apart, table, table_of
-from beamdyn.common.edge.views import View
-from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.digits import supported
-from beamdyn.common.results.statements import said_in
-from beamdyn.equations.effects import modelled_directions, words_of_directions
-from beamdyn.results.of_modes import (
+from beamdyn.analyses.results.of_modes import (
     Cell,
     between_speeds,
     csv_directions,
@@ -26,6 +20,12 @@ from beamdyn.results.of_modes import (
     selection_note,
     speed_column,
 )
+from beamdyn.common.edge.tables import set_apart, table, table_of
+from beamdyn.common.edge.views import View
+from beamdyn.common.results.columns import Column, Columns, columns_of_rows
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.statements import said_in
+from beamdyn.equations.effects import modelled_directions, words_of_directions
 
 if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossings
