@@ -1,8 +1,9 @@
 """What solid bodies say of beams: references of random rectangular cantilevers by CalculiX, kept in a file.
 
 Run: python -m benchmarks.solids [--make N] [--first K] [--workers 1].  With --make it computes the references
-of N cases, known by their numbers, and adds those that the file lacks.  It prints how well the references are
-known.  What is compared with them needs the file alone.
+of N cases, known by their numbers, and adds those that the file lacks.  It prints how well the references
+from the first one on are known, and how far the strips are from them as plates in two planes with shear and
+rotary inertia.  What is compared with them needs the file alone.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import os
 import subprocess
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -20,7 +22,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 
 import numpy as np
 
-from benchmarks.peers.solids import BENDING, SolidMode, Strip, random_strip, reference
+import beamdyn as bd
+from benchmarks.peers.solids import BENDING, OTHER, TORSION, SolidMode, Strip, random_strip, reference
 from benchmarks.resumable import Cases
 from benchmarks.rows import Row, show, time_text
 
@@ -28,6 +31,8 @@ SEED = 31
 FILE = Path(__file__).parent / "cases" / "data" / "solids.jsonl"
 LISTED = 3  # modes of bending that a beam lists, to the last of which the solid's modes are kept
 _LEAST = 4  # modes kept, at least
+RICHEST = bd.Physics(planes=2, shear=True, rotary_inertia=True, plate=True)
+_MORE = 2  # modes of the model, among which one that the solid has may be of another order
 
 
 # References ---------------------------------------------------------------------------------------
@@ -130,6 +135,45 @@ def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
         yield "median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
 
 
+# Strips as plates beside them ---------------------------------------------------------------------
+
+
+def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
+    """Kind of each mode, and the relative difference of the richest model of the strip from the solid.
+
+    The modes are paired by their kind and their number within it.
+    """
+    strip, modes = reference.body(), reference.modes()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of speeds at which a strip bends far
+        found = bd.natural_modes(strip.scene(RICHEST), strip.speed, len(modes) + _MORE, tolerance=1e-3)
+    own = kinds_of(found)
+    for mode in modes:
+        of_kind = found.frequency[own == mode.kind]
+        if len(of_kind) >= mode.number:
+            yield mode.kind, float(of_kind[mode.number - 1] / mode.frequency - 1)
+
+
+def kinds_of(modes: bd.Modes) -> np.ndarray:
+    """Kind of each mode of a plate: that of the fields with most of its kinetic energy."""
+    equations = modes.model.equations
+    moved = equations.matrices[2]["unity"] @ modes.vectors
+    share = dict.fromkeys((BENDING, TORSION, OTHER), np.zeros(len(modes.frequency)))
+    for name, place in equations.blocks.items():
+        kind = TORSION if name == "torsion" else OTHER if name.startswith("second") else BENDING
+        share[kind] = share[kind] + np.real(modes.vectors[place].conj() * moved[place]).sum(axis=0)
+    return np.array([*share])[np.array([*share.values()]).argmax(axis=0)]
+
+
+def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:
+    """How far the strips as plates are from the solids, by kind of mode."""
+    pairs = [pair for each in references if not each.refusal for pair in compare_plate(each)]
+    for kind in (BENDING, TORSION, OTHER):
+        own = np.abs([difference for name, difference in pairs if name == kind])
+        found = f"{np.sqrt(np.mean(own**2)):.1e}, {own.max():.1e}" if len(own) else "none"
+        yield f"richest model beside solids: {kind}, {len(own)} modes: rms, largest", found, ""
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--make", type=int, default=0, help="so many references; those in the file are kept")
@@ -138,7 +182,8 @@ def main() -> None:
     given = parser.parse_args()
     if given.make:
         cases().resume(FILE, range(given.first, given.first + given.make), given.workers)
-    show("references", lambda: summarize_references(known()))
+    asked = known()[given.first :]
+    show("references", lambda: summarize_references(asked), lambda: summarize_plates(asked))
 
 
 if __name__ == "__main__":

@@ -62,6 +62,8 @@ class Effect:
     def reason(self, scene: Scene) -> str:
         """Say what the model of a scene assumes in place of the effect, and how to include that."""
         assumed = self.assumed.format(across=name_directions(scene)[1][0])
+        if self.also_by and scene.beam.section is not None:
+            return f"{assumed}; Physics({self.also_by}=True) models it"
         return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
 
     def _how_to_include(self, scene: Scene) -> str:

@@ -85,6 +85,19 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
     return RootMoment(*(_weighted_sum(part, by_direction) for part in parts))
 
 
+def strain_per_moment(scene: Scene) -> float:
+    """Strain of the outer fibre at the root per bending moment there [1/(N m)]; the beam has an outer fibre.
+
+    In a plate it is the mean over the width, whose section the clamp keeps flat.
+    """
+    beam, root = scene.beam, np.zeros(1)
+    assert beam.outer_fibre is not None
+    stiffness = float(beam.bending_stiffness(root)[0])
+    if scene.physics.plate and beam.section is not None:
+        stiffness *= float(beam.section.camber_stiffening(root)[0])
+    return float(beam.outer_fibre(root)[0]) / stiffness
+
+
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
     """Sum of values by quantity, times factors; quantities may be missing in some parts."""
     names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)

@@ -8,11 +8,13 @@ from typing import Any, ClassVar, Literal, TypeAlias, get_args
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, not_negative, one_of, positive, refuse, set_fields
+from beamdyn.equations.root_moment import strain_per_moment
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.points import ACROSS, ALONG_BENDING, Direction, direction_of
+from beamdyn.scene.scene import Scene
 
 BaseDirection = Literal["bending", "across", "n1", "n2", "n3"]
 _FIXED: tuple[str, ...] = ("n1", "n2", "n3")
@@ -285,13 +287,12 @@ class StrainAtRoot:
     label: ClassVar[str] = "strain at the root"
 
     @staticmethod
-    def per_moment(beam: Beam) -> float:
+    def per_moment(scene: Scene) -> float:
         """Strain per bending moment [1/(N m)]; a ValueError where the beam has no outer fibre."""
-        root = np.zeros(1)
-        if beam.outer_fibre is None:
+        if scene.beam.outer_fibre is None:
             bound, remedy = "the strain needs beam.outer_fibre", "give it to Beam.from_stiffness"
             raise InvalidValue("output", "root strain", bound, remedy)
-        return float(beam.outer_fibre(root)[0] / beam.bending_stiffness(root)[0])
+        return strain_per_moment(scene)
 
 
 Observation: TypeAlias = DeflectionAt | AccelerationAt | MomentAtRoot | StrainAtRoot

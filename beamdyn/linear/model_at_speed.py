@@ -242,7 +242,7 @@ class ModelAtSpeed(FieldsOnly):
         return root_moment(self.scene, self.discretization, self.equations)
 
     def _per_moment(self, observation: Observation) -> float:
-        return observation.per_moment(self.scene.beam) if isinstance(observation, StrainAtRoot) else 1.0
+        return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
         """Sum of rows by the quantities of the root's motion at the speed."""

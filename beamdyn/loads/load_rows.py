@@ -27,7 +27,6 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import FieldEquations
-from beamdyn.equations.fields.plate import StackedSpace
 from beamdyn.equations.fields.stretch import Stretch
 from beamdyn.equations.quadrature import Cells
 from beamdyn.equations.root_motion import Quantity, RootMotion
@@ -180,19 +179,9 @@ def _rows_of(
         for term in (t for t in each.terms if t.rows == field and t.factor and t.columns in equations.shapes):
             shape = equations.shapes[term.columns]
             total = by_order[term.order].setdefault(term.quantity, np.zeros((count, equations.size)))
-            of_trials = _trial_functions(assembled[term.columns].space)
-            kept = term.matrix[moved][:, of_trials] @ shape.matrix
+            kept = term.matrix[moved, : len(shape.matrix)] @ shape.matrix
             total[:, equations.blocks[shape.block]] -= term.factor * kept
     return LoadRows(load, *by_order)
-
-
-def _trial_functions(space: object) -> np.ndarray:
-    """Indices of the trial functions of a field among its functions with the virtual displacements."""
-    if isinstance(space, StackedSpace):  # of a plate: for each function across
-        starts = space.along.size * np.arange(space.across)
-        return (starts[:, None] + _trial_functions(space.along)).ravel()
-    assert isinstance(space, CutSpace)
-    return np.arange(space.trials)
 
 
 def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:
@@ -224,6 +213,8 @@ def _across_deflected_axis(
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
     bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
+    if scene.physics.plate:
+        raise InvalidValue("physics.plate", True, bound, remedy)
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.root_moment import RootMoment, root_moment
+from beamdyn.equations.root_moment import RootMoment, root_moment, strain_per_moment
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.system import ModalSystem
@@ -43,16 +43,14 @@ class RootStrain:
             bound = "the root strain of a beam with large deflection is not computed"
             remedy = "leave large_deflection out where the deflection is small"
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
-        beam, root = scene.beam, np.zeros(1)
-        if beam.outer_fibre is None:
+        if scene.beam.outer_fibre is None:
             raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
         if scene.damping.stiffness_factor:
             bound = "the strain of a material that damps is not a function of the moment alone"
             remedy = "give damping.ratios, or ask frequency_response"
             factor = scene.damping.stiffness_factor
             raise InvalidValue("damping.stiffness_factor", factor, bound, remedy, "s")
-        per_moment = beam.outer_fibre(root)[0] / beam.bending_stiffness(root)[0]
-        return cls(system, root_moment(scene, discretization, system.equations), float(per_moment))
+        return cls(system, root_moment(scene, discretization, system.equations), strain_per_moment(scene))
 
     def at(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Strain at times t [s] of shape (T,), with coordinates q and velocities v (T, n): shape (T,)."""

@@ -182,12 +182,13 @@ def sample(scene, w):
     )
 
 
-@pytest.fixture(params=range(3))
+@pytest.fixture(params=[(0, 0.0), (1, 0.0), (2, 0.4)])
 def tapered(request, thin):
     """A tapered strip with a tip body at an oblique bending angle, a random deflection, and its samples."""
-    scene = bd.Scene(TAPERED, bd.Mount(0.2, OUT, 0.7), physics=PLATE)
+    seed, precone = request.param
+    scene = bd.Scene(TAPERED, bd.Mount(0.2, OUT, 0.7, precone=precone), physics=PLATE)
     equations = assemble_equations(scene, BASIS)
-    q = np.random.default_rng(request.param).normal(size=equations.size) * 1e-3
+    q = np.random.default_rng(seed).normal(size=equations.size) * 1e-3
     w = surface(scene, BASIS, q)
     return SimpleNamespace(scene=scene, q=q, pencil=equations.steady(), surface=w, strip=sample(scene, w))
 
@@ -210,14 +211,51 @@ def test_kinetic_energy_with_a_body_that_moves_as_the_mean_over_the_width(tapere
 
 
 def test_energy_and_load_of_rotation(tapered):
+    """By forces on the area: r - (a.r) a of a point r, about the axis of rotation a."""
     alone = replace(tapered.scene, beam=replace(TAPERED, tip=None))
-    strip, q, L, (c, s) = tapered.strip, tapered.q, TAPERED.length, (math.cos(0.7), math.sin(0.7))
+    strip, q, L, mount = tapered.strip, tapered.q, TAPERED.length, tapered.scene.mount
+    cone = math.cos(mount.precone)
+    a1, a2 = cone * math.sin(mount.bending_angle), cone * math.cos(mount.bending_angle)
     outboard = strip.x[:, None] + (L - strip.x)[:, None] / 2 * (1 + t)
     section = TAPERED.section.width(outboard / L) * TAPERED.section.thickness(outboard / L)
-    T = 7850.0 * (section * (0.2 + outboard)) @ weights * (L - strip.x) / 2 / strip.b
-    N = strip.rho_h * s**2 * (strip.b**2 / 4 - strip.y**2) / 2
-    expected = strip.area @ (T * strip.w_x**2 + N * strip.w_y**2 - c**2 * strip.rho_h * strip.w**2)
+    pulled = cone * 0.2 + cone**2 * outboard  # the radius lies in the plane of rotation
+    T = 7850.0 * (section * pulled) @ weights * (L - strip.x) / 2 / strip.b
+    N = strip.rho_h * (1 - a2**2) * (strip.b**2 / 4 - strip.y**2) / 2
+    expected = strip.area @ (T * strip.w_x**2 + N * strip.w_y**2 - (1 - a1**2) * strip.rho_h * strip.w**2)
     pencil = assemble_equations(alone, BASIS).steady()
     assert q @ pencil.K2 @ q == pytest.approx(expected, rel=1e-5)  # differences
-    work = -strip.area @ (c * s * strip.rho_h * strip.y * strip.w)
-    assert pencil.f2 @ q == pytest.approx(work, rel=1e-9)  # rounding
+    sine = math.sin(mount.precone)
+    root = -0.2 * sine * math.sin(mount.bending_angle)  # of the radius in the direction of bending
+    force = root - a1 * (sine * strip.x + a2 * strip.y)
+    assert pencil.f2 @ q == pytest.approx(strip.area @ (strip.rho_h * force * strip.w), rel=1e-9)  # rounding
+
+
+def test_strain_at_the_root_is_that_of_a_section_that_the_clamp_keeps_flat():
+    """Under a uniform slow acceleration: half the thickness times the curvature of the mean at the root."""
+    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), physics=PLATE, damping_ratio=0.01)
+    slow = {"frequencies": [0.01], "discretization": bd.Ritz(8)}
+    strain = bd.frequency_response(scene, 0.0, output="root strain", **slow).response
+    equations = assemble_equations(scene, bd.Ritz(8))
+    deflection = np.linalg.solve(equations.matrices[0]["unity"], equations.P(0))
+    curvature = equations.deflection(np.zeros(1), 2)[:, 0] @ deflection / 0.05**2
+    by_forces = 7850.0 * 0.01 * 0.0002 * 0.05**2 / 2 / (200e9 * 0.01 * 0.0002**3 / 12) * (1 - 0.3**2)
+    assert np.abs(strain).ravel()[0] == pytest.approx(0.0001 * by_forces, rel=1e-4)  # thick by 4e-4 nu^2
+    assert curvature == pytest.approx(by_forces, rel=0.03)  # at the corners it converges slowly
+
+
+def test_loads_along_the_span_refuse_a_plate():
+    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), bd.Mount(0.2), physics=PLATE)
+    with pytest.raises(ValueError, match=r"physics\.plate"):
+        bd.static_loads(scene, [10.0])
+
+
+def test_a_square_section_has_no_propeller_moment():
+    """Its mass is spread alike in both directions: rotation does not turn it to its plane."""
+    square, first = strip((0.1, 0.02, 0.02), 0.3), []
+    for bending in (0.0, math.pi / 2):
+        scene = bd.Scene(square, bd.Mount(0.2, OUT, bending), physics=PLATE)
+        equations = assemble_equations(scene, BASIS)
+        space = BASIS.spaces(scene.modelled_beam).functions(CLAMPED)
+        twist = equations.blocks["torsion"].start + np.arange(space.size)  # of the first function across
+        first.append(equations.steady().K2[np.ix_(twist, twist)])
+    np.testing.assert_allclose(first[0], first[1], rtol=0, atol=1e-12 * np.abs(first[0]).max())  # rounding

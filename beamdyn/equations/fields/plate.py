@@ -10,7 +10,10 @@ a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
     1/2 int int D [w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) c w_xy^2] dy dx.
 
 The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
-Saint-Venant's.  Rotation at the speed omega about the unit vector a adds
+Saint-Venant's.  Of the odd part w_xx^2 has the factor g, and 2 nu w_xx w_yy its root, by which the warping
+constant of the section is less than that of a thin one; in thick sections nu is a smaller ratio
+(`Rectangle`), and torsion also has the rotary inertia of the thickness.  Rotation at the speed omega about
+the unit vector a adds
 
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
@@ -58,7 +61,7 @@ _IS_OBLIQUE = Condition(
 )
 
 
-class Part(NamedTuple):
+class Derivative(NamedTuple):
     """A part of a derivative of the deflection: a factor times a derivative of u_k times a function of eta.
 
     Parameters
@@ -76,8 +79,8 @@ class Part(NamedTuple):
     across: np.ndarray
 
 
-class Deflection:
-    """Deflection of a strip by functions across its width: its derivatives, as sums of parts.
+class WidthFunctions:
+    """Functions across the width of a strip, and derivatives of the deflection by them, as sums of parts.
 
     Parameters
     ----------
@@ -113,22 +116,31 @@ class Deflection:
             for order in range(3)
         )
         self.tip = norm  # value of each function at the edge eta = 1
-        half = _power(section.width, -1).scaled(2.0)  # d eta/dy
-        self.w, self.w_y, self.w_yy = [Part(ONE, 0, p)], [Part(half, 0, dp)], [Part(half * half, 0, ddp)]
-        self.w_x, self.w_xx, self.w_xy = [Part(ONE, 1, p)], [Part(ONE, 2, p)], [Part(half, 1, dp)]
+        half = _inverse(section.width).scaled(2.0)  # d eta/dy
+        self.parts = {  # of the deflection and its derivatives
+            "w": [Derivative(ONE, 0, p)],
+            "w_y": [Derivative(half, 0, dp)],
+            "w_yy": [Derivative(half * half, 0, ddp)],
+            "w_x": [Derivative(ONE, 1, p)],
+            "w_xx": [Derivative(ONE, 2, p)],
+            "w_xy": [Derivative(half, 1, dp)],
+        }
         if section.width.degree:
             slope, change = _relative_slopes(section.width, length)
-            turned = dp + eta * ddp
-            self.w_x.append(Part(slope.scaled(-1.0), 0, eta * dp))
-            self.w_xx.append(Part(slope.scaled(-2.0), 1, eta * dp))
-            self.w_xx.append(Part(change.scaled(-1.0), 0, eta * dp))
-            self.w_xx.append(Part(slope * slope, 0, eta * turned))
-            self.w_xy.append(Part((half * slope).scaled(-1.0), 0, turned))
+            stretched, turned = eta * dp, dp + eta * ddp
+            self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))
+            self.parts["w_xx"] += [
+                Derivative(slope.scaled(-2.0), 1, stretched),
+                Derivative(change.scaled(-1.0), 0, stretched),
+                Derivative(slope * slope, 0, eta * turned),
+            ]
+            self.parts["w_xy"].append(Derivative((half * slope).scaled(-1.0), 0, turned))
 
 
 @lru_cache(maxsize=64)
-def _power(b: Profile, power: int) -> Profile:
-    return combine(lambda width: (width**power)[None], b)[0]
+def _inverse(b: Profile) -> Profile:
+    """One over the width [1/m]."""
+    return combine(lambda width: 1 / width[None], b)[0]
 
 
 @lru_cache(maxsize=64)
@@ -171,15 +183,17 @@ class Strip:
         t = self.section.thickness
         return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
 
-    def deflection(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> Deflection:
-        """The deflection by functions of some numbers across."""
-        return Deflection(self.section, self.scene.beam.length, field.name, numbers, conditions, self.points)
+    def functions(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> WidthFunctions:
+        """Functions of some numbers across, of a field."""
+        return WidthFunctions(
+            self.section, self.scene.beam.length, field.name, numbers, conditions, self.points
+        )
 
     def integrate(
         self,
         weight: Profile,
-        rows: tuple[Deflection, str],
-        columns: tuple[Deflection, str],
+        rows: tuple[WidthFunctions, str],
+        columns: tuple[WidthFunctions, str],
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
         """Integrate over x a weight times the mean over the width of two derivatives and a factor across.
@@ -189,8 +203,8 @@ class Strip:
         (first, a), (second, b) = rows, columns
         _, of_points = gauss_rule(self.points)
         L, total = self.scene.beam.length, 0.0
-        for p in getattr(first, a):
-            for q in getattr(second, b):
+        for p in first.parts[a]:
+            for q in second.parts[b]:
                 averages = (p.across * (of_points / 2 * across)) @ q.across.T
                 scale = np.abs(p.across).max(initial=0.0) * np.abs(q.across).max(initial=0.0)
                 averages[np.abs(averages) <= _ZERO * scale] = 0.0
@@ -200,7 +214,7 @@ class Strip:
                     total = total + np.kron(averages, along * L ** (1 - p.order - q.order))
         return np.atleast_2d(total)
 
-    def stiffness(self, rows: Deflection, columns: Deflection, warping: Profile = ONE) -> np.ndarray:
+    def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
         """Stiffness of the plate [N/m], with a factor of its bending along the beam by warping."""
         section, EI = self.section, self.scene.beam.bending_stiffness
         D, bend = EI * section.camber_stiffening, self.integrate
@@ -216,6 +230,7 @@ class Strip:
 
 
 def _root(factor: Profile) -> Profile:
+    """Square root of a property."""
     return combine(lambda values: np.sqrt(values)[None], factor)[0]
 
 
@@ -278,15 +293,15 @@ class SectionField(Field):
         space = StackedSpace(spaces.functions(CLAMPED), len(numbers), len(self.numbers(spaces.fewer_across)))
         if not numbers:
             return FieldEquations(space, (), ())
-        own = strip.deflection(self, numbers, CLAMPED)
+        own = strip.functions(self, numbers, CLAMPED)
         terms = [*self._terms(strip, own, own), *self._of_body(strip, own, space.along)]
         bending = Bending()
-        mean = strip.deflection(bending, (0,), bending.conditions(scene.mount))
+        mean = strip.functions(bending, (0,), bending.conditions(scene.mount))
         coupling = [t for t in self._terms(strip, mean, own) if t.matrix.any()]
         mirrored = [replace(t, rows=t.columns, columns=t.rows, matrix=t.matrix.T) for t in coupling]
         return FieldEquations(space, (*terms, *coupling, *mirrored), (*self._loads(strip, own, space.along),))
 
-    def _terms(self, strip: Strip, rows: Deflection, columns: Deflection) -> Iterator[Term]:
+    def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
         scene, names = strip.scene, (rows.field, columns.field)
         beam, c1, c2 = scene.beam, *_axis(scene)
         mass, (n_a, n_b) = beam.mass_per_length, axial_tension(beam)
@@ -316,11 +331,11 @@ class SectionField(Field):
         yield stiffness("pull across", pull, "speed_squared", 1 - c2**2)
         yield stiffness("spin softening", inertia, "speed_squared", -(1 - c1**2))
 
-    def _of_body(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Term]:
+    def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         """Yield what a body at the tip adds; none where the mean over the width does not twist."""
         return iter(())
 
-    def _loads(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Load]:
+    def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
         """Yield the loads; none by what acts on the mean over the width."""
         return iter(())
 
@@ -371,7 +386,7 @@ class Torsion(SectionField):
         ),
     }
 
-    def _of_body(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Term]:
+    def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         tip = strip.scene.beam.tip
         if tip is None:
             return
@@ -384,7 +399,7 @@ class Torsion(SectionField):
             "spin of the tip body in torsion", self.name, self.name, 0, spin, "speed_squared", c1**2 - c2**2
         )
 
-    def _loads(self, strip: Strip, own: Deflection, along: Space) -> Iterator[Load]:
+    def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
         c1, c2 = _axis(strip.scene)
         beam = strip.scene.beam
         of_first = along.load((beam.mass_per_length * strip.section.width).scaled(beam.length / np.sqrt(12)))
