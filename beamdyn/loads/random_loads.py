@@ -25,7 +25,7 @@ from beamdyn.loads.load_statistics import (
     expected_factor,
     safe_factor,
 )
-from beamdyn.loads.span_loads import AskedLoads, Case, SpanLoads, with_unit
+from beamdyn.loads.span_loads import AskedLoads, LoadCase, SpanLoads, with_unit
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
@@ -83,7 +83,7 @@ class RandomLoads(SpanLoads):
     fractions: tuple[LoadFractions, ...] = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[Case] = Case("speed", "rad/s", "speed")
+    case: ClassVar[LoadCase] = LoadCase("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
         """Largest moment and strain to be expected, with errors, in one line; see `Result.headline`."""

@@ -35,7 +35,7 @@ REMEDIES = {
 }
 
 
-class Case(NamedTuple):
+class LoadCase(NamedTuple):
     """First axis of the arrays: its name, its unit, and the field that has its values."""
 
     name: str
@@ -43,7 +43,7 @@ class Case(NamedTuple):
     field: str
 
 
-SPEEDS = Case("speed", "rad/s", "speeds")
+SPEEDS = LoadCase("speed", "rad/s", "speeds")
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ class SpanLoads(Result):
     provenance: Provenance
     scene: Scene = field(repr=False)
 
-    case: ClassVar[Case]
+    case: ClassVar[LoadCase]
 
     def headline(self) -> Iterator[str]:
         """Largest moment and strain of all cases and stations in one line; see `Result.headline`."""

@@ -12,7 +12,7 @@ from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
 from beamdyn.common.inputs.checks import ascending, real
 from beamdyn.common.results.announced import announced
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.span_loads import SPEEDS, AskedLoads, Case, SpanLoads, refuse_large_deflection
+from beamdyn.loads.span_loads import SPEEDS, AskedLoads, LoadCase, SpanLoads, refuse_large_deflection
 from beamdyn.loads.stations import Positions, SectionPoints
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
@@ -54,7 +54,7 @@ class StaticLoads(SpanLoads):
     angle: float
     tip: np.ndarray
 
-    case: ClassVar[Case] = SPEEDS
+    case: ClassVar[LoadCase] = SPEEDS
 
 
 @announced

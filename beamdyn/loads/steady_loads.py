@@ -11,7 +11,14 @@ import numpy as np
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.span_loads import SPEEDS, AskedLoads, Case, SpanLoads, refuse_large_deflection, with_unit
+from beamdyn.loads.span_loads import (
+    SPEEDS,
+    AskedLoads,
+    LoadCase,
+    SpanLoads,
+    refuse_large_deflection,
+    with_unit,
+)
 from beamdyn.loads.stations import (
     UNITS,
     Positions,
@@ -74,7 +81,7 @@ class SteadyLoads(SpanLoads):
     response: SteadyResponse = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[Case] = SPEEDS
+    case: ClassVar[LoadCase] = SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
         """Complex amplitude a of each line of a quantity: shape (C, S, k, l).

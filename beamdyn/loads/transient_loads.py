@@ -12,8 +12,8 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.span_loads import (
     AskedLoads,
-    Case,
     LargestLoad,
+    LoadCase,
     SpanLoads,
     refuse_large_deflection,
     with_unit,
@@ -94,7 +94,7 @@ class TransientLoads(SpanLoads):
     path: LoadPath = field(repr=False)
     equivalent_ranges: tuple[EquivalentRange, ...] = ()
 
-    case: ClassVar[Case] = Case("time", "s", "t")
+    case: ClassVar[LoadCase] = LoadCase("time", "s", "t")
 
     @property
     def run(self) -> Transient:
