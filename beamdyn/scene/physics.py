@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Result, plain
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import TOLERANCE, Statement
 
 
@@ -27,8 +28,6 @@ class Physics:
         Shear deformation (Timoshenko): sections stay plane but need not be normal to the axis.
     rotary_inertia : bool
         Rotary inertia of the sections (Rayleigh).
-    plate : bool
-        Torsion and camber of a thin rectangular section (Kirchhoff plate), which a clamped root hinders.
     stretch : bool
         Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
     large_deflection : bool
@@ -38,6 +37,8 @@ class Physics:
     branch : {"straight", "bent"}
         With large deflection, the equilibria that are meant: those that follow from rest as the speed rises,
         or those that stand beside them at high speed, bent to the other side.
+    plate : bool
+        Torsion and camber of a thin rectangular section (Kirchhoff plate), which a clamped root hinders.
 
     Raises
     ------
@@ -63,7 +64,6 @@ class Physics:
     ] = 1
     shear: Annotated[bool, Described(meaning="shear deformation")] = False
     rotary_inertia: Annotated[bool, Described(meaning="rotary inertia of the sections")] = False
-    plate: Annotated[bool, Described(meaning="torsion and camber of a thin rectangular section")] = False
     stretch: Annotated[bool, Described(meaning="stretch of the beam and its Coriolis coupling")] = False
 
     large_deflection: Annotated[bool, Described(meaning="slopes of any size: the elastica")] = False
@@ -71,6 +71,9 @@ class Physics:
         Literal["straight", "bent"],
         Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
     ] = "straight"
+    plate: Annotated[bool, Described(meaning="torsion and camber of a thin rectangular section")] = field(
+        default=False, metadata=ADDED_LATER
+    )
 
     def __post_init__(self) -> None:
         set_fields(self, planes=count("physics.planes", self.planes, most=2))

@@ -19,6 +19,8 @@ import numpy as np
 
 from beamdyn.common.results.statements import Words
 
+_ADDED = "added"
+ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack: its default is what they meant
 _PACKAGES = ("beamdyn", "brakes")  # packages whose classes may be named in a file
 
 
@@ -144,7 +146,8 @@ def _fields(kind: Any) -> tuple[str, ...]:
 def _defaults(kind: Any) -> dict[str, Any]:
     """Fields of a dataclass that a file of an earlier version may lack, with what stands for them."""
     every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
-    return {f.name: f.default for f in every if f.default is not dataclasses.MISSING and not f.compare}
+    given = (f for f in every if f.default is not dataclasses.MISSING)
+    return {f.name: f.default for f in given if not f.compare or _ADDED in f.metadata}
 
 
 def _name(kind: type) -> str:
