@@ -399,6 +399,8 @@ def test_a_record_of_an_earlier_version_makes_the_same_result() -> None:
     np.testing.assert_array_equal(again.frequency, modes.frequency)
 
 
-def test_a_class_of_another_package_is_not_imported() -> None:
-    with pytest.raises(ValueError, match="no class Popen"):
-        decode({"object": ["subprocess:Popen", {}]})
+def test_a_class_of_another_package_is_not_imported(tmp_path, monkeypatch) -> None:
+    (tmp_path / "of_a_stranger.py").write_text("raise AssertionError('it was imported')")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ValueError, match="no class Trap"):
+        decode({"object": ["of_a_stranger:Trap", {}]})
