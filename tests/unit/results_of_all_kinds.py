@@ -157,7 +157,7 @@ def result_classes() -> dict[str, type[Result]]:
     """
     for package in (bd, brakes):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if not module.name.endswith("__main__") and ".app" not in module.name:
+            if not {"__main__", "app", "screens"} & {*module.name.split(".")}:
                 importlib.import_module(module.name)
     return {kind.__name__: kind for kind in _derived(Result) if kind.__name__ not in BASES}
 
