@@ -3,12 +3,12 @@
 import asyncio
 
 import pytest
+from matplotlib.figure import Figure
 
 pytest.importorskip("nicegui")
 
 from nicegui.testing.user_interaction import UserInteraction
 
-from beamdyn.common.edge import rendering
 from beamdyn.common.screens import tasks
 from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
@@ -43,13 +43,13 @@ class Holding:
 @pytest.fixture
 def solver(monkeypatch):
     """One that holds drawings; nothing else may use matplotlib."""
-    made, save = Holding(), rendering._saved
+    made, save = Holding(), Figure.savefig
 
-    def saved(*given):
+    def saved(*given, **options):
         assert made.drawing, "drawn in the process that serves"
-        return save(*given)
+        return save(*given, **options)
 
-    monkeypatch.setattr(rendering, "_saved", saved)
+    monkeypatch.setattr(Figure, "savefig", saved)
     return made
 
 
