@@ -31,7 +31,7 @@ SEED = 31
 FILE = Path(__file__).parent / "cases" / "data" / "solids.jsonl"
 LISTED = 3  # modes of bending that a beam lists, to the last of which the solid's modes are kept
 _LEAST = 4  # modes kept, at least
-RICHEST = bd.Physics(planes=2, shear=True, rotary_inertia=True, plate=True)
+RICHEST = bd.Physics(planes=2, shear=True, rotary_inertia=True, camber=True, torsion=True)
 _MORE = 2  # modes of the model, among which one that the solid has may be of another order
 
 

@@ -40,7 +40,7 @@ def measure(number: int, seed: int) -> list[Case]:
     """Stated and true errors of the strip with this number."""
     rng = np.random.default_rng([seed, number])
     strip = random_strip(rng)
-    scene = replace(strip.scene(), physics=bd.Physics(plate=True))
+    scene = replace(strip.scene(), physics=bd.Physics(camber=True, torsion=True))
     tolerance = 10 ** rng.uniform(-3, -1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of speeds at which a strip bends far

@@ -42,6 +42,8 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     The recurrence of Legendre polynomials P_k gives P_k b; no digits are lost of series of a few terms.
     """
     short, long = sorted((a, b), key=len)
+    if len(short) == 1:  # of constants
+        return short * long
     total = np.zeros((len(a) + len(b) - 1, long.shape[1]))
     before, product = np.zeros_like(total), np.zeros_like(total)
     product[: len(long)] = long

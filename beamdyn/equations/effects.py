@@ -36,8 +36,6 @@ class Effect:
         Whether it can be combined with large deflection.
     taken_out : str
         Name of what is taken out where large deflection takes its place.
-    also_by : str
-        Field of `Physics` that models the effect among others.
     """
 
     name: str
@@ -47,12 +45,9 @@ class Effect:
     needs: tuple[str, ...] = ()
     bends: bool = False
     taken_out: str = ""
-    also_by: str = ""
 
     def is_in(self, scene: Scene) -> bool:
         """Whether the model of a scene has the effect."""
-        if self.also_by and getattr(scene.physics, self.also_by):
-            return True
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
@@ -62,8 +57,6 @@ class Effect:
     def reason(self, scene: Scene) -> str:
         """Say what the model of a scene assumes in place of the effect, and how to include that."""
         assumed = self.assumed.format(across=name_directions(scene)[1][0])
-        if self.also_by and scene.beam.section is not None:
-            return f"{assumed}; Physics({self.also_by}=True) models it"
         return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
 
     def _how_to_include(self, scene: Scene) -> str:
@@ -98,14 +91,14 @@ ROTARY_INERTIA = Effect(
 STRETCH = Effect(
     "stretch", "the beam is inextensible", "stretch", needs=("axial_stiffness",), taken_out="stretch"
 )
+CAMBER = Effect("camber", "sections camber freely at the root", "camber", needs=("section", "poissons_ratio"))
+TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("section", "poissons_ratio"))
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )
-EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, STRETCH, LARGE_DEFLECTION
+EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, TORSION, STRETCH, LARGE_DEFLECTION
 NEVER_MODELLED = (
-    Effect("torsion", "the beam is rigid against torsion", also_by="plate"),
     Effect("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
-    Effect("warping and Poisson contraction", "sections keep their shape", also_by="plate"),
     Effect("contact", "nothing touches the beam"),
 )
 NAMED = {effect.name: effect for effect in EFFECTS}

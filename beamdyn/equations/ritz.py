@@ -148,13 +148,13 @@ class RitzSpaces:
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean: as many as along a segment."""
-        return max(2, min(self.ritz.functions, _MOST_ACROSS))
+        """Number of functions across the width of a plate beyond the mean: one less than along a segment."""
+        return max(2, min(self.ritz.functions - 1, _MOST_ACROSS))
 
     @property
     def fewer_across(self) -> int:
-        """Number of those of the coarser basis."""
-        return max(2, min(self.ritz.fewer, _MOST_ACROSS - 2))
+        """Number of those of the coarser basis: one less of torsion, and one of camber."""
+        return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:
         """Whether the basis and the segments are the same."""

@@ -93,7 +93,7 @@ def strain_per_moment(scene: Scene) -> float:
     beam, root = scene.beam, np.zeros(1)
     assert beam.outer_fibre is not None
     stiffness = float(beam.bending_stiffness(root)[0])
-    if scene.physics.plate and beam.section is not None:
+    if scene.physics.camber and beam.section is not None:
         stiffness *= float(beam.section.camber_stiffening(root)[0])
     return float(beam.outer_fibre(root)[0]) / stiffness
 

@@ -213,8 +213,9 @@ def _across_deflected_axis(
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
     bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
-    if scene.physics.plate:
-        raise InvalidValue("physics.plate", True, bound, remedy)
+    for name in ("camber", "torsion"):
+        if getattr(scene.physics, name):
+            raise InvalidValue(f"physics.{name}", True, bound, remedy)
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):

@@ -68,7 +68,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         With the remedy.
     """
     bound = "bounds are known for an undamped slender beam on a clamped root"
-    for name in ("shear", "rotary_inertia", "plate", "stretch", "large_deflection"):
+    for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection"):
         if getattr(scene.physics, name):
             raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
     if scene.damping_ratio:

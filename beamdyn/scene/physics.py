@@ -37,8 +37,11 @@ class Physics:
     branch : {"straight", "bent"}
         With large deflection, the equilibria that are meant: those that follow from rest as the speed rises,
         or those that stand beside them at high speed, bent to the other side.
-    plate : bool
-        Torsion and camber of a thin rectangular section (Kirchhoff plate), which a clamped root hinders.
+    camber : bool
+        Change of shape of a rectangular section (anticlastic curvature by Poisson's ratio), which a clamped
+        root hinders.
+    torsion : bool
+        Torsion, which a clamped root hinders from warping.  With both, a strip is a Kirchhoff plate.
 
     Raises
     ------
@@ -71,21 +74,27 @@ class Physics:
         Literal["straight", "bent"],
         Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
     ] = "straight"
-    plate: Annotated[bool, Described(meaning="torsion and camber of a thin rectangular section")] = field(
-        default=False, metadata=ADDED_LATER
-    )
+    camber: Annotated[
+        bool, Described(meaning="camber of a rectangular section, which a clamped root hinders")
+    ] = field(default=False, metadata=ADDED_LATER)
+    torsion: Annotated[bool, Described(meaning="torsion")] = field(default=False, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, planes=count("physics.planes", self.planes, most=2))
-        for name in ("shear", "rotary_inertia", "plate", "stretch", "large_deflection"):
+        for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection"):
             set_fields(self, **{name: flag(f"physics.{name}", getattr(self, name))})
         one_of("physics.branch", self.branch, ("straight", "bent"))
         if self.large_deflection:
             self._check_combination()
 
+    @property
+    def has_width(self) -> bool:
+        """Whether sections have fields of their own across the width."""
+        return self.camber or self.torsion
+
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""
-        for name, without in (("planes", 1), ("shear", False), ("plate", False), ("stretch", False)):
+        for name, without in (("planes", 1), ("shear", False), ("camber", False), ("torsion", False), ("stretch", False)):
             if (given := getattr(self, name)) != without:
                 bound = "it cannot be combined with large_deflection"
                 raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")

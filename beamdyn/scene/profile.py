@@ -131,6 +131,8 @@ class Profile(FieldsOnly):
 
     def __mul__(self, other: Profile) -> Profile:
         """Multiply two properties pointwise."""
+        if other is ONE:
+            return self
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
         return _of_series(a.breakpoints, multiply_series(a.series, b.series))
 

@@ -13,10 +13,14 @@ from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.scene.profile import Profile, as_profile, combine
 
-# How much less a clamp stiffens bending and torsion of thick sections than of a plate, as factors of the
-# squared ratio of thickness and width.  Fitted to CalculiX's solids of random cantilevers, with which
-# `benchmarks.solids` compares: then bending is within 0.42 % of them, torsion within 0.23 %.
-_THICK_CAMBER, _THICK_WARPING = 1.0, 7.0
+# How much less a clamp stiffens thick sections than a plate, fitted to CalculiX's solids of random cantilevers,
+# with which `benchmarks.solids` compares.  The squared Poisson's ratio has the factor 1 + a r + b r^2 of the
+# ratio r of thickness and width; the warping constant 1/(1 + c r^2).
+_THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
+# Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
+# thicknesses; fitted to the same solids.
+_REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
+_LONGEST_REACH = 0.7  # of the length
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
@@ -84,7 +88,8 @@ class Rectangle:
         nu = self.poissons_ratio or 0.0
 
         def ratio(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-            return (nu / np.sqrt(1 + _THICK_CAMBER * (t / b) ** 2))[None]
+            r, (linear, quadratic) = t / b, _THICK_CAMBER
+            return (nu * np.sqrt(1 + linear * r + quadratic * r**2))[None]
 
         return combine(ratio, self.width, self.thickness)[0]
 
@@ -92,6 +97,21 @@ class Rectangle:
     def camber_stiffening(self) -> Profile:
         """Bending stiffness of the section that cannot camber over that of one that does: 1/(1 - nu^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
+
+    @cached_property
+    def reach_of_clamp(self) -> float:
+        """Length of the root on which the clamp stiffens bending in the direction of the width [m]."""
+        b, t = (float(side(np.zeros(1))[0]) for side in (self.width, self.thickness))
+        return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
+
+    def stiffening_across(self, length: float) -> Profile:
+        """Stiffness of bending in the direction of the width at a clamped root, over that of a free section.
+
+        It is 1 + nu^2 (1 - x/c)^2 within the reach c of the clamp, on a beam of the given length [m].
+        """
+        nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
+        within = tuple(nu**2 * part for part in (1 / 3, -1 / 2, 1 / 6))  # Legendre series of (1 - x/c)^2
+        return Profile((0.0, reach, 1.0), ((1 + within[0], *within[1:]), (1.0, 0.0, 0.0)))
 
     @cached_property
     def warping_factor(self) -> Profile:

@@ -118,7 +118,7 @@ class Scene(OneLine):
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
             set_fields(self, physics_choice=None)  # the choice was that of another physics
         _check_properties(self.beam, self.physics)
-        _check_plate(self.beam, self.physics)
+        _check_width(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
@@ -288,37 +288,41 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
 
 
 # Length over the local width of the parts at a clamped root in which a plate's corners are resolved.
-_CORNERS = 0.1, 0.4, 1.5
+_CORNERS = 0.2, 1.2
 _LAST_CORNER = 0.7  # of the length
 _JUMP = 1e-9  # of the width: a smaller one is rounding
 
 
-def _check_plate(beam: Beam, physics: Physics) -> None:
-    """Refuse a plate of a section that is not rectangular, turns, or jumps in width."""
-    if not physics.plate:
+def _check_width(beam: Beam, physics: Physics) -> None:
+    """Refuse torsion or camber of a section that is not rectangular, turns, or jumps in width."""
+    if not physics.has_width:
         return
-    section = beam.section
+    section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
     if section is None or section.poissons_ratio is None:
         lacking = "a rectangular section" if section is None else "poissons_ratio"
         remedy = "Beam.rectangular(..., poissons_ratio=0.3) makes one of steel"
-        raise InvalidValue("physics.plate", True, "it needs {other}", remedy, other=lacking)
+        raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.twist is not None:
-        bound, remedy = "with physics.plate the strip must be flat", "leave the plate or the twist out"
+        bound, remedy = f"with {name} the beam must not be twisted", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
     left, right = section.width.end_values()
     jumps = np.flatnonzero(np.abs(right[:-1] - left[1:]) > _JUMP * right[:-1])
     if jumps.size:
         at = section.width.breakpoints[jumps[0] + 1]
-        bound = "with physics.plate the width must not jump"
+        bound = f"with {name} the width must not jump"
         where = f" at x/L = {at:.3f}"
         raise InvalidValue("width", float(left[jumps[0] + 1]), bound, "taper it", "m", where=where)
 
 
-def _with_corners(beam: Beam) -> Profile:
+def _with_corners(beam: Beam, planes: int) -> Profile:
     """Mass per length with breakpoints near the root, where stresses in the corners of a plate vary."""
     assert beam.section is not None
     part = float(beam.section.width(np.zeros(1))[0]) / beam.length
-    places = [part * each for each in _CORNERS if part * each < _LAST_CORNER]
+    places = tuple(part * each for each in _CORNERS)
+    if planes == 2:  # end where the clamp no longer stiffens bending in the direction of the width
+        reach = beam.section.stiffening_across(beam.length).breakpoints[1]
+        places = reach / 2, reach, places[1]
+    places = [each for each in places if each <= _LAST_CORNER]
     return beam.mass_per_length.split((0.0, *places, 1.0))
 
 
@@ -329,6 +333,6 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     unread = (optional | {_SECOND + _BENDING}) - _needed_properties(physics).keys()
     unread |= {"twist"} if physics.planes == 1 else set()
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
-    if physics.plate:
-        given["mass_per_length"] = _with_corners(beam)
+    if physics.has_width:
+        given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

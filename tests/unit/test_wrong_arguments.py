@@ -60,7 +60,7 @@ CALLS = {
     ),
     "Physics": (
         bd.Physics,
-        {"planes": 1, "shear": False, "rotary_inertia": False, "plate": False, "stretch": False}
+        {"planes": 1, "shear": False, "rotary_inertia": False, "camber": False, "torsion": False, "stretch": False}
         | {"large_deflection": False, "branch": "straight"},
     ),
     "Scene": (
@@ -248,7 +248,7 @@ CALLS = {
     "load_scene": (bd.load_scene, {"path": "examples/blade.toml"}),
     "read_deck": (bd.read_deck, {"path": "examples/blade_stations.csv", "length": 40.0, "hub_radius": 1.25}),
 }
-SWITCHES = ("shear", "rotary_inertia", "plate", "stretch", "large_deflection")
+SWITCHES = ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection")
 # What of the wrong values is right after all.
 ALLOWED = {
     **{f"Physics.{name}": {"truth", "numpy's truth"} for name in SWITCHES},

@@ -20,6 +20,8 @@ from beamdyn.equations.fields.field import Term
 from beamdyn.equations.fields.transverse import Pair, TransverseField
 from beamdyn.scene.beam import PointSpring, TipMass
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.profile import Profile
+from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
 
@@ -50,14 +52,18 @@ class Bending(TransverseField):
         at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
         return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
 
+    def stiffening(self, section: Rectangle, length: float) -> Profile:
+        """Bending stiffness of sections that keep their shape over that of sections that camber."""
+        return section.camber_stiffening
+
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
         """Yield bending stiffness and root spring."""
         stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
         if stiffness is not None:
-            if self.direction == 0 and pair.rows.scene.physics.plate:
-                section = pair.rows.scene.beam.section
-                assert section is not None, "a scene of a plate has a section"
-                stiffness = stiffness * section.camber_stiffening
+            scene = pair.rows.scene
+            if scene.physics.camber:
+                assert scene.beam.section is not None, "a scene with camber has a section"
+                stiffness = stiffness * self.stiffening(scene.beam.section, scene.beam.length)
             yield pair.term("bending stiffness", pair.integrate(stiffness, 2))
         spring = pair.rows.scene.mount.root_stiffnesses[self.direction]
         if pair.rows is pair.columns and math.isfinite(spring):
@@ -72,6 +78,10 @@ class SecondBending(Bending):
     direction = 1
     requires: ClassVar[Mapping[str, object]] = {"planes": 2}
     partners = (*Bending.partners, Bending())
+
+    def stiffening(self, section: Rectangle, length: float) -> Profile:
+        """Bending stiffness at a root that keeps the shape of sections, over that of free ones."""
+        return section.stiffening_across(length)
 
 
 class Shear(TransverseField):

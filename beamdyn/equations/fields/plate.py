@@ -109,13 +109,7 @@ class WidthFunctions:
     ) -> None:
         self.field, self.conditions = field, conditions
         eta, _ = gauss_rule(points)
-        norm = np.sqrt(2 * np.array(numbers) + 1)
-        p, dp, ddp = (
-            np.array([legendre.legval(eta, legendre.legder(np.eye(k + 1)[k], order)) for k in numbers])
-            * norm[:, None]
-            for order in range(3)
-        )
-        self.tip = norm  # value of each function at the edge eta = 1
+        self.tip, (p, dp, ddp) = _polynomials(tuple(numbers), points)
         half = _inverse(section.width).scaled(2.0)  # d eta/dy
         self.parts = {  # of the deflection and its derivatives
             "w": [Derivative(ONE, 0, p)],
@@ -125,7 +119,7 @@ class WidthFunctions:
             "w_xx": [Derivative(ONE, 2, p)],
             "w_xy": [Derivative(half, 1, dp)],
         }
-        if section.width.degree:
+        if section.width.degree:  # d/dx at constant y
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
             self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))
@@ -135,6 +129,14 @@ class WidthFunctions:
                 Derivative(slope * slope, 0, eta * turned),
             ]
             self.parts["w_xy"].append(Derivative((half * slope).scaled(-1.0), 0, turned))
+
+
+@lru_cache(maxsize=64)
+def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Values of functions across at the edge eta = 1, and their derivatives of orders 0 to 2 at Gauss points."""
+    edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
+    eta, _ = gauss_rule(points)
+    return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
 
 
 @lru_cache(maxsize=64)
@@ -209,9 +211,10 @@ class Strip:
                 scale = np.abs(p.across).max(initial=0.0) * np.abs(q.across).max(initial=0.0)
                 averages[np.abs(averages) <= _ZERO * scale] = 0.0
                 if averages.any():
-                    of_x = weight * p.factor * q.factor, first.conditions, second.conditions
-                    along = self.spaces.product(*of_x, (p.order, q.order))
-                    total = total + np.kron(averages, along * L ** (1 - p.order - q.order))
+                    of_x = weight * (p.factor * q.factor), first.conditions, second.conditions
+                    along = self.spaces.product(*of_x, (p.order, q.order)) * L ** (1 - p.order - q.order)
+                    of_both = averages[:, None, :, None] * along[:, None, :]
+                    total = total + of_both.reshape(averages.shape[0] * along.shape[0], -1)
         return np.atleast_2d(total)
 
     def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
@@ -229,6 +232,7 @@ class Strip:
         )
 
 
+@lru_cache(maxsize=64)
 def _root(factor: Profile) -> Profile:
     """Square root of a property."""
     return combine(lambda values: np.sqrt(values)[None], factor)[0]
@@ -269,18 +273,14 @@ class SectionField(Field):
 
     first: ClassVar[int]  # number k of the first function across; the others follow in steps of two
 
-    def is_modelled(self, scene: Scene) -> bool:
-        """Whether the strip is modelled as a plate."""
-        return scene.physics.plate
-
     def complete(self, scene: Scene) -> Scene:
-        """Model the strip as a plate, flat and with a Poisson's ratio, if its section is rectangular."""
+        """Include the field, of a strip that is flat and has a Poisson's ratio, if its section is rectangular."""
         section = scene.beam.section
         if section is None:
             return scene
         given = replace(section, poissons_ratio=section.poissons_ratio or _SOME_RATIO)
         beam = replace(scene.beam, twist=None).with_section(given)
-        return replace(scene, beam=beam, physics=replace(scene.physics, plate=True))
+        return replace(scene, beam=beam, physics=replace(scene.physics, **{self.name: True}))
 
     def numbers(self, count: int) -> range:
         """Numbers k of the functions of this field among `count` functions beyond the mean."""
@@ -369,6 +369,7 @@ class Torsion(SectionField):
     """Torsion of a strip: the deflections that are odd across its width."""
 
     name = "torsion"
+    requires: ClassVar[Mapping[str, object]] = {"torsion": True}
     damping_name = "damping of torsion"
     first = 1
     explanations: ClassVar[Mapping[str, Explanation]] = {
@@ -411,6 +412,7 @@ class Camber(SectionField):
     """Camber of a strip: the deflections that are even across its width, but for their mean."""
 
     name = "camber"
+    requires: ClassVar[Mapping[str, object]] = {"camber": True}
     damping_name = "damping of camber"
     first = 2
     explanations: ClassVar[Mapping[str, Explanation]] = _explanations("camber")
