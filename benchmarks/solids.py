@@ -13,7 +13,7 @@ import os
 import subprocess
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -23,7 +23,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from benchmarks.peers.solids import BENDING, OTHER, TORSION, SolidMode, Strip, random_strip, reference
+from beamdyn.modes.model_error.left_out_effects import UnlistedMode
+from benchmarks.peers.solids import BENDING, OTHER, STRETCH, TORSION, SolidMode, Strip, random_strip, reference
 from benchmarks.resumable import Cases
 from benchmarks.rows import Row, show, time_text
 
@@ -174,6 +175,121 @@ def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:
         yield f"richest model beside solids: {kind}, {len(own)} modes: rms, largest", found, ""
 
 
+# Model errors of the plain beam -------------------------------------------------------------------
+
+_FACTOR, _FEWEST = 2.0, 0.2  # of the true difference: where the stated one is to lie, and never below
+_TRUE = 1e-3  # smallest difference that counts; it also exceeds twice the reference's own error
+_PAIRED = 0.1  # frequencies of a mode that is named, relative to the solid's
+
+
+@dataclass(frozen=True)
+class StatedError:
+    """A model error of one mode of a beam, and the true difference from the solid, relative to the beam's mode.
+
+    `counts` says whether the difference is large enough to be known.
+    """
+
+    number: int
+    mode: int
+    stated: float
+    true: float
+    counts: bool
+
+
+def stated_errors(reference: Reference) -> list[StatedError]:
+    """Model errors of the modes of a strip as a plain beam."""
+    strip, found = reference.body(), _plain_modes(reference)
+    bending = [mode for mode in reference.modes() if mode.kind == BENDING]
+    made = []
+    for mode, frequency, stated in zip(bending, found.frequency, found.model_error, strict=False):
+        true = mode.frequency / frequency - 1
+        counts = abs(true) > max(_TRUE, 2 * mode.error)
+        made.append(StatedError(reference.number, mode.number, float(stated), float(abs(true)), counts))
+    assert len(made) == LISTED, strip
+    return made
+
+
+def _plain_modes(reference: Reference) -> bd.Modes:
+    strip = reference.body()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of model errors, which are what is measured
+        return bd.natural_modes(strip.scene(bd.Physics()), strip.speed, LISTED)
+
+
+def unnamed(reference: Reference) -> list[str]:
+    """Modes of a solid below the third of bending that its plain beam neither lists nor names."""
+    named = _plain_modes(reference).left_out_effects.unlisted
+    modes, missing = reference.modes(), []
+    last = next(m.frequency for m in modes if (m.kind, m.number) == (BENDING, LISTED))
+    for mode in modes:
+        if mode.kind == BENDING or mode.frequency >= last:
+            continue
+        of_kind = [m for m in named if _kind_of(m) == mode.kind and m.number == mode.number]
+        if not any(abs(m.frequency / mode.frequency - 1) < _PAIRED for m in of_kind):
+            missing.append(f"case {reference.number}: {mode.kind} {mode.number}, {mode.frequency:.4g} Hz")
+    return missing
+
+
+def _kind_of(mode: UnlistedMode) -> str:
+    """Kind of a mode that is named, as solids have it."""
+    return mode.kind if mode.kind in (TORSION, STRETCH) else OTHER
+
+
+def summarize_stated(references: Sequence[Reference]) -> Iterator[Row]:
+    """How model errors of plain beams lie beside the true ones, and which modes are not named."""
+    each = [stated for reference in references for stated in stated_errors(reference)]
+    counted = [stated for stated in each if stated.counts]
+    ratio = np.array([stated.stated / stated.true for stated in counted])
+    unknown = np.isnan(ratio)
+    within = (ratio <= _FACTOR) & (ratio >= 1 / _FACTOR)
+    yield "plain beams: modes with a true difference above 0.1 %", f"{len(counted)} of {len(each)}", ""
+    yield "... stated within a factor of 2", f"{within.mean():.1%}, {unknown.sum()} not known", "95 %"
+    yield "... least and largest ratio", f"{np.nanmin(ratio):.2f}, {np.nanmax(ratio):.2f}", "0.2 at least"
+    missing = [words for reference in references for words in unnamed(reference)]
+    yield "solids' modes below the third listed, neither listed nor named", f"{len(missing)}", "0"
+    for words in missing:
+        yield f"... {words}", "", ""
+
+
+# Physics that is chosen ---------------------------------------------------------------------------
+
+_TOLERANCES = 1e-2, 3e-3
+
+
+def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
+    """Largest difference of bending from the solid with chosen physics, and whether a sentence says it is missed.
+
+    Differences below the reference's own error are none.
+    """
+    strip = reference.body()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scene = replace(strip.scene(), physics="auto")
+        found = bd.natural_modes(scene, strip.speed, LISTED, tolerance=tolerance)
+    own = kinds_of(found)
+    by_kind = {kind: found.frequency[own == kind] for kind in set(own)}
+    differences = [0.0]
+    for mode in reference.modes():
+        of_kind = by_kind.get(mode.kind, ())
+        if len(of_kind) >= mode.number:
+            differences.append(abs(of_kind[mode.number - 1] / mode.frequency - 1) - mode.error)
+    said = not found.physics_choice.is_met or bool(found.physics_choice.not_known)
+    return max(differences), said
+
+
+def summarize_chosen(references: Sequence[Reference]) -> Iterator[Row]:
+    """How often chosen physics is within its tolerance of the solids, or says that it is not."""
+    for tolerance in _TOLERANCES:
+        each = [(reference, *chosen_errors(reference, tolerance)) for reference in references]
+        met = np.array([error <= tolerance for _, error, _ in each])
+        said = np.array([said for *_, said in each])
+        yield f"physics auto, {tolerance:g}: met", f"{met.mean():.1%}", "90 %" if tolerance == 1e-2 else ""
+        yield "... met, or said not to be", f"{(met | said).mean():.1%}", "100 %"
+        for (reference, error, _), fine in zip(each, met | said, strict=True):
+            if not fine:
+                yield f"... case {reference.number}", f"{error:.1e}", ""
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--make", type=int, default=0, help="so many references; those in the file are kept")
@@ -183,7 +299,7 @@ def main() -> None:
     if given.make:
         cases().resume(FILE, range(given.first, given.first + given.make), given.workers)
     asked = known()[given.first :]
-    show("references", lambda: summarize_references(asked), lambda: summarize_plates(asked))
+    show("references", lambda: summarize_references(asked), lambda: summarize_plates(asked), lambda: summarize_stated(asked), lambda: summarize_chosen(asked))
 
 
 if __name__ == "__main__":

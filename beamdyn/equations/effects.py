@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
@@ -62,11 +63,18 @@ class Effect:
     def _how_to_include(self, scene: Scene) -> str:
         if scene.physics.large_deflection and not self.bends:
             return EXCLUSIVE
-        lacking = [name for name in self.needs[:1] if getattr(scene.beam, name) is None]
+        lacking = [name for name in self.needs[:1] if _lacks(scene.beam, name)]
         data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
         others = [e.taken_out for e in EFFECTS if e.taken_out and e.is_in(scene)]
         without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
         return f"Physics({self.switch}={self.value}) includes it{data}{without}"
+
+
+def _lacks(beam: Beam, name: str) -> bool:
+    """Whether a beam, or the section that it was made from, lacks a property."""
+    if name == "poissons_ratio":
+        return beam.section is None or beam.section.poissons_ratio is None
+    return getattr(beam, name) is None
 
 
 _SECOND = ("second_bending_stiffness",)
@@ -91,12 +99,14 @@ ROTARY_INERTIA = Effect(
 STRETCH = Effect(
     "stretch", "the beam is inextensible", "stretch", needs=("axial_stiffness",), taken_out="stretch"
 )
-CAMBER = Effect("camber", "sections camber freely at the root", "camber", needs=("section", "poissons_ratio"))
-TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("section", "poissons_ratio"))
+CAMBER = Effect(
+    "camber of sections", "sections camber freely, at the clamped root too", "camber", needs=("poissons_ratio",)
+)
+TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("poissons_ratio",))
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )
-EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, TORSION, STRETCH, LARGE_DEFLECTION
+EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, STRETCH, LARGE_DEFLECTION, TORSION
 NEVER_MODELLED = (
     Effect("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
     Effect("contact", "nothing touches the beam"),

@@ -89,7 +89,8 @@ class Ritz:
             return MomentSpaces(beam, self.functions, self.fewer)
         # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        return RitzSpaces(self, tuple(beam.breakpoints), degree + 2 + weight_degree(beam) // 2)
+        points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 1, _MOST_ACROSS)
+        return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
@@ -130,11 +131,14 @@ class RitzSpaces:
         Ends of the segments.
     points : int
         Number of Gauss points on each segment.
+    across : int
+        Number of functions across the width beyond the mean, where sections camber or twist.
     """
 
     ritz: Ritz
     breakpoints: tuple[float, ...]
     points: int
+    across: int
 
     def functions(self, conditions: RootConditions) -> RitzSpace:
         """Trial functions that satisfy conditions at the root."""
@@ -145,11 +149,6 @@ class RitzSpaces:
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
-
-    @property
-    def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean: one less than along a segment."""
-        return max(2, min(self.ritz.functions - 1, _MOST_ACROSS))
 
     @property
     def fewer_across(self) -> int:

@@ -19,8 +19,8 @@ from beamdyn.modes.modal.discretization_choice import TOLERANCES, Discretization
 from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.model_error.effect_choice import choose_physics
-from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -126,7 +126,7 @@ class Locus(StatesModelError):
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
         """Changes by the effects left out at the speeds of some indices (k,): (k, m)."""
         at = np.asarray(indices, dtype=int)
-        return left_out_of_modes(self.model, self.speeds[at], self.eigenvalue[at])
+        return left_out_with_modes(self.model, self.speeds[at], self.eigenvalue[at])
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers, lists and strings, with its model error and what is left out."""

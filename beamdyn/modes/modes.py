@@ -115,9 +115,9 @@ class Modes(StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of each frequency by the effects that the model leaves out (m,)."""
         # It is imported here for the time that it takes to import.
-        from beamdyn.modes.model_error.left_out_changes import left_out_of_modes
+        from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 
-        return left_out_of_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
+        return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).

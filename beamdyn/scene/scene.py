@@ -299,7 +299,7 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         return
     section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
     if section is None or section.poissons_ratio is None:
-        lacking = "a rectangular section" if section is None else "poissons_ratio"
+        lacking = "the sides of a rectangular section" if section is None else "poissons_ratio"
         remedy = "Beam.rectangular(..., poissons_ratio=0.3) makes one of steel"
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.twist is not None:

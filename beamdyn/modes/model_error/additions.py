@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.effects import (
+    CAMBER,
     LARGE_DEFLECTION,
     SECOND_PLANE,
     SHEAR,
+    TORSION,
     TWIST,
     Effect,
     add_effects,
@@ -21,6 +25,12 @@ from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
 
 ASSUMED_POISSONS_RATIO = 0.3
+# Where a section lacks Poisson's ratio: the largest of a uniform material, as the change grows from 0 with it;
+# or a usual one, by which a frequency of torsion is known to 13 %.
+_ASSUMED_OF_SECTIONS = {
+    CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
+    TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
+}
 _RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
 
 
@@ -63,6 +73,20 @@ def _assume_shear(beam: Beam) -> Beam | None:
     return replace(beam, shear_stiffness=stiffness, second_shear_stiffness=stiffness)
 
 
+def _assume(scene: Scene, effect: Effect) -> Iterator[tuple[Scene, str]]:
+    """Yield the scene, and one with what is assumed about its beam where data for an effect lack; and say what."""
+    yield scene, ""
+    section = scene.beam.section
+    if effect in _ASSUMED_OF_SECTIONS and section is not None and section.poissons_ratio is None:
+        ratio, said = _ASSUMED_OF_SECTIONS[effect]
+        beam = scene.beam.with_section(replace(section, poissons_ratio=ratio))
+        yield replace(scene, beam=beam), said
+    if scene.physics.shear or effect is SHEAR:
+        beam = _assume_shear(scene.beam)
+        if beam is not None:
+            yield replace(scene, beam=beam), f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
+
+
 def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
     """List the effects that a scene leaves out, but for large deflection, by what can be said of them.
 
@@ -79,18 +103,34 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
     if TWIST in left_out:  # it needs the second plane: the two are one effect
         left_out.remove(SECOND_PLANE)
     additions, not_known = [], {}
-    for effect in (effect for effect in left_out if effect.switch):
-        scenes, refusal = [(scene, "")], None
-        if scene.physics.shear or effect is SHEAR:
-            beam, assumed = _assume_shear(scene.beam), f"Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
-            scenes += [] if beam is None else [(replace(scene, beam=beam), f"with {assumed}")]
-        for given, assumed in scenes:
-            try:
-                additions.append(Addition(effect, add_effects(given, [effect]), assumed))
-                break
-            except InvalidValue as error:
-                refusal = error
-        else:
-            assert refusal is not None
+    for effect in (effect for effect in left_out if effect.switch and effect is not TORSION):
+        try:
+            additions.append(add_effect(scene, effect))
+        except InvalidValue as refusal:
             not_known[effect.name] = f"give {refusal.other}" if refusal.other else str(refusal)
-    return additions, not_known, tuple(e.name for e in left_out if not e.switch)
+    not_modelled = [effect.name for effect in left_out if not effect.switch]
+    if TORSION in left_out and not can_add(scene, TORSION):
+        not_modelled.insert(0, TORSION.name)
+    return additions, not_known, tuple(not_modelled)
+
+
+def add_effect(scene: Scene, effect: Effect) -> Addition:
+    """Add an effect that a scene leaves out, with an assumption about the beam if that does.
+
+    Raises
+    ------
+    InvalidValue
+        If the beam lacks the data, or the effect cannot be combined with others.
+    """
+    *assumptions, last = _assume(scene, effect)
+    for given, assumed in assumptions:
+        with suppress(InvalidValue):
+            return Addition(effect, add_effects(given, [effect]), assumed)
+    return Addition(effect, add_effects(last[0], [effect]), last[1])
+
+
+def can_add(scene: Scene, effect: Effect) -> bool:
+    """Whether an effect that a scene leaves out can be added."""
+    with suppress(InvalidValue):
+        return bool(add_effect(scene, effect))
+    return False

@@ -15,10 +15,10 @@ import numpy as np
 
 from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
-from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
+from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model, bends
-from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.additions import Addition, list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.model_error.reference_modes import (
     EXTRA_MODES,
@@ -49,7 +49,7 @@ _AMONG = 4  # modes with the effect for each one without, among which that is so
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 _ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
 
-Change: TypeAlias = Callable[[Equations, Callable[[np.ndarray], np.ndarray]], np.ndarray]
+Change: TypeAlias = Callable[[Addition], np.ndarray]
 
 
 # Frequencies --------------------------------------------------------------------------------------
@@ -76,15 +76,21 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
     base = BaseEquations.of(without_large_deflection(model), eigenvalue.shape[1])
     references = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
 
-    def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        each = zip(speeds.tolist(), references, strict=True)
-        return np.array([_change_of_frequencies(equations, speed, s, embed(v)) for speed, (s, v) in each])
+    def change(added: Addition) -> np.ndarray:
+        near, of_near = base, references
+        if added.effect is CAMBER:
+            near = BaseEquations.at_clamp(base.scene, added.scene, eigenvalue.shape[1])
+            of_near = [near.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+        equations, each = near.extend(added.scene), zip(speeds.tolist(), of_near, strict=True)
+        return np.array(
+            [_change_of_frequencies(equations, w, s, near.embed(equations, v)) for w, (s, v) in each]
+        )
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
         bent, reason = _large_deflection_change(model, speeds, eigenvalue)
         bent = np.where(vibrate(eigenvalue), bent, np.nan)
-    found = _gather(model.scene, base, change, bent, reason, eigenvalue.shape)
+    found = _gather(model.scene, base.scene, change, bent, reason, eigenvalue.shape)
     judged_on, not_known = np.array([vibrate(s) for s, _ in references]), found.not_known
     for modes, why in ((judged_on, _LOST), (vibrate(eigenvalue) & ~judged_on, _UNSTABLE)):
         lost = {name: why for name, change in found.changes.items() if np.isnan(change[modes]).any()}
@@ -183,18 +189,21 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         Relative changes, of shape ().
     """
     base = BaseEquations.of(without_large_deflection(model), 1)
-    pencil = base.equations.steady()
-    v = buckling_mode(pencil, critical)
-    known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effects
 
-    def change(equations: Equations, embed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        return np.array(shift_critical_speed(equations.steady(), known, embed(v)) / known - 1)
+    def change(added: Addition) -> np.ndarray:
+        is_at_clamp = added.effect is CAMBER
+        near = BaseEquations.at_clamp(base.scene, added.scene, 1) if is_at_clamp else base
+        pencil, equations = near.equations.steady(), near.extend(added.scene)
+        v = buckling_mode(pencil, critical)
+        known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effect
+        shifted = shift_critical_speed(equations.steady(), known, near.embed(equations, v))
+        return np.array(shifted / known - 1)
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
         does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
         bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
-    return _gather(model.scene, base, change, bent, reason)
+    return _gather(model.scene, base.scene, change, bent, reason)
 
 
 def nothing_known(scene: Scene) -> LeftOutEffects:
@@ -223,19 +232,17 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 def _gather(
     scene: Scene,
-    base: BaseEquations,
+    straight: Scene,
     change: Change,
     bent: np.ndarray | None,
     reason: str,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
     """All effects that a scene leaves out on values of a shape: by the equations of each; and by bending."""
-    additions, not_known, not_modelled = list_effects(base.scene)
+    additions, not_known, not_modelled = list_effects(straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
-    for added in additions:
-        equations = base.extend(added.scene)
-        changes[added.name] = change(equations, lambda v, equations=equations: base.embed(equations, v))
+    changes |= {added.name: change(added) for added in additions}
     assumed = {added.name: added.assumed for added in additions if added.assumed}
     if bent is None:
         assumed = {name: ", ".join(filter(None, [assumed.get(name), _STRAIGHT])) for name in changes}

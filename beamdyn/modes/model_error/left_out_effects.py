@@ -22,6 +22,35 @@ _MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and
 
 
 @dataclass(frozen=True)
+class UnlistedMode:
+    """A mode of the body that a model does not have.
+
+    Parameters
+    ----------
+    kind : str
+        Its kind: torsion, or the direction of bending.
+    number : int
+        Its number among those of its kind, from 1.
+    frequency : ndarray
+        Its frequency [Hz] at each speed; nan where it lies above the modes listed.
+    assumed : str
+        What the frequency rests on; empty if on nothing that was not given.
+    """
+
+    kind: str
+    number: int
+    frequency: np.ndarray
+    assumed: str = ""
+
+    def sentence(self) -> str:
+        """Kind and frequency, to three digits."""
+        known = self.frequency[np.isfinite(self.frequency)]
+        span = " to ".join(dict.fromkeys(f"{at:.3g}" for at in (known.min(), known.max())))
+        note = f" ({self.assumed})" if self.assumed else ""
+        return f"{self.kind} {span} Hz{note}"
+
+
+@dataclass(frozen=True)
 class LeftOutEffects:
     """Changes of an answer by the effects that a model leaves out.
 
@@ -40,6 +69,8 @@ class LeftOutEffects:
         What the model assumes in place of each effect, and how to include it.
     shape : tuple of int
         Shape of the values, which each change has.
+    unlisted : tuple of UnlistedMode
+        Modes of the body that the model does not have, below the highest that it lists.
     """
 
     changes: dict[str, np.ndarray]
@@ -48,6 +79,7 @@ class LeftOutEffects:
     not_modelled: tuple[str, ...]
     reasons: dict[str, str]
     shape: tuple[int, ...] = ()
+    unlisted: tuple[UnlistedMode, ...] = ()
 
     @property
     def total(self) -> np.ndarray:
@@ -67,7 +99,9 @@ class LeftOutEffects:
     def at(self, index: Any) -> LeftOutEffects:
         """Select the changes of some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
-        return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape)
+        first = index[0] if isinstance(index, tuple) else index  # of the speeds, where modes are the last axis
+        unlisted = tuple(replace(mode, frequency=mode.frequency[first]) for mode in self.unlisted)
+        return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape, unlisted=unlisted)
 
     # In words -----------------------------------------------------------------------------------------
 
@@ -94,6 +128,8 @@ class LeftOutEffects:
         if reasons:
             said = (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
             parts.append(Words("not known: ", joined(", ", said)))
+        if self.unlisted:
+            parts.append(f"modes not listed: {', '.join(mode.sentence() for mode in self.unlisted)}")
         if self.not_modelled:
             parts.append(f"not modelled: {', '.join(self.not_modelled)}")
         begin = ("left out ", where) if where else ("left out",)
@@ -247,7 +283,8 @@ class StatesModelError(OfChosenPhysics):
         values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
         judged = {"model_error": self.model_error, "left_out": effects.changes}
         named = {"not_known": effects.not_known, "assumed": effects.assumed}
-        return values | plain(judged | named | {"not_modelled": effects.not_modelled})
+        named |= {"not_modelled": effects.not_modelled, "unlisted": effects.unlisted}
+        return values | plain(judged | named)
 
 
 def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:

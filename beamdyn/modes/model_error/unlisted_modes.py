@@ -1,0 +1,97 @@
+"""Modes of the body below the highest that a model lists, of kinds that the model does not have.
+
+A beam that bends in one plane, and does not twist, has no modes of the other direction and of torsion.  Of a
+beam whose data are known these are found with shear and the rotary inertia of sections, as far as those are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.equations.assembly import assemble_over
+from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.effects import (
+    ROTARY_INERTIA,
+    SECOND_PLANE,
+    SHEAR,
+    STRETCH,
+    TORSION,
+    Effect,
+    words_of_directions,
+)
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.modes.model_error.additions import add_effect, can_add
+from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, without_large_deflection
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedMode
+from beamdyn.modes.model_error.reference_modes import clamp_spaces
+from beamdyn.scene.scene import Scene
+
+# Effects that add modes, with the fields in which these move most: by how their names begin.
+_ADDED = {SECOND_PLANE: "second", TORSION: "torsion", STRETCH: "stretch"}
+_REFINING = (SHEAR, ROTARY_INERTIA)
+_MARGIN = 1.03  # of the highest frequency listed: what the frequencies of these modes are known to
+_EXTRA = 2  # modes beyond as many as are listed
+
+
+def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
+    """What a model leaves out at some speeds: changes of its frequencies, and modes that it does not have.
+
+    The parameters are those of `left_out_of_modes`.
+    """
+    found = left_out_of_modes(model, speeds, eigenvalue)
+    return replace(found, unlisted=tuple(_find_unlisted(model, speeds, eigenvalue)))
+
+
+def _find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
+    """Yield the modes that a model does not have, below the highest that it lists at some speed."""
+    highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
+    scene = without_large_deflection(model).scene
+    for effect, fields in _ADDED.items():
+        if effect.is_in(scene) or not can_add(scene, effect):
+            continue
+        added = add_effect(scene, effect)
+        extended, count = _refined(added.scene), eigenvalue.shape[1] + _EXTRA
+        spaces = _spaces(extended, model, count)
+        own = _own_frequencies(assemble_over(extended, spaces), fields, speeds, count)
+        for k, omega in enumerate(np.where(own <= highest[:, None], own, np.nan).T):
+            if np.isfinite(omega).any():
+                yield UnlistedMode(_kind(effect, extended), k + 1, omega / (2 * np.pi), added.assumed)
+
+
+def _refined(scene: Scene) -> Scene:
+    """The scene with shear and rotary inertia, as far as its beam has the data."""
+    for effect in _REFINING:
+        if not effect.is_in(scene) and can_add(scene, effect):
+            scene = add_effect(scene, effect).scene
+    return scene
+
+
+def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
+    """Function spaces for modes of a scene with what a model lacks."""
+    if scene.physics.has_width:
+        return clamp_spaces(scene, modes)
+    return model.discretization.spaces(scene.beam)
+
+
+def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Angular frequencies (S, k) of modes that move most in fields whose names begin so, ascending."""
+    own = np.zeros(equations.size, dtype=bool)
+    for name, place in equations.blocks.items():
+        own[place] = name.startswith(fields)
+    solver = solver_of(equations)
+    found = solver.solve(speeds, min(2 * count, solver.size))
+    momentum = np.einsum("ij,sjm->sim", equations.steady().M, found.vector)
+    energy = (found.vector.conj() * momentum).real
+    is_own = energy[:, own].sum(axis=1) > energy[:, ~own].sum(axis=1)
+    omega = np.where(is_own & (found.eigenvalue.imag > 0), found.eigenvalue.imag, np.inf)
+    return np.sort(omega, axis=1)
+
+
+def _kind(effect: Effect, scene: Scene) -> str:
+    """Name of the modes that an effect adds."""
+    return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.name
