@@ -148,22 +148,12 @@ def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of speeds at which a strip bends far
         found = bd.natural_modes(strip.scene(RICHEST), strip.speed, len(modes) + _MORE, tolerance=1e-3)
-    own = kinds_of(found)
+    across = (found.kind == BENDING) & (found.plane_share[:, 1] > 0.5)
+    own = np.where(across, OTHER, found.kind)
     for mode in modes:
         of_kind = found.frequency[own == mode.kind]
         if len(of_kind) >= mode.number:
             yield mode.kind, float(of_kind[mode.number - 1] / mode.frequency - 1)
-
-
-def kinds_of(modes: bd.Modes) -> np.ndarray:
-    """Kind of each mode of a plate: that of the fields with most of its kinetic energy."""
-    equations = modes.model.equations
-    moved = equations.matrices[2]["unity"] @ modes.vectors
-    share = dict.fromkeys((BENDING, TORSION, OTHER), np.zeros(len(modes.frequency)))
-    for name, place in equations.blocks.items():
-        kind = TORSION if name == "torsion" else OTHER if name.startswith("second") else BENDING
-        share[kind] = share[kind] + np.real(modes.vectors[place].conj() * moved[place]).sum(axis=0)
-    return np.array([*share])[np.array([*share.values()]).argmax(axis=0)]
 
 
 def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:

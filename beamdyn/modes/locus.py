@@ -15,6 +15,8 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.modes.kinds import TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
@@ -33,11 +35,12 @@ _EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested 
 
 
 @dataclass(frozen=True)
-class Locus(StatesModelError):
+class Locus(TellsKinds, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
     `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.
+    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.  `kind` (S, m)
+    is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes exchange their kinds as they veer.
 
     Parameters
     ----------
@@ -90,6 +93,7 @@ class Locus(StatesModelError):
     model: Model = field(repr=False)
     ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
     place: np.ndarray = field(repr=False)  # place of each mode in `ascending` (S, m)
+    kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
@@ -202,6 +206,7 @@ def frequency_locus(
     errors[:, :modes] = solution.error[:, : errors.shape[1]]
     error = np.take_along_axis(errors, followed, axis=1)
     shares = plane_share(solution.model.equations, solution.eigen.vector)
+    kinds = kinds_of_modes(solution.model.equations, solution.eigen.vector)
     growth_rate = np.real(s) + 0.0
     deflection, strain = static_load(solution.model, speeds)
     return Locus(
@@ -223,4 +228,5 @@ def frequency_locus(
         model=solution.model,
         ascending=solution.eigen.eigenvalue,
         place=followed,
+        kinds=None if kinds is None else np.take_along_axis(kinds, followed, axis=1),
     )

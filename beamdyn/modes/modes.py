@@ -16,8 +16,10 @@ from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
 from beamdyn.equations.effects import first_drawn, name_directions
+from beamdyn.modes.kinds import TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import (
     PLATE_TARGET,
     TOLERANCES,
@@ -36,11 +38,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Modes(StatesModelError):
+class Modes(TellsKinds, StatesModelError):
     """Natural modes at one speed, the lowest first.
 
     `error` is that of the numbers; `model_error` (m,) and `left_out`, computed when asked for, are what the
-    physics left out would change.
+    physics left out would change.  `kind` (m,) says in a word what has most of the mode's kinetic energy:
+    "bending", "torsion" or "camber".
 
     Parameters
     ----------
@@ -105,6 +108,7 @@ class Modes(StatesModelError):
     scene: Scene = field(repr=False)
     vectors: np.ndarray = field(repr=False)
     model: Model = field(repr=False)
+    kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
@@ -150,8 +154,10 @@ class Modes(StatesModelError):
 
     def labels(self) -> list[str]:
         """One line of text for each mode."""
-        values = enumerate(zip(self.frequency, self.growth_rate, strict=True), 1)
-        return [f"mode {i}: {g:.4g} 1/s" if np.isnan(f) else f"mode {i}: {f:.5g} Hz" for i, (f, g) in values]
+        kinds = [""] * len(self.frequency) if self.kinds is None else [f", {kind}" for kind in self.kinds]
+        values = enumerate(zip(self.frequency, self.growth_rate, kinds, strict=True), 1)
+        sizes = ((i, f"{g:.4g} 1/s" if np.isnan(f) else f"{f:.5g} Hz", kind) for i, (f, g, kind) in values)
+        return [f"mode {i}: {size}{kind}" for i, size, kind in sizes]
 
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
@@ -226,7 +232,7 @@ def natural_modes(
     vectors = vectors / (larger / np.abs(larger))
     along, across = np.real([equations.tips[0] @ vectors, equations.tips[-1] @ vectors])
     deflection, strain = static_load(solution.model, speeds)
-    growth_rate = np.real(s) + 0.0
+    growth_rate, kinds = np.real(s) + 0.0, kinds_of_modes(equations, vectors[None])
     warnings = warn_of_modes(
         solution.model, speeds, deflection, strain, solution.error, growth_rate[None], tolerance
     )
@@ -251,6 +257,7 @@ def natural_modes(
         scene=scene,
         vectors=vectors,
         model=solution.model,
+        kinds=None if kinds is None else kinds[0],
     )
 
 

@@ -71,7 +71,15 @@ def _transient() -> bd.Transient:
     return bd.simulate(SHORT_SPIN_UP, 0.3, 2)
 
 
-BASES = {"Answer", "PlanarAnswer", "OfChosenPhysics", "StatesModelError", "SpanLoads", "SlidesOrLocks"}
+BASES = {
+    "Answer",
+    "PlanarAnswer",
+    "OfChosenPhysics",
+    "StatesModelError",
+    "TellsKinds",
+    "SpanLoads",
+    "SlidesOrLocks",
+}
 MAKERS: dict[str, Callable[[], Result]] = {
     "Backbone": lambda: bd.backbone(BENT, 5.0),
     "BrakeResult": lambda: drum.brake_torque(drum.simplex(SHOE), friction=0.4, force=1e3),

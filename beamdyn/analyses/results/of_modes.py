@@ -17,6 +17,7 @@ from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported, supported_or_range
 from beamdyn.common.results.statements import OUTSIDE, of_kind, said_in
 from beamdyn.equations.effects import first_drawn, words_of_directions
+from beamdyn.modes.kinds import BENDING
 from beamdyn.modes.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:
@@ -90,9 +91,11 @@ def csv_directions(scene: Scene) -> tuple[str, ...]:
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 
-def _csv_shares(result: Modes | Locus) -> dict[str, np.ndarray]:
+def _csv_kinds(result: Modes | Locus) -> dict[str, np.ndarray]:
+    """Columns of the share of each direction, and of what deforms, where there are several."""
     each = enumerate(csv_directions(result.scene))
-    return {f"share_{direction}": result.plane_share[..., k] for k, direction in each}
+    shares = {f"share_{direction}": result.plane_share[..., k] for k, direction in each}
+    return shares if result.kinds is None else shares | {"kind": result.kinds}
 
 
 # Modes ------------------------------------------------------------------------------------------------
@@ -117,6 +120,8 @@ def modes_table(result: Modes) -> Group:
     if words:
         drawn = first_drawn(result.scene)
         columns[f"share of {words[drawn]}"] = [f"{share[drawn]:.3f}" for share in result.plane_share]
+    if (result.kind != BENDING).any():
+        columns["kind"] = [*map(str, result.kind)]
     columns["status"] = [*map(str, result.status)]
     at = result.display_units.speed_unit().say(result.speed, 10)
     shown = table_of(f"Natural modes at {at}, by {result.provenance.method}", columns, ("status",))
@@ -130,7 +135,7 @@ def _say_model_error(size: float, lacks_data: bool) -> str:
 
 
 def modes_csv(result: Modes) -> Columns:
-    """Frequency, errors, growth rate and status of each mode; of two planes the share of each."""
+    """Frequency, errors, growth rate and status of each mode, and its kind as `_csv_kinds` has it."""
     count = len(result.frequency)
     return Columns(
         Column("mode", np.arange(1, count + 1)),
@@ -140,15 +145,16 @@ def modes_csv(result: Modes) -> Columns:
         Column("model_error", result.model_error),
         Column("growth_rate", result.growth_rate, "1/s"),
         Column("status", result.status),
-        *(Column(name, share) for name, share in _csv_shares(result).items()),
+        *(Column(name, values) for name, values in _csv_kinds(result).items()),
     )
 
 
 def locus_table(result: Locus) -> Group:
     """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
 
-    Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends. The
-    column of model errors is left out where another table would be needed for it alone.
+    Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends; that
+    of a mode which does not mostly bend tells what deforms. The column of model errors is left out where
+    another table would be needed for it alone.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, rows_worth_showing(result.status)
     model_errors, lacks = model_error_at(result, shown), result.left_out_effects.lack_data
@@ -171,7 +177,7 @@ def locus_table(result: Locus) -> Group:
     packed = _blocks(modes | quality, width)
     wider = _blocks(modes | {"model error": of_model} | quality, width)
     blocks = [speeds | block for block in (packed if len(wider) > len(packed) else wider)]
-    words = words_of_directions(result.scene)
+    words = *words_of_directions(result.scene), *_other_kinds(result)
     letters = "; ".join(f"{word[0]}: mostly {word}" for word in words)
     title = (
         f"Natural frequencies{f' ({letters})' if words else ''}, by {result.provenance.method}"
@@ -197,8 +203,15 @@ def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error:
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
     digits = _DIGITS if result.frequency.shape[1] <= _FEW else _DIGITS_OF_MANY
     frequency = supported_or_range(result.frequency[s, mode], size[s, mode] / (2 * np.pi), digits)
-    direction = words_of_directions(result.scene)[int(result.plane_share[s, mode].argmax()) :][:1]
-    return Text(" ").join((set_apart(frequency, model_error), *(Text(word[0]) for word in direction)))
+    words = words_of_directions(result.scene)[int(result.plane_share[s, mode].argmax()) :][:1]
+    kind = str(result.kind[s, mode])
+    told = words if kind == BENDING else (kind,)
+    return Text(" ").join((set_apart(frequency, model_error), *(Text(word[0]) for word in told)))
+
+
+def _other_kinds(result: Locus) -> list[str]:
+    """Kinds of its modes beside bending."""
+    return [kind for kind in map(str, np.unique(result.kind)) if kind != BENDING]
 
 
 def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str, Sequence[Cell]]]:
@@ -220,7 +233,7 @@ def _column_width(column: tuple[str, Sequence[Cell]]) -> int:
 
 
 def locus_csv(result: Locus) -> Columns:
-    """Frequency, errors, growth rate, status, confidence, shares of planes of each mode, a row a speed."""
+    """Frequency, errors, growth rate, status, confidence and kind of each mode, a row a speed."""
     of_modes = {
         ("frequency", "Hz"): result.frequency,
         ("relative_error", ""): result.error,
@@ -228,7 +241,7 @@ def locus_csv(result: Locus) -> Columns:
         ("growth_rate", "1/s"): result.growth_rate,
         ("status", ""): result.status,
         ("confidence", ""): result.confidence,
-        **{(name, ""): share for name, share in _csv_shares(result).items()},
+        **{(name, ""): values for name, values in _csv_kinds(result).items()},
     }
     each = (
         Column(name, values, unit, mode)

@@ -117,6 +117,11 @@ class Model(FieldsOnly):
         return Model(self.scene, self.discretization.coarser())
 
 
+def kinetic_energy(equations: Equations, vectors: np.ndarray) -> np.ndarray:
+    """Parts of the coordinates in v^T M v of modes (S, n, k), twice their kinetic energy: (S, n, k)."""
+    return np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
+
+
 def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     """Share of the two directions in the kinetic energy of deflection of modes (S, n, k): (S, k, 2).
 
@@ -124,7 +129,7 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     """
     if equations.planes == 1:
         return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
-    energy, planes = np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors)), [[], []]
+    energy, planes = kinetic_energy(equations, vectors), [[], []]
     for name, deflection in equations.deflections.items():
         planes[deflection.direction].append(name)
     first, second = (energy[:, equations.places(names)].sum(axis=1) for names in planes)

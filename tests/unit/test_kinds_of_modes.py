@@ -1,0 +1,93 @@
+"""What deforms in each mode of a strip: in results, tables and files."""
+
+from dataclasses import replace
+from io import StringIO
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+import beamdyn as bd
+from beamdyn.analyses.results.of_modes import locus_csv, locus_table, modes_csv, modes_table
+from beamdyn.modes.kinds import kinds_of_modes
+from benchmarks.cases.scenes import HARVESTER
+
+BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+STRIP = bd.Scene(BEAM, bd.Mount(0.215), physics=bd.Physics(plate=True))
+WIDE = replace(STRIP, beam=bd.Beam.rectangular(0.05, 0.05, 0.0002, 200e9, 7850.0, poissons_ratio=0.3))
+BASIS = bd.Ritz(8)
+
+
+def printed(table):
+    console = Console(width=120, record=True, file=StringIO(), markup=False)
+    console.print(table)
+    return console.export_text()
+
+
+def columns(csv):
+    head, *rows = csv
+    return dict(zip(head, zip(*rows, strict=True), strict=True))
+
+
+def test_kinds_of_the_published_strip():
+    modes = bd.natural_modes(STRIP, modes=4)
+    assert modes.kind.tolist() == ["bending", "bending", "torsion", "bending"]
+    assert [label.rpartition(", ")[2] for label in modes.labels()] == modes.kind.tolist()
+
+
+def test_kinds_of_a_square_plate():
+    kinds = bd.natural_modes(WIDE, modes=5, discretization=BASIS).kind
+    assert kinds.tolist() == ["bending", "torsion", "bending", "camber", "torsion"]
+
+
+def test_a_mode_in_the_other_direction_bends():
+    scene = replace(STRIP, physics=replace(STRIP.physics, planes=2))
+    modes = bd.natural_modes(scene, modes=7, discretization=BASIS)
+    assert (modes.kind[modes.plane_share[:, 1] > 0.5] == "bending").all() and "torsion" in modes.kind
+
+
+@pytest.mark.parametrize(
+    ("energy", "kind"),
+    [((1.0, 1.0, 1.0), "bending"), ((1 - 1e-10, 1.0, 1.0), "bending"), ((1 - 1e-8, 1.0, 1.0), "torsion")],
+)
+def test_equal_shares_are_decided_by_the_order(energy, kind):
+    places = {"bending": [0], "torsion": [1], "camber": [2]}
+    equations = SimpleNamespace(
+        blocks=places,
+        deflections={"bending": None},
+        matrices=({}, {}, {"unity": np.eye(3)}),
+        places=lambda names: np.concatenate([places[name] for name in names]),
+    )
+    assert kinds_of_modes(equations, np.sqrt(energy)[None, :, None]).item() == kind
+
+
+def test_modes_over_speed_have_their_kinds():
+    locus = bd.frequency_locus(STRIP, [0.0, 100.0], 3, BASIS)
+    assert locus.kind.tolist() == [["bending", "bending", "torsion"]] * 2
+    assert columns(locus_csv(locus))["kind_3"] == ("torsion", "torsion")
+    text = printed(locus_table(locus))
+    assert "(t: mostly torsion)" in text and text.count(" t ") == 2
+
+
+def test_tables_and_files_have_kinds_where_sections_deform():
+    modes = bd.natural_modes(STRIP, modes=3, discretization=BASIS)
+    assert columns(modes_csv(modes))["kind"] == ("bending", "bending", "torsion")
+    assert modes.to_dict()["kind"] == ["bending", "bending", "torsion"]
+    assert "torsion   stable" in printed(modes_table(modes))
+    bends = bd.natural_modes(STRIP, modes=2, discretization=BASIS)
+    assert " kind " not in printed(modes_table(bends)) and "kind" in columns(modes_csv(bends))
+
+
+def test_beams_that_only_bend_have_no_column_of_kinds():
+    modes, locus = bd.natural_modes(HARVESTER), bd.frequency_locus(HARVESTER, [0.0, 1.0], 2)
+    assert set(modes.kind) == set(locus.kind.ravel()) == {"bending"} and locus.kind.shape == (2, 2)
+    for result, csv in ((modes, modes_csv), (locus, locus_csv)):
+        heads = [*result.to_dict(), *columns(csv(result))]
+        assert not [head for head in heads if "kind" in head]
+
+
+def test_kinds_are_kept_in_files(tmp_path):
+    for result in (bd.natural_modes(STRIP, modes=3), bd.frequency_locus(STRIP, [0.0], 3)):
+        result.save(tmp_path / "result.json", force=True)
+        assert bd.load(tmp_path / "result.json").kind.tolist() == result.kind.tolist()
