@@ -49,6 +49,7 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         gravity=scene.gravity,
         shapes={name: Shape(name, np.eye(field.space.size)) for name, field in fields.items()},
         deflections={name: f.deflection for name, f in fields.items() if f.deflection is not None},
+        sections=tuple((name, f.sections) for name, f in fields.items() if f.sections is not None),
         coarse=np.concatenate(within) if len(within) == len(coarse) else None,
     )
     if turning := [blocks[name].start for name, field in fields.items() if field.turns_at_root]:

@@ -10,13 +10,14 @@ Derivation and conventions: docs/conventions.md.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.equations.effects import check_direction
-from beamdyn.equations.fields.field import Deflection, Load, Term
+from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
@@ -113,6 +114,8 @@ class Equations:
     coarse : ndarray or None
         Indices of the coordinates whose functions span those of the coarser discretization; None where no
         few do, and after a reduction.
+    sections : tuple of (str, SectionFunctions)
+        Each field that deforms the sections of a strip, and its functions.
     """
 
     blocks: dict[str, slice]
@@ -124,6 +127,7 @@ class Equations:
     deflections: dict[str, Deflection]
     shift: float = 0.0
     coarse: np.ndarray | None = None
+    sections: tuple[tuple[str, SectionFunctions], ...] = field(default=(), metadata=ADDED_LATER)
 
     @cached_property
     def size(self) -> int:
@@ -150,6 +154,19 @@ class Equations:
         check_direction(direction)
         xi = np.asarray(xi, dtype=float)
         return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
+
+    def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Deflection in the direction of bending over a strip per coordinate: shape (n, k, l).
+
+        It is given at xi = x/L (k,) along and eta = 2 y/b (l,) across, where y is in the direction across.
+        """
+        values = np.repeat(self.deflection(xi)[:, :, None], len(eta), axis=2)
+        for name, functions in self.sections:
+            of_field = self.shapes[name]
+            values[self.blocks[of_field.block]] += np.tensordot(
+                of_field.matrix.T, functions.evaluate(xi, eta), 1
+            )
+        return values
 
     @cached_property
     def tip(self) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import count, real, within
+from beamdyn.common.inputs.checks import count, real, real_array, within
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
@@ -128,11 +128,28 @@ class Modes(TellsKinds, StatesModelError):
 
         The direction is 0 for that of the bending angle at the root, 1 for that across.
         """
+        equations = self.model.equations_at(self.speed)
+        return self.vectors.T @ equations.deflection(self._over_length(x), direction=direction)
+
+    def surface(self, x: np.ndarray | Sequence[float], eta: np.ndarray | Sequence[float]) -> np.ndarray:
+        """Deflection of the mass-normalised modes over the area of a strip: shape (m, len(x), len(eta)).
+
+        It is that in the direction of bending, at positions x [m] along the beam and eta = 2 y/b across its
+        width b, from -1 to 1, where y points in the direction across.  Its mean over eta is `shape`; where
+        neither torsion nor camber is modelled, it is that everywhere.
+        """
+        across = real_array("eta", eta)
+        if across.size and np.abs(across).max() > 1:
+            raise ValueError("eta: positions across run from -1 to 1, at the edges of the strip")
+        equations = self.model.equations_at(self.speed)
+        return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), across), 1)
+
+    def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
+        """Positions along the beam over its length; a ValueError if one [m] is not on it."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
-        equations = self.model.equations_at(self.speed)
-        return self.vectors.T @ equations.deflection(np.minimum(xi, 1.0), direction=direction)
+        return np.minimum(xi, 1.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes."""

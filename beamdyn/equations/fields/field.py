@@ -86,6 +86,14 @@ class Deflection:
     direction: int = 0
 
 
+class SectionFunctions(Protocol):
+    """Functions of a field that deform the sections of a strip: deflections that vary over its width."""
+
+    def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Evaluate the functions at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
+        ...
+
+
 class Coordinates(Protocol):
     """What the equations of motion ask of the functions of a field; a `Space` has more."""
 
@@ -116,6 +124,8 @@ class FieldEquations:
         Deflection of the beam by the coordinates; None for a field that does not deflect it.
     turns_at_root : bool
         Whether the first coordinate turns the beam about its root.
+    sections : SectionFunctions or None
+        Deflection over the width of a strip by the coordinates; None for a field that does not deform it.
     """
 
     space: Coordinates
@@ -123,6 +133,7 @@ class FieldEquations:
     loads: tuple[Load, ...]
     deflection: Deflection | None = None
     turns_at_root: bool = False
+    sections: SectionFunctions | None = None
 
 
 class Field(ABC):

@@ -246,18 +246,27 @@ class StackedSpace:
     ----------
     along : Space
         Functions along the beam.
-    across, fewer : int
-        Number of functions across, and of those of the coarser discretization.
+    numbers : tuple of int
+        Numbers k of the functions across.
+    fewer : int
+        How many of them the coarser discretization has.
     """
 
     along: Space
-    across: int
+    numbers: tuple[int, ...]
     fewer: int
 
     @property
     def size(self) -> int:
         """Number of coordinates; those of the first function across come first."""
-        return self.along.size * self.across
+        return self.along.size * len(self.numbers)
+
+    def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Evaluate the deflections at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
+        numbers = np.array(self.numbers)
+        across = legendre.legvander(eta, numbers.max())[:, numbers] * np.sqrt(2 * numbers + 1)
+        values = self.along.evaluate(xi)[:, :, None] * across.T[:, None, None, :]
+        return values.reshape(self.size, len(xi), len(eta))
 
     @property
     def coarse(self) -> np.ndarray | None:
@@ -289,8 +298,8 @@ class SectionField(Field):
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble the energy of the plate, with what couples it to bending."""
         strip = Strip(scene, spaces)
-        numbers = self.numbers(spaces.across)
-        space = StackedSpace(spaces.functions(CLAMPED), len(numbers), len(self.numbers(spaces.fewer_across)))
+        numbers = tuple(self.numbers(spaces.across))
+        space = StackedSpace(spaces.functions(CLAMPED), numbers, len(self.numbers(spaces.fewer_across)))
         if not numbers:
             return FieldEquations(space, (), ())
         own = strip.functions(self, numbers, CLAMPED)
@@ -299,7 +308,8 @@ class SectionField(Field):
         mean = strip.functions(bending, (0,), bending.conditions(scene.mount))
         coupling = [t for t in self._terms(strip, mean, own) if t.matrix.any()]
         mirrored = [replace(t, rows=t.columns, columns=t.rows, matrix=t.matrix.T) for t in coupling]
-        return FieldEquations(space, (*terms, *coupling, *mirrored), (*self._loads(strip, own, space.along),))
+        loads = (*self._loads(strip, own, space.along),)
+        return FieldEquations(space, (*terms, *coupling, *mirrored), loads, sections=space)
 
     def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
         scene, names = strip.scene, (rows.field, columns.field)
