@@ -14,7 +14,7 @@ from beamdyn.modes.kinds import kinds_of_modes
 from benchmarks.cases.scenes import HARVESTER
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
-STRIP = bd.Scene(BEAM, bd.Mount(0.215), physics=bd.Physics(plate=True))
+STRIP = bd.Scene(BEAM, bd.Mount(0.215), physics=bd.Physics(camber=True, torsion=True))
 WIDE = replace(STRIP, beam=bd.Beam.rectangular(0.05, 0.05, 0.0002, 200e9, 7850.0, poissons_ratio=0.3))
 BASIS = bd.Ritz(8)
 

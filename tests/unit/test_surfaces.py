@@ -10,7 +10,7 @@ from numpy.polynomial.legendre import leggauss
 import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
 
-PLATE = bd.Physics(plate=True)
+PLATE = bd.Physics(camber=True, torsion=True)
 BASIS = bd.Ritz(8)
 MOUNT = bd.Mount(0.215)
 TAPER = Polynomial([0.012, -0.006])  # width [m] over x/L
