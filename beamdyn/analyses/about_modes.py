@@ -99,11 +99,11 @@ def modes(
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     """
-    from beamdyn.analyses.results.cautions import warnings_of
+    from beamdyn.analyses.results.cautions import labels_of, warnings_of
 
     result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
     if shapes is not None:
-        _write_shapes(result, shapes, outputs.force)
+        result.export(shapes, force=outputs.force, labels=labels_of(result))
     return Answer(result, _unstable(result), warnings_of(result, tolerance, without=GROWING))
 
 
@@ -177,16 +177,6 @@ def _draw_locus(result: Locus, ax: Axes) -> None:
 
     critical = bd.critical_point(result.scene)
     mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
-
-
-def _write_shapes(result: Modes, path: Path, force: bool) -> None:
-    import numpy as np
-
-    from beamdyn.analyses.results.cautions import labels_of
-    from beamdyn.common.plots.export import write_shapes
-
-    x = np.linspace(0, result.scene.beam.length, 101)
-    write_shapes(path, x, np.real(result.shape(x)), labels_of(result), force=force)
 
 
 def _unstable(result: Modes) -> str:

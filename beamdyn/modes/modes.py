@@ -19,7 +19,8 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
 from beamdyn.equations.effects import first_drawn, name_directions
-from beamdyn.modes.kinds import TellsKinds, kinds_of_modes
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import (
     PLATE_TARGET,
     TOLERANCES,
@@ -144,6 +145,34 @@ class Modes(TellsKinds, StatesModelError):
         equations = self.model.equations_at(self.speed)
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), across), 1)
 
+    def mesh(self, along: int = 101, across: int = 21) -> tuple[np.ndarray, ...] | None:
+        """Shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
+
+        Parameters
+        ----------
+        along, across : int
+            Number of positions.
+
+        Returns
+        -------
+        x : ndarray, shape (n,)
+            Positions along the strip [m].
+        y : ndarray, shape (n, k)
+            Positions across it [m], ascending.
+        shapes : ndarray, shape (m, n, k)
+            Deflections in the direction of bending, real.
+        across : ndarray, shape (m, n)
+            Those in the direction across, which is -y.
+
+        None where the sections keep their shape, or their width is not known.
+        """
+        section = self.scene.beam.section
+        if self.kinds is None or section is None:
+            return None
+        x, eta = np.linspace(0, self.scene.beam.length, along), np.linspace(1, -1, across)
+        y = np.outer(section.width(np.linspace(0, 1, along)), -eta / 2)
+        return x, y, np.real(self.surface(x, eta)), np.real(self.shape(x, 1))
+
     def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
         """Positions along the beam over its length; a ValueError if one [m] is not on it."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
@@ -152,9 +181,11 @@ class Modes(TellsKinds, StatesModelError):
         return np.minimum(xi, 1.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the mode shapes."""
-        from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane
+        """Draw the mode shapes, those of a strip that twists or cambers as seen from above."""
+        from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
 
+        if (mesh := self.mesh()) is not None:
+            return plot_surfaces(*mesh, self.labels(), ax, self.display_units)
         x = np.linspace(0, self.scene.beam.length, 201)
         if self.scene.physics.planes == 2:
             order, words = drawn_order(self.scene)
@@ -162,12 +193,27 @@ class Modes(TellsKinds, StatesModelError):
             return plot_shapes_by_plane(x, shapes, self.labels(), words, ax, self.display_units)
         return plot_shapes(x, np.real(self.shape(x)), self.labels(), ax, self.display_units)
 
-    def export(self, path: str | Path, width: float | None = None, force: bool = False) -> None:
-        """Write the mode shapes as a mesh file for ParaView; see `common.plots.export.write_shapes`."""
+    def export(
+        self,
+        path: str | Path,
+        width: float | None = None,
+        force: bool = False,
+        labels: Sequence[str] | None = None,
+    ) -> None:
+        """Write the mode shapes as a mesh file for ParaView; see `common.plots.export.write_shapes`.
+
+        A strip that twists or cambers is drawn in its own width.  The labels are `labels()` if not given.
+        """
         from beamdyn.common.plots.export import write_shapes
 
-        x = np.linspace(0, self.scene.beam.length, 101)
-        write_shapes(path, x, np.real(self.shape(x)), self.labels(), width, force)
+        mesh, drawn = self.mesh(), width
+        if mesh is None:
+            x = np.linspace(0, self.scene.beam.length, 101)
+            shapes, across = (np.real(self.shape(x, direction)) for direction in (0, 1))
+        else:
+            x, y, shapes, across = mesh
+            drawn = np.ptp(y, axis=1) if width is None else width
+        write_shapes(path, x, shapes, self.labels() if labels is None else labels, drawn, force, across)
 
     def labels(self) -> list[str]:
         """One line of text for each mode."""
@@ -242,14 +288,11 @@ def natural_modes(
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
-    vectors = solution.eigen.vector[0]
-    tips = equations.tips @ vectors  # the larger becomes real and positive
-    larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
-    larger[larger == 0] = 1.0
-    vectors = vectors / (larger / np.abs(larger))
+    kinds = kinds_of_modes(equations, solution.eigen.vector)
+    vectors = _with_signs(equations, solution.eigen.vector[0], None if kinds is None else kinds[0])
     along, across = np.real([equations.tips[0] @ vectors, equations.tips[-1] @ vectors])
     deflection, strain = static_load(solution.model, speeds)
-    growth_rate, kinds = np.real(s) + 0.0, kinds_of_modes(equations, vectors[None])
+    growth_rate = np.real(s) + 0.0
     warnings = warn_of_modes(
         solution.model, speeds, deflection, strain, solution.error, growth_rate[None], tolerance
     )
@@ -276,6 +319,20 @@ def natural_modes(
         model=solution.model,
         kinds=None if kinds is None else kinds[0],
     )
+
+
+def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
+    """Modes (n, m) turned so that the larger tip deflection is real and positive.
+
+    Those of sections that twist or camber are so at the corner of the tip in the direction across.
+    """
+    tips = equations.tips @ vectors
+    larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
+    if kinds is not None:
+        corner = equations.surface(np.ones(1), np.ones(1))[:, 0, 0] @ vectors
+        larger = np.where(kinds == BENDING, larger, corner)
+    larger[larger == 0] = 1.0
+    return vectors / (larger / np.abs(larger))
 
 
 def status_of(s: np.ndarray) -> np.ndarray:

@@ -39,6 +39,22 @@ def test_modes_bend_along_z_by_a_tenth_of_the_length(path):
         np.testing.assert_allclose(field[:, 2].reshape(2, -1), [expected, expected], rtol=1e-14, atol=1e-18)
 
 
+def test_surfaces_over_the_width_are_read_back(path):
+    """At the place of every point of the mesh stands the deflection there, and that across along -y."""
+    eta = np.linspace(-1, 1, 5)
+    surfaces = SHAPES[:, :, None] * (1 + 0.5 * eta) + 20 * X[:, None] * eta**2
+    across = np.stack([10 * X, 500 * X])
+    write_shapes(path, X, surfaces, LABELS, width=0.01, across=across)
+    mesh = meshio.read(path)
+    assert area(mesh) == pytest.approx(0.05 * 0.01, rel=1e-12) and len(mesh.cells_dict["quad"]) == 40
+    assert np.unique(mesh.cells_dict["quad"]).tolist() == [*range(len(mesh.points))]
+    at = np.searchsorted(X, mesh.points[:, 0] - 1e-6), np.searchsorted(eta, mesh.points[:, 1] / 0.005 - 1e-6)
+    for field, surface, aside in zip(mesh.point_data.values(), surfaces, across, strict=True):
+        scale = 0.1 * 0.05 / max(np.abs(surface).max(), np.abs(aside).max())
+        expected = np.stack([0 * aside[at[0]], -scale * aside[at[0]], scale * surface[at]], axis=1)
+        np.testing.assert_allclose(field, expected, rtol=1e-14, atol=1e-18)
+
+
 def test_no_width_is_a_line(path):
     write_shapes(path, X, SHAPES, LABELS, width=0)
     mesh = meshio.read(path)
@@ -103,6 +119,8 @@ BAD = {
     "labels alike": ({"labels": LABELS[:1] * 2}, "two are alike"),
     "negative width": ({"width": -0.01}, "0 or more"),
     "widths of another grid": ({"width": X[1:]}, "one for each of 11"),
+    "surface of a line": ({"shapes": np.ones((2, 11, 3)), "width": 0}, "a line has no deflections across"),
+    "across of another grid": ({"across": SHAPES[:, 1:]}, "across has shape"),
 }
 
 
@@ -141,6 +159,17 @@ def test_series_is_read_back_in_true_size(tmp_path):
         assert time == T[k]
         np.testing.assert_array_equal(fields["displacement"][:, 2].reshape(2, -1), [MOTION[k], MOTION[k]])
     assert reader.num_steps == len(T)
+
+
+def test_series_of_a_surface_has_each_row_of_points(tmp_path):
+    path, eta = tmp_path / "motion.xdmf", np.linspace(-1, 1, 3)
+    write_series(path, X, T, MOTION[:, :, None] * (2 + eta), width=0.01)
+    reader = meshio.xdmf.TimeSeriesReader(path)
+    points, _ = reader.read_points_cells()
+    _, fields, _ = reader.read_data(1)
+    rows = points[:, 1].reshape(3, -1)[:, 0] / 0.005
+    np.testing.assert_array_equal(rows, eta)
+    np.testing.assert_array_equal(fields["displacement"][:, 2].reshape(3, -1), MOTION[1] * (2 + eta[:, None]))
 
 
 def test_series_is_one_file(tmp_path):

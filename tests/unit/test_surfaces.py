@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+import meshio
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
 
 import beamdyn as bd
+from beamdyn.common.results.pictures import figure_of
 from beamdyn.equations.assembly import assemble_equations
 
 PLATE = bd.Physics(camber=True, torsion=True)
@@ -88,3 +90,70 @@ def test_rotation_turns_an_oblique_strip_into_its_plane():
 def test_places_beside_the_strip_are_refused(modes, x, eta, name):
     with pytest.raises(ValueError, match=f"^{name}"):
         modes.surface(x, eta)
+
+
+# Pictures and files -------------------------------------------------------------------------------------
+
+
+def test_torsion_and_camber_are_positive_at_the_corner_across():
+    square = replace(strip(), beam=bd.Beam.rectangular(0.05, 0.05, 0.0002, 200e9, 7850.0, poissons_ratio=0.3))
+    modes = bd.natural_modes(square, modes=6, discretization=BASIS)
+    corner = modes.surface([0.05], [1.0])[:, 0, 0]
+    assert (corner[modes.kind != "bending"] > 0).all() and (modes.tip[modes.kind == "bending"] > 0).all()
+
+
+def test_the_mesh_has_the_outline_of_the_strip():
+    modes = bd.natural_modes(strip(width=TAPER), modes=3, discretization=BASIS)
+    x, y, shapes, across = modes.mesh(6, 3)
+    np.testing.assert_allclose(y, np.outer(TAPER(x / 0.05), [-0.5, 0.0, 0.5]), rtol=1e-15, atol=1e-18)
+    np.testing.assert_array_equal(
+        shapes, modes.surface(x, [1.0, 0.0, -1.0])
+    )  # y is against the direction across
+    assert not across.any()
+
+
+def test_beams_have_no_mesh():
+    assert bd.natural_modes(replace(strip(), physics=bd.Physics())).mesh() is None
+
+
+@pytest.mark.parametrize(("count", "rows"), [(1, 1), (3, 3), (8, 4)])
+def test_each_mode_is_drawn_to_scale_in_a_panel_of_its_own(count, rows):
+    modes = bd.natural_modes(strip(), modes=count, discretization=BASIS)
+    figure = figure_of(modes.plot)
+    panels = [ax for ax in figure.axes if ax.get_title()]
+    assert [ax.get_title() for ax in panels] == modes.labels()
+    assert {ax.get_subplotspec().get_gridspec().nrows for ax in panels} == {rows}
+    assert {ax.get_aspect() for ax in panels} == {1.0}
+
+
+def test_a_mode_in_the_direction_across_displaces_the_outline():
+    scene = replace(strip(), physics=replace(PLATE, planes=2))
+    modes = bd.natural_modes(scene, modes=7, discretization=BASIS)
+    panels = [ax for ax in figure_of(modes.plot).axes if ax.get_title()]
+    outlines = [np.asarray(ax.lines[0].get_ydata()) for ax in panels]
+    sideways = modes.plane_share[:, 1] > 0.5
+    moved = [abs(y.max() + y.min()) > 1e-6 for y in outlines]
+    assert moved == sideways.tolist() and any(moved)
+
+
+def test_files_for_paraview_have_the_surface(tmp_path, modes):
+    modes.export(tmp_path / "strip.vtu")
+    mesh = meshio.read(tmp_path / "strip.vtu")
+    assert list(mesh.point_data) == modes.labels()
+    assert np.ptp(mesh.points, axis=0) == pytest.approx([0.05, 0.01, 0.0])
+    twist, points = mesh.point_data[modes.labels()[2]], mesh.points
+    x, eta = np.unique(points[:, 0].round(9)), np.unique((-points[:, 1] / 0.005).round(9))
+    surface = modes.surface(x, eta)[2]
+    expected = 0.005 * surface / np.abs(surface).max()
+    at = np.searchsorted(x, points[:, 0].round(9)), np.searchsorted(eta, (-points[:, 1] / 0.005).round(9))
+    np.testing.assert_allclose(twist[:, 2], expected[at], rtol=0, atol=1e-9)  # rounded places
+
+
+def test_files_for_paraview_have_both_directions(tmp_path):
+    """Each mode is a tenth of the length along z or along y, as it bends."""
+    modes = bd.natural_modes(replace(strip(), physics=bd.Physics(planes=2)), modes=6)
+    modes.export(tmp_path / "beam.vtu")
+    fields, sideways = meshio.read(tmp_path / "beam.vtu").point_data.values(), modes.plane_share[:, 1] > 0.5
+    for field, across in zip(fields, sideways, strict=True):
+        assert np.abs(field).max(axis=0) == pytest.approx([0, 0.005 * across, 0.005 * (not across)])
+    assert 0 < sideways.sum() < 6

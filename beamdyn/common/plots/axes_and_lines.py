@@ -42,8 +42,8 @@ def new_axes() -> Axes:
     return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
 
 
-def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
-    """Replace axes by several that share their place, two in a row.
+def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, list[Axes]]:
+    """Replace axes by several that share their place, two in a row if not said otherwise.
 
     Parameters
     ----------
@@ -51,6 +51,8 @@ def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
         How many.
     ax : Axes, optional
         Whose place they take; that of a new figure if not given.
+    columns : int
+        Most in a row.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def panels(count: int, ax: Axes | None = None) -> tuple[Axes, list[Axes]]:
     list of Axes
         The new ones, in reading order.
     """
-    columns = min(2, count)
+    columns = min(columns, count)
     rows = -(-count // columns)
     if ax is None:
         from matplotlib import pyplot

@@ -30,6 +30,7 @@ def write_shapes(
     labels: Sequence[str],
     width: float | np.ndarray | Sequence[float] | None = None,
     force: bool = False,
+    across: np.ndarray | None = None,
 ) -> None:
     """Write mode shapes as a mesh with one displacement field a mode.
 
@@ -44,14 +45,17 @@ def write_shapes(
         format, has underscores for the spaces in labels.
     x : array_like, shape (n,)
         Positions along the beam [m], ascending, at least two.
-    shapes : ndarray, shape (m, n)
-        Deflections of the modes at the positions, real, in any unit.
+    shapes : ndarray, shape (m, n) or (m, n, k)
+        Deflections of the modes at the positions, real, in any unit; over a strip at k positions across,
+        evenly spread from its edge at the lowest y to the other.
     labels : sequence of str, length m
         Name of each mode's field, e.g. "mode 1: 65.23 Hz"; no two alike.
     width : float or array_like, shape (n,), optional
         Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
     force : bool
         Overwrite a file that exists.
+    across : ndarray, shape (m, n), optional
+        Deflections in the direction across, which is -y, in the same unit.
 
     Raises
     ------
@@ -64,11 +68,13 @@ def write_shapes(
     """
     path = check_writable(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
-    strip = _strip(x := ascending("x", x), width)
-    fields = _scale(_check_shapes(x, shapes, labels), _DRAWN_RATIO * (x[-1] - x[0]))
-    for label, deflection in zip(labels, fields, strict=True):
+    x = ascending("x", x)
+    shapes, aside = _check_shapes(x, shapes, labels, across)
+    strip = _strip(x, width, shapes.shape[2])
+    for label, deflection, sideways in zip(labels, shapes, aside, strict=True):
         name = label.replace(" ", "_") if kind == "vtk" else label
-        strip.point_data[name] = _displacement(deflection, len(strip.points))
+        field = _displacement(deflection, len(strip.points), sideways)
+        strip.point_data[name] = _scale(field, _DRAWN_RATIO * (x[-1] - x[0]))
     with replacing(path) as aside:
         strip.write(aside, file_format=kind)
 
@@ -95,8 +101,8 @@ def write_series(
         Positions along the beam [m], ascending, at least two.
     t : array_like, shape (k,)
         Times [s], ascending.
-    deflection : ndarray, shape (k, n)
-        Deflections at the times and positions [m].
+    deflection : ndarray, shape (k, n) or (k, n, l)
+        Deflections at the times and positions [m]; over a strip at l positions across, as for `write_shapes`.
     width : float or array_like, shape (n,), optional
         Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
     force : bool
@@ -116,9 +122,9 @@ def write_series(
     from meshio.xdmf import TimeSeriesWriter
 
     path = check_writable(path, SERIES_SUFFIXES, force)
-    x, t, deflection = _check_history(x, t, deflection)
-    _, _, sideways = _check_history(x, t, np.zeros_like(deflection) if across is None else across)
-    strip = _strip(x, width)
+    x, t, deflection = _check_history(x, t, _over_width(deflection), over_width=True)
+    _, _, sideways = _check_history(x, t, np.zeros_like(deflection[..., 0]) if across is None else across)
+    strip = _strip(x, width, deflection.shape[2])
     with replacing(path) as aside, TimeSeriesWriter(aside, data_format="XML") as writer:
         writer.write_points_cells(strip.points, strip.cells)
         for time, row, other in zip(t.tolist(), deflection, sideways, strict=True):
@@ -187,8 +193,8 @@ def animate(
     save_animation(figure, path, frames(), 100, rate, force)
 
 
-def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) -> meshio.Mesh:
-    """Build a strip of quadrilaterals along x, or a line if the width is 0."""
+def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, rows: int) -> meshio.Mesh:
+    """Build a strip of quadrilaterals along x between rows of points, or a line if the width is 0."""
     import meshio
 
     if len(x) < 2:
@@ -199,19 +205,31 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None) ->
             f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
         )
     half, i = np.broadcast_to(full / 2, x.shape), np.arange(len(x) - 1)
-    edge = np.stack([x, half, np.zeros_like(x)], axis=1)
+    edge, rows = np.stack([x, half, np.zeros_like(x)], axis=1), max(rows, 2)
     if not half.any():
+        if rows > 2:
+            raise ValueError("width = 0: a line has no deflections across; give the width of the strip")
         return meshio.Mesh(edge, [("line", np.stack([i, i + 1], axis=1))])
+    points = np.concatenate([edge * (1, y, 1) for y in np.linspace(-1, 1, rows)])
+    i = (i + len(x) * np.arange(rows - 1)[:, None]).ravel()
     j = i + len(x)
-    points = np.concatenate([edge * (1, -1, 1), edge])
     return meshio.Mesh(points, [("quad", np.stack([i, i + 1, j + 1, j], axis=1))])
 
 
+def _over_width(values: np.ndarray) -> np.ndarray:
+    """Deflections with a last axis for positions across, one where none is given."""
+    values = np.asarray(values)
+    return values[..., None] if values.ndim == 2 else values
+
+
 def _check_history(
-    x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], deflection: np.ndarray
+    x: np.ndarray | Sequence[float],
+    t: np.ndarray | Sequence[float],
+    deflection: np.ndarray,
+    over_width: bool = False,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     x, t, deflection = ascending("x", x), ascending("t", t), np.asarray(deflection, dtype=float)
-    if deflection.shape != (len(t), len(x)):
+    if deflection.ndim != 2 + over_width or deflection.shape[:2] != (len(t), len(x)):
         raise ValueError(
             f"deflection has shape {deflection.shape}: {len(t)} times and {len(x)} positions expected"
         )
@@ -220,29 +238,35 @@ def _check_history(
     return x, t, deflection
 
 
-def _check_shapes(x: np.ndarray, shapes: np.ndarray, labels: Sequence[str]) -> np.ndarray:
-    shapes = np.asarray(shapes)
-    if np.iscomplexobj(shapes) or not np.isfinite(shapes).all():
-        raise ValueError("shapes: deflections must be real and finite; of a complex mode give the real part")
-    if shapes.shape != (len(labels), len(x)):
-        raise ValueError(
-            f"shapes has shape {shapes.shape}: {len(labels)} labels times {len(x)} positions expected"
-        )
+def _check_shapes(
+    x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], across: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Deflections of modes (m, n, k), and those in the direction across (m, n)."""
+    shapes = _over_width(shapes)
+    aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
+    for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
+        if np.iscomplexobj(values) or not np.isfinite(values).all():
+            raise ValueError(
+                f"{name}: deflections must be real and finite; of a complex mode give the real part"
+            )
+        if values.shape != (len(labels), len(x), *places):
+            raise ValueError(
+                f"{name} has shape {values.shape}: {len(labels)} labels times {len(x)} positions expected"
+            )
     if len(set(labels)) < len(labels):
         raise ValueError(f"labels {list(labels)}: two are alike; a mode's field needs a name of its own")
-    return shapes
+    return shapes, aside
 
 
-def _scale(shapes: np.ndarray, largest: float) -> np.ndarray:
-    """Scale shapes to a given largest deflection; a shape of zeros stays."""
-    size = np.abs(shapes).max(axis=1, keepdims=True)
-    return shapes * (largest / np.where(size == 0, 1.0, size))
+def _scale(field: np.ndarray, largest: float) -> np.ndarray:
+    """Scale displacements to a given largest component; those of zeros stay."""
+    return field * (largest / (np.abs(field).max() or 1.0))
 
 
-def _displacement(deflection: np.ndarray, points: int, across: np.ndarray | float = 0.0) -> np.ndarray:
-    """Displacement vectors along z, of a deflection across along -y, the same on both edges of a strip."""
-    z, y = (
-        np.tile(values, points // len(deflection))
-        for values in (deflection, np.zeros_like(deflection) - across)
-    )
-    return np.stack([np.zeros_like(z), y, z], axis=1)
+def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
+    """Displacement vectors along z, of a deflection (n, k), and along -y, of one across (n,), of a strip.
+
+    Rows of points follow each other from the lowest y; where k is 1 they are displaced alike.
+    """
+    z, y = (np.broadcast_to(row, (points // len(across), len(across))) for row in (deflection.T, -across))
+    return np.stack([np.zeros(points), y.ravel(), z.ravel()], axis=1)

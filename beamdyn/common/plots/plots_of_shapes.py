@@ -6,18 +6,25 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 
 from beamdyn.common.plots.axes_and_lines import (
     draw_lines,
     name_colour,
     name_planes,
     new_axes,
+    panels,
     position_label,
     set_up_axes,
     style_by_plane,
 )
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend
+
+_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # of surfaces
+_FLAT = 1e-6  # relative deflection below which a surface has no nodal lines
+_ASIDE = 0.4  # largest displacement drawn along the width, over it
+_PAGE, _MARGIN = (6.5, 4.6), 0.45  # inches for panels, and between two
 
 
 def plot_shapes(
@@ -90,6 +97,80 @@ def plot_shapes_by_plane(
             ax.plot(x, row, dashes, **style_by_plane(i))
         name_colour(ax, label, i)
     return name_planes(ax, directions)
+
+
+def plot_surfaces(
+    x: np.ndarray,
+    y: np.ndarray,
+    shapes: np.ndarray,
+    across: np.ndarray,
+    labels: Sequence[str],
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw mode shapes of a strip seen from above, to scale, each with its nodal lines in panels of its own.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Positions along the strip [m].
+    y : ndarray, shape (n, k)
+        Positions across it [m].
+    shapes : ndarray, shape (m, n, k)
+        Deflections of the modes out of the strip, real, in any unit.
+    across : ndarray, shape (m, n)
+        Those along -y, in the same unit, by which the outline is drawn displaced.
+    labels : sequence of str, length m
+        Titles of the panels.
+    ax : Axes, optional
+        Where to draw; new axes if not given. Their place is divided.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
+
+    Returns
+    -------
+    Axes
+    """
+    largest = np.maximum(np.abs(shapes).max(axis=(1, 2)), np.abs(across).max(axis=1))
+    scale = 1 / np.where(largest == 0, 1.0, largest)
+    width, unit = float(np.ptp(y)), units.length_unit("m")
+    ax, each = panels(len(labels), ax, _panels_in_a_row(len(labels), float(x[-1]), width))
+    for panel, shape, aside, label in zip(
+        each, shapes * scale[:, None, None], across * scale[:, None], labels, strict=True
+    ):
+        places = np.broadcast_to(x[:, None], y.shape), y - _ASIDE * width * aside[:, None]
+        colours = _draw_surface(panel, *(unit.of(place) for place in places), shape)
+        panel.set_title(label, fontsize=9)
+        panel.set_xlabel(position_label(units), fontsize=9)
+        panel.set_ylabel(f"y [{unit.name}]", fontsize=9)
+        panel.set_yticks(unit.of(y[0, [0, -1]]))
+        panel.tick_params(labelsize=9)
+        panel.label_outer()
+    bar = ax.figure.colorbar(colours, ax=each, ticks=[-1, 0, 1], shrink=0.8)
+    bar.set_label("deflection / its largest value")
+    return ax
+
+
+def _panels_in_a_row(count: int, length: float, width: float) -> int:
+    """How many panels in a row show strips of one size largest."""
+    rows = ((columns, -(-count // columns)) for columns in range(1, count + 1))
+    sizes = {
+        columns: min((_PAGE[0] / columns - _MARGIN) / length, (_PAGE[1] / rows - _MARGIN) / width)
+        for columns, rows in rows
+    }
+    return max(sizes, key=lambda columns: sizes[columns])
+
+
+def _draw_surface(ax: Axes, x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> ContourSet:
+    """Draw a deflection of at most 1 over a strip clamped at the left, with its nodal lines and outline."""
+    colours = ax.contourf(x, y, shape, levels=_LEVELS, cmap=_COLOURS_OF_SIGN)
+    if np.abs(shape).max() > _FLAT:  # not of rounding
+        ax.contour(x[1:], y[1:], shape[1:], levels=[0.0], colors="black", linewidths=1.2)
+    outline = [np.concatenate([of[:, 0], of[-1], of[::-1, -1]]) for of in (x, y)]
+    ax.plot(*outline, color="0.3", linewidth=0.8)
+    ax.plot(x[0], y[0], color="black", linewidth=3.0)
+    ax.set_aspect("equal")
+    return colours
 
 
 def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
