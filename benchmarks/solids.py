@@ -24,7 +24,16 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.modes.model_error.left_out_effects import UnlistedMode
-from benchmarks.peers.solids import BENDING, OTHER, STRETCH, TORSION, SolidMode, Strip, random_strip, reference
+from benchmarks.peers.solids import (
+    BENDING,
+    OTHER,
+    STRETCH,
+    TORSION,
+    SolidMode,
+    Strip,
+    random_strip,
+    reference,
+)
 from benchmarks.resumable import Cases
 from benchmarks.rows import Row, show, time_text
 
@@ -148,12 +157,17 @@ def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of speeds at which a strip bends far
         found = bd.natural_modes(strip.scene(RICHEST), strip.speed, len(modes) + _MORE, tolerance=1e-3)
-    across = (found.kind == BENDING) & (found.plane_share[:, 1] > 0.5)
-    own = np.where(across, OTHER, found.kind)
+    own = kinds_of(found)
     for mode in modes:
         of_kind = found.frequency[own == mode.kind]
         if len(of_kind) >= mode.number:
             yield mode.kind, float(of_kind[mode.number - 1] / mode.frequency - 1)
+
+
+def kinds_of(modes: bd.Modes) -> np.ndarray:
+    """Kind of each mode, as solids have it."""
+    across = (modes.kind == BENDING) & (modes.plane_share[:, 1] > 0.5)
+    return np.where(across, OTHER, modes.kind)
 
 
 def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:
@@ -174,7 +188,7 @@ _PAIRED = 0.1  # frequencies of a mode that is named, relative to the solid's
 
 @dataclass(frozen=True)
 class StatedError:
-    """A model error of one mode of a beam, and the true difference from the solid, relative to the beam's mode.
+    """A model error of one mode of a beam, and the true difference from the solid, relative to its mode.
 
     `counts` says whether the difference is large enough to be known.
     """
@@ -247,7 +261,7 @@ _TOLERANCES = 1e-2, 3e-3
 
 
 def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
-    """Largest difference of bending from the solid with chosen physics, and whether a sentence says it is missed.
+    """Largest difference of bending from the solid with chosen physics, and whether that is said.
 
     Differences below the reference's own error are none.
     """
@@ -275,9 +289,9 @@ def summarize_chosen(references: Sequence[Reference]) -> Iterator[Row]:
         said = np.array([said for *_, said in each])
         yield f"physics auto, {tolerance:g}: met", f"{met.mean():.1%}", "90 %" if tolerance == 1e-2 else ""
         yield "... met, or said not to be", f"{(met | said).mean():.1%}", "100 %"
-        for (reference, error, _), fine in zip(each, met | said, strict=True):
+        for (case, error, _), fine in zip(each, met | said, strict=True):
             if not fine:
-                yield f"... case {reference.number}", f"{error:.1e}", ""
+                yield f"... case {case.number}", f"{error:.1e}", ""
 
 
 def main() -> None:
@@ -289,7 +303,13 @@ def main() -> None:
     if given.make:
         cases().resume(FILE, range(given.first, given.first + given.make), given.workers)
     asked = known()[given.first :]
-    show("references", lambda: summarize_references(asked), lambda: summarize_plates(asked), lambda: summarize_stated(asked), lambda: summarize_chosen(asked))
+    show(
+        "references",
+        lambda: summarize_references(asked),
+        lambda: summarize_plates(asked),
+        lambda: summarize_stated(asked),
+        lambda: summarize_chosen(asked),
+    )
 
 
 if __name__ == "__main__":

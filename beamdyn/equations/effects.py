@@ -100,7 +100,10 @@ STRETCH = Effect(
     "stretch", "the beam is inextensible", "stretch", needs=("axial_stiffness",), taken_out="stretch"
 )
 CAMBER = Effect(
-    "camber of sections", "sections camber freely, at the clamped root too", "camber", needs=("poissons_ratio",)
+    "camber of sections",
+    "sections camber freely, at the clamped root too",
+    "camber",
+    needs=("poissons_ratio",),
 )
 TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("poissons_ratio",))
 LARGE_DEFLECTION = Effect(

@@ -94,7 +94,13 @@ class Physics:
 
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""
-        for name, without in (("planes", 1), ("shear", False), ("camber", False), ("torsion", False), ("stretch", False)):
+        for name, without in (
+            ("planes", 1),
+            ("shear", False),
+            ("camber", False),
+            ("torsion", False),
+            ("stretch", False),
+        ):
             if (given := getattr(self, name)) != without:
                 bound = "it cannot be combined with large_deflection"
                 raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")

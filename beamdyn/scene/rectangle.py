@@ -13,9 +13,9 @@ from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.scene.profile import Profile, as_profile, combine
 
-# How much less a clamp stiffens thick sections than a plate, fitted to CalculiX's solids of random cantilevers,
-# with which `benchmarks.solids` compares.  The squared Poisson's ratio has the factor 1 + a r + b r^2 of the
-# ratio r of thickness and width; the warping constant 1/(1 + c r^2).
+# How much less a clamp stiffens thick sections than a plate, fitted to CalculiX's solids of random
+# cantilevers, with which `benchmarks.solids` compares.  The squared Poisson's ratio has the factor
+# 1 + a r + b r^2 of the ratio r of thickness and width; the warping constant 1/(1 + c r^2).
 _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
 # Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
 # thicknesses; fitted to the same solids.

@@ -60,7 +60,14 @@ CALLS = {
     ),
     "Physics": (
         bd.Physics,
-        {"planes": 1, "shear": False, "rotary_inertia": False, "camber": False, "torsion": False, "stretch": False}
+        {
+            "planes": 1,
+            "shear": False,
+            "rotary_inertia": False,
+            "camber": False,
+            "torsion": False,
+            "stretch": False,
+        }
         | {"large_deflection": False, "branch": "straight"},
     ),
     "Scene": (

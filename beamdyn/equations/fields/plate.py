@@ -133,7 +133,7 @@ class WidthFunctions:
 
 @lru_cache(maxsize=64)
 def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Values of functions across at the edge eta = 1, and their derivatives of orders 0 to 2 at Gauss points."""
+    """Values of functions across at eta = 1, and their derivatives of orders 0 to 2 at Gauss points."""
     edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
     eta, _ = gauss_rule(points)
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
@@ -283,7 +283,7 @@ class SectionField(Field):
     first: ClassVar[int]  # number k of the first function across; the others follow in steps of two
 
     def complete(self, scene: Scene) -> Scene:
-        """Include the field, of a strip that is flat and has a Poisson's ratio, if its section is rectangular."""
+        """Include the field, of a flat strip with a Poisson's ratio, if its section is rectangular."""
         section = scene.beam.section
         if section is None:
             return scene

@@ -25,8 +25,8 @@ from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
 
 ASSUMED_POISSONS_RATIO = 0.3
-# Where a section lacks Poisson's ratio: the largest of a uniform material, as the change grows from 0 with it;
-# or a usual one, by which a frequency of torsion is known to 13 %.
+# Where a section lacks Poisson's ratio: the largest of a uniform material, as the change grows from 0 with
+# it; or a usual one, by which a frequency of torsion is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
     CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
     TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
@@ -74,7 +74,7 @@ def _assume_shear(beam: Beam) -> Beam | None:
 
 
 def _assume(scene: Scene, effect: Effect) -> Iterator[tuple[Scene, str]]:
-    """Yield the scene, and one with what is assumed about its beam where data for an effect lack; and say what."""
+    """Yield the scene, and one with what is assumed about its beam where an effect lacks data, with what."""
     yield scene, ""
     section = scene.beam.section
     if effect in _ASSUMED_OF_SECTIONS and section is not None and section.poissons_ratio is None:

@@ -99,7 +99,9 @@ class LeftOutEffects:
     def at(self, index: Any) -> LeftOutEffects:
         """Select the changes of some of the values."""
         changes = {name: change[index] for name, change in self.changes.items()}
-        first = index[0] if isinstance(index, tuple) else index  # of the speeds, where modes are the last axis
+        first = (
+            index[0] if isinstance(index, tuple) else index
+        )  # of the speeds, where modes are the last axis
         unlisted = tuple(replace(mode, frequency=mode.frequency[first]) for mode in self.unlisted)
         return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape, unlisted=unlisted)
 

@@ -103,7 +103,7 @@ class BaseEquations:
 
 
 def clamp_spaces(scene: Scene, modes: int) -> Spaces:
-    """Function spaces that resolve so many modes of a scene with camber or torsion, to a part in a thousand."""
+    """Function spaces that resolve so many modes of a scene with camber or torsion, to one in a thousand."""
     functions = min(MOST_FUNCTIONS, _AT_CLAMP + modes)
     return replace(Ritz(functions).spaces(scene.modelled_beam), across=_ACROSS)
 

@@ -7,7 +7,7 @@ beam whose data are known these are found with shear and the rotary inertia of s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
