@@ -8,11 +8,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
+from beamdyn.analyses.results.cautions import warnings_of
+from beamdyn.analyses.results.of_studies import study_table
 from beamdyn.analyses.values import (
     final_speed,
     in_unit_of,
@@ -21,11 +24,29 @@ from beamdyn.analyses.values import (
     parse_speed,
     parse_window,
 )
-from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
+from beamdyn.common.edge.inputs import Input, Quantity, describe
+from beamdyn.common.edge.progress import at_work
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
+from beamdyn.common.edge.varying import (
+    NO_SPREAD,
+    NOTHING_VARIED,
+    OPTION,
+    SpreadOptions,
+    VaryOptions,
+    in_units_of,
+    parse_spreads,
+)
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.inputs.checks import InvalidValue, check_used
+from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
 from beamdyn.common.results.statements import InputValue, Words
+from beamdyn.files.scene_inputs import SceneInput
+from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
+from beamdyn.studies.answers import NO_ANSWERS
+from beamdyn.studies.questions import KINDS
+from beamdyn.studies.spread import nominal_value
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.inputs import Input
     from beamdyn.common.edge.varied_inputs import Axis
     from beamdyn.scene.scene import Scene
 
@@ -79,11 +100,6 @@ def sensitivities(
         Largest relative error of a frequency or critical speed: the cheapest discretization that
         meets it is chosen; 1e-11 if not given.
     """
-    import numpy as np
-
-    from beamdyn.common.edge.wording import of_file
-    from beamdyn.common.inputs.checks import check_used
-
     check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     named, count = inputs or None, 3 if modes is None else modes
     with of_file({}):
@@ -143,9 +159,6 @@ def study(
     window
         Beginning and end of the window of time of peaks; default: 20:30 s.
     """
-    from beamdyn.common.edge.varied_inputs import designs_of, parse_axis
-    from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
-
     spreading.check(varying)
     if not varying.vary and not spreading.spread:
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
@@ -172,14 +185,6 @@ def study(
 
 def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
     """Answer all designs."""
-    import numpy as np
-
-    from beamdyn.analyses.results.cautions import warnings_of
-    from beamdyn.analyses.results.of_studies import study_table
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.wording import of_file
-    from beamdyn.studies.answers import NO_ANSWERS
-
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress, of_file({}):
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
@@ -194,11 +199,6 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
 
 def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
     """Ranges of the answer over tolerances."""
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.varying import in_units_of, parse_spreads
-    from beamdyn.common.edge.wording import of_file
-    from beamdyn.scene.numbers import unit_of
-    from beamdyn.studies.spread import nominal_value
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
@@ -217,9 +217,6 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
 
 def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
     """The speed of the option [rad/s], or that of the scene where one is needed; else None."""
-    from beamdyn.scene.numbers import SPEED
-    from beamdyn.studies.questions import KINDS
-
     varied = any(axis.input.path == SPEED for axis in axes)
     needed = "speed" in KINDS[what].options and not varied
     if speed is not None:
@@ -238,8 +235,6 @@ def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
 @contextmanager
 def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[None]:
     """Within it, a refusal of an option shows its text, one of an input its value and bound as given."""
-    from beamdyn.common.inputs.checks import InvalidValue
-
     try:
         with ExitStack() as named:
             for name, text in options.items():
@@ -257,10 +252,6 @@ def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[N
 
 def _inputs(scene: Scene) -> list[Input]:
     """The numbers of a scene that a study varies, as files describe them, and the speed."""
-    from beamdyn.common.edge.inputs import Input, Quantity, describe
-    from beamdyn.common.edge.varied_inputs import numbers
-    from beamdyn.files.scene_inputs import SceneInput
-    from beamdyn.scene.numbers import SCALE, paths_of, unit_of
 
     class ByWholeName(Input):
         """An input that the last part of its name alone does not mean: a factor, or one in a list."""

@@ -7,22 +7,32 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import AsText, analysis
 from beamdyn.analyses.options import AtFinalSpeed, Count, CountOrAuto, Discretization, Named, Text
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_quantity, parse_speed
+from beamdyn.common.edge.csv_columns import read_csv
+from beamdyn.common.edge.data_text import read_data
+from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.linear.inputs_outputs import (
+    AccelerationAt,
+    DeflectionAt,
+    PointForce,
+    as_excitation,
+    as_observation,
+)
+from beamdyn.scene.motion import RollingWheel
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from beamdyn.linear.frequency_response import FrequencyResponse
     from beamdyn.linear.inputs_outputs import Excitation, Observation
     from beamdyn.linear.matrices import Matrices
     from beamdyn.linear.random_response import RandomResponse
-    from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
     from beamdyn.scene.scene import Scene
 
 
@@ -80,7 +90,7 @@ class RandomInput:
         return None if self.input is None else parse_input(self.input)
 
     @property
-    def density(self) -> PowerSpectrum | RoadRoughness:
+    def density(self) -> bd.PowerSpectrum | bd.RoadRoughness:
         """The density, from a file or as a road.
 
         Raises
@@ -88,8 +98,6 @@ class RandomInput:
         ValueError
             If not exactly one of the three is given, or the end of a road without a road.
         """
-        from beamdyn.linear.spectra import RoadRoughness
-
         if sum(given is not None for given in (self.psd, self.road, self.roughness)) != 1:
             raise ValueError("--psd, --road, --roughness: give one of the three")
         if self.psd is not None:
@@ -103,7 +111,9 @@ class RandomInput:
         if self.psd_axes is not None:
             raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; a road has its own")
         limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
-        return RoadRoughness(self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit)
+        return bd.RoadRoughness(
+            self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit
+        )
 
     def shown(self, scene: Scene) -> Scene:
         """The scene, with results in the unit of the speed."""
@@ -111,8 +121,6 @@ class RandomInput:
 
     def speed_of(self, scene: Scene) -> float:
         """The speed that is given [rad/s], that of a wheel which rolls at the velocity, or the scene's."""
-        from beamdyn.scene.motion import RollingWheel
-
         if self.velocity is None:
             return final_speed(scene) if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
@@ -129,8 +137,6 @@ NO_RANDOM_INPUT = RandomInput()
 
 def parse_input(text: str) -> Excitation:
     """The excitation of ``--input``: a word, or a force at a position with its unit."""
-    from beamdyn.linear.inputs_outputs import PointForce, as_excitation
-
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
         return as_excitation("--input", text.strip())
@@ -139,8 +145,6 @@ def parse_input(text: str) -> Excitation:
 
 def parse_output(text: str) -> Observation:
     """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
-    from beamdyn.linear.inputs_outputs import AccelerationAt, DeflectionAt, as_observation
-
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
         return as_observation("--output", text.strip())
@@ -153,7 +157,7 @@ def _position(option: str, text: str) -> float | None:
     return None if text.strip() == "tip" else parse_positive(option, text.strip(), "m")
 
 
-def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
+def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum:
     """Read a density from a CSV file with the columns f [Hz] and psd, in a unit such as m2/s4/Hz or g2/Hz.
 
     It is straight between its points on the axes.
@@ -165,12 +169,6 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
     InvalidValue
         If the frequencies do not ascend, or a density is negative, or 0 on logarithmic axes.
     """
-    from beamdyn.common.edge.csv_columns import read_csv
-    from beamdyn.common.edge.data_text import read_data
-    from beamdyn.common.edge.inputs import Quantity
-    from beamdyn.common.inputs.checks import InvalidValue
-    from beamdyn.linear.spectra import PowerSpectrum
-
     text = read_data(path)
 
     class Density(Quantity):
@@ -185,7 +183,7 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> PowerSpectrum:
     if len(columns) != 2:
         raise text.refusal(table.head_line, f"expected the columns f [Hz] and psd [{unit}]")
     try:
-        return PowerSpectrum(columns["f"].values, columns["psd"].values, axes)
+        return bd.PowerSpectrum(columns["f"].values, columns["psd"].values, axes)
     except InvalidValue as refusal:
         refusal.remedy = refusal.remedy.replace('interpolation = "linear"', "--psd-axes linear")
         units = {"psd.values": unit, "psd.frequencies": "Hz"}
@@ -308,8 +306,6 @@ def parse_frequencies(text: str) -> np.ndarray:
     ValueError
         If there are none, a range does not rise from above 0, or the unit is none of frequency.
     """
-    import numpy as np
-
     words, unit = f'--frequencies = "{text}"', _UNIT.search(text.strip())
     if unit is None:
         example = text.strip() if re.search(r"\d$", text.strip()) else "1:1000:400"

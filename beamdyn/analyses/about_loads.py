@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
@@ -26,8 +27,15 @@ from beamdyn.analyses.options import (
     none_given,
     positive,
 )
+from beamdyn.analyses.results.of_loads import (
+    cycles_csv,
+    cycles_table,
+    equivalents_table,
+    transient_loads_table,
+)
 from beamdyn.analyses.values import final_speed, naming_option, parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.outputs import write_table
+from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
 
 if TYPE_CHECKING:
@@ -71,8 +79,6 @@ class CycleOptions:
 
     def check(self, in_transient: bool) -> None:
         """Refuse options that nothing would use."""
-        from beamdyn.common.inputs.checks import positive
-
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
         text = "" if self.woehler is None else f'"{self.woehler}"'
@@ -84,8 +90,8 @@ class CycleOptions:
             raise ValueError(f"--equivalent-cycles = {number}: give --woehler, too, or leave it out")
         with naming_option("exponent", "--woehler", self.woehler or ""):
             for exponent in self.exponents:
-                positive("exponent", exponent)
-        positive("equivalent_cycles", self.number)
+                checks.positive("exponent", exponent)
+        checks.positive("equivalent_cycles", self.number)
 
     @property
     def exponents(self) -> list[float]:
@@ -105,15 +111,11 @@ class CycleOptions:
 
     def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
         """Counted cycles, and the equal cycles that do the same damage."""
-        from beamdyn.analyses.results.of_loads import cycles_table, equivalents_table
-
         made: list[RenderableType] = [cycles_table(cycles)]
         return [*made, equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
-        from beamdyn.analyses.results.of_loads import cycles_csv
-
         if self.cycles_file is None:
             return
         if self.cycles_file.suffix.lower() == ".json":
@@ -185,8 +187,6 @@ def loads(
     tolerance
         The same; default: 1e-5.
     """
-    import numpy as np
-
     kinds = {"--speed": speed, "--t-end": t_end, "--speeds": speeds}
     _check_together([name for name, given in kinds.items() if given is not None], angle, window)
     counting.check(in_transient=t_end is not None)
@@ -276,8 +276,6 @@ def _in_transient(
     where: dict[str, Any],
     basis: dict[str, Any],
 ) -> tuple[SpanLoads, list[RenderableType]]:
-    from beamdyn.analyses.results.of_loads import transient_loads_table
-
     if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
     result = bd.transient_loads(bd.simulate(scene, end, **basis), **where)

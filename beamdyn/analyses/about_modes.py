@@ -7,6 +7,7 @@ from math import isinf, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
@@ -20,7 +21,9 @@ from beamdyn.analyses.options import (
     Speeds,
     Text,
 )
+from beamdyn.analyses.results.cautions import critical_label, labels_of, warnings_of
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
+from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
 
 if TYPE_CHECKING:
@@ -99,8 +102,6 @@ def modes(
     shapes
         Write the mode shapes into this file for ParaView: .vtu or .vtk.
     """
-    from beamdyn.analyses.results.cautions import labels_of, warnings_of
-
     result = bd.natural_modes(scene, speed, modes, discretization, tolerance)
     if shapes is not None:
         result.export(shapes, force=outputs.force, labels=labels_of(result))
@@ -124,10 +125,6 @@ def locus(
         Speeds with their unit: start:stop:count, e.g. "0:150:301 rad/s", or a list, e.g. "0, 50,
         100 rad/s".
     """
-    import numpy as np
-
-    from beamdyn.analyses.results.cautions import warnings_of
-
     result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
     unstable = np.isin(result.status, _GROWING).any(axis=1)
     never = f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
@@ -172,9 +169,6 @@ def limits(
 
 
 def _draw_locus(result: Locus, ax: Axes) -> None:
-    from beamdyn.analyses.results.cautions import critical_label
-    from beamdyn.common.plots.plots import mark_critical
-
     critical = bd.critical_point(result.scene)
     mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
 

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
+
 import beamdyn as bd
 from beamdyn.analyses.analysis import WRITTEN, Answer, AsText, analysis
 from beamdyn.analyses.options import (
@@ -20,10 +22,14 @@ from beamdyn.analyses.options import (
     Text,
     TimeTolerance,
 )
+from beamdyn.analyses.results.cautions import notes_of
+from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.analyses.values import at_most, parse_positive, parse_window
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.program import Interrupted
+from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varying import Folder
+from beamdyn.common.plots.export import animate, write_series
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -129,8 +135,6 @@ def simulate(
     animation
         Write an animation of the same: .gif.
     """
-    from beamdyn.analyses.results.of_motion import transient_table
-
     span = None if window is None else parse_window(window, t_end)
     run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)
     _write_close_up(run, span or (0.0, t_end), series, animation, outputs.force)
@@ -182,12 +186,6 @@ def _write_close_up(
     run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
     """Write the motion over a few periods around the largest deflection in a window."""
-    import numpy as np
-
-    from beamdyn.analyses.results.cautions import notes_of
-    from beamdyn.analyses.results.of_motion import time_of_peak
-    from beamdyn.common.plots.export import animate, write_series
-
     if series is None and animation is None:
         return
     middle, _ = time_of_peak(run, *window)
@@ -226,9 +224,6 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
     """A bar with the remaining time; where the sweep is interrupted, say what is done."""
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.transient.sweep import SweepInterrupted
-
     finished = 0
 
     def progress(done: int, total: int) -> None:
@@ -243,5 +238,5 @@ def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], N
         how = f"stored in {store}; the same command goes on from there"
         lost = f"{finished} of {cases} speeds were done and are lost; --store DIR keeps what is done"
         raise Interrupted(lost if store is None else f"{finished} of {cases} speeds are {how}") from None
-    except SweepInterrupted as error:
+    except bd.SweepInterrupted as error:
         raise Interrupted(str(error)) from None

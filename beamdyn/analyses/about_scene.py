@@ -9,6 +9,7 @@ from beamdyn.analyses.analysis import analysis
 from beamdyn.analyses.options import Count, Text, none_given, positive
 from beamdyn.analyses.values import parse_speed
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, AnswerFiles
+from beamdyn.common.edge.progress import at_work
 
 if TYPE_CHECKING:
     from beamdyn.equations.terms import Terms
@@ -56,9 +57,6 @@ def tradeoff(
         Approximate computing time, e.g. "60 s"; measurements that do not fit are left out and
         listed.
     """
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.studies.tradeoffs.tradeoff import tradeoff
-
     at = None if speed is None else parse_speed("--speed", speed, scene)
     with at_work("measuring") as progress:
-        return tradeoff(scene, at, modes, t_end, budget, progress)
+        return bd.tradeoff(scene, at, modes, t_end, budget, progress)

@@ -13,15 +13,19 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin,
 
 from cyclopts import Parameter
 
+from beamdyn.analyses.results.cautions import describe_choice, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of, naming_option
 from beamdyn.common.edge import program
+from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
+from beamdyn.common.edge.tables import show
+from beamdyn.common.edge.views import picture_of, rows_of, tables_of
+from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from rich.console import RenderableType
 
-    from beamdyn.common.edge.html_report import Question
     from beamdyn.common.results.result import Result
     from beamdyn.scene.scene import Scene
 
@@ -201,9 +205,6 @@ class Analysis:
 
     def run(self, file: Path, options: Mapping[str, Any]) -> None:
         """Answer a file, write the files that are asked for and print the answer."""
-        from beamdyn.common.edge.html_report import Question
-        from beamdyn.files.scenes import load_scene
-
         given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
         written, read, asked = self._sort(given)
@@ -290,11 +291,6 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     NoAnswer
         With the refusal, after everything has been written.
     """
-    from beamdyn.analyses.results.cautions import describe_choice, noted, warnings_of
-    from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.edge.tables import show
-    from beamdyn.common.edge.views import picture_of, rows_of, tables_of
-
     result, refusal = answer.result, answer.refusal
     draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)
     if draw is None and outputs.plot is not None:

@@ -11,11 +11,17 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from cyclopts import Parameter, Token
 
-if TYPE_CHECKING:
-    import numpy as np
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.display_units import known_unit
+from beamdyn.files.scenes import as_velocity
+from beamdyn.scene.motion import RollingWheel
 
+if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
 
 
@@ -46,8 +52,6 @@ def at_most(most: int) -> Parameter:
 
 def parse_quantity(option: str, text: str, unit: str) -> float:
     """A number with its unit, in SI; an InvalidInput names the option."""
-    from beamdyn.common.edge.units import InvalidInput, quantity
-
     try:
         return quantity(text, unit)
     except InvalidInput as error:
@@ -65,9 +69,6 @@ def parse_positive(option: str, text: str, unit: str, scene: Scene | None = None
 @contextmanager
 def naming_option(field: str, option: str, text: str) -> Iterator[None]:
     """Within it, a refusal of an argument of the core names the option and shows its value as given."""
-    from beamdyn.common.edge.units import InvalidInput
-    from beamdyn.common.inputs.checks import InvalidValue
-
     try:
         yield
     except InvalidValue as error:
@@ -81,9 +82,6 @@ def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
 
     If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
     """
-    from beamdyn.files.scenes import as_velocity
-    from beamdyn.scene.motion import RollingWheel
-
     if scene is not None and isinstance(scene.motion, RollingWheel):
         velocity = as_velocity(text)
         if velocity is not None:
@@ -124,7 +122,6 @@ def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
     ValueError
         If there are none, they do not ascend, or lack a unit of angular speed.
     """
-    import numpy as np
 
     def refusal(said: str) -> ValueError:
         return ValueError(f'--speeds = "{text}": {said}')
@@ -182,8 +179,6 @@ def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]
 
 def unit_of_speed(*texts: str | None) -> str:
     """Unit of the first text with a speed that can be shown in its unit; empty if there is none."""
-    from beamdyn.common.results.display_units import known_unit
-
     found = (_UNIT.search(text.strip()) for text in texts if text is not None)
     return next(filter(None, (known_unit("speed", unit.group()) for unit in found if unit)), "")
 
@@ -195,8 +190,6 @@ def in_unit_of(scene: Scene, *texts: str | None) -> Scene:
 
 def check_moves(scene: Scene, path: Path) -> None:
     """Refuse a scene without a motion."""
-    from beamdyn.common.edge.config import ConfigError
-
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"

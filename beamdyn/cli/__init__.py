@@ -2,11 +2,10 @@
 
 from typing import Any
 
-from beamdyn.analyses.values import parse_speeds
 from beamdyn.cli.program import command_line, main
 from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
-__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main", "parse_speeds"]
+__all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main"]
 
 
 def __getattr__(name: str) -> Any:

@@ -8,17 +8,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
+import numpy as np
 from cyclopts import App, Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
+from beamdyn.analyses.results.of_studies import crossings_of_lines_csv
 from beamdyn.analyses.values import naming_option, parse_positive, parse_speed
+from beamdyn.cli.decks import read_with
+from beamdyn.common.edge.config import read
+from beamdyn.common.edge.html_report import Question
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.units import unit_as_written
+from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.html_report import Question
     from beamdyn.scene.scene import Scene
 
 SceneFiles = Annotated[tuple[Path, ...], Parameter(name="FILE", negative=())]
@@ -82,8 +88,6 @@ def campbell(
     outputs
         Output files.
     """
-    from beamdyn.analyses.results.of_studies import crossings_of_lines_csv
-
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
@@ -130,10 +134,6 @@ def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None)
 
 
 def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
-    from beamdyn.cli.decks import read_with
-    from beamdyn.common.edge.config import read
-    from beamdyn.files.scenes import load_scene
-
     if path.suffix.lower() == ".toml":
         return _BladeFile(path, load_scene(path), read(path), ())
     deck = read_with(path, length, hub_radius)
@@ -144,8 +144,6 @@ def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
 
 def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
     """The command on each of its files, for the head of a report."""
-    from beamdyn.common.edge.html_report import Question
-
     each = [Question.of("beamdyn campbell", given.path, given.text, **options) for given in inputs]
     title = f"beamdyn campbell: {', '.join(str(given.path) for given in inputs)}"
     return Question(title, "\n\n".join(question.inputs for question in each))
@@ -153,10 +151,6 @@ def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
 
 def _parse_top(text: str, scene: Scene | None) -> tuple[Any, str]:
     """Speeds [rad/s] up to the top one, and the unit of speeds in the answer."""
-    import numpy as np
-
-    from beamdyn.common.edge.units import unit_as_written
-
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"

@@ -11,6 +11,10 @@ from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import naming_option, parse_quantity, parse_speed
 from beamdyn.common.edge.outputs import Flag, Outputs
 from beamdyn.common.edge.program import examples, warn
+from beamdyn.common.edge.tables import show, table
+from beamdyn.common.results.files import check_writable, write_text
+from beamdyn.files.decks.deck import read_deck
+from beamdyn.files.decks.deck_tables import deck_tables
 
 if TYPE_CHECKING:
     from beamdyn.files.decks.deck import Deck
@@ -52,9 +56,6 @@ def import_deck(
     force
         Overwrite a file that exists.
     """
-    from beamdyn.common.edge.tables import show
-    from beamdyn.files.decks.deck_tables import deck_tables
-
     outputs = Outputs(force=force)
     outputs.check(file, output=output, polynomials=polynomials)
     at = None if speed is None else parse_speed("--speed", speed)
@@ -73,9 +74,6 @@ def import_deck(
 
 def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:
     """Write the polynomials, and say how well they fit."""
-    from beamdyn.common.edge.tables import show, table
-    from beamdyn.common.results.files import check_writable, write_text
-
     fitted = deck.fit_mode_polynomials(speed)
     lines = [line for each in fitted for line in each.lines()]
     write_text(check_writable(path, force=force), "\n".join([*lines, ""]))
@@ -85,8 +83,6 @@ def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool)
 
 def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
     """Read a deck with the options --length and --hub-radius."""
-    from beamdyn.files.decks.deck import read_deck
-
     given = {
         name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")
         for name, text in {"length": length, "hub_radius": hub_radius}.items()

@@ -1,21 +1,32 @@
-"""The program ``beamdyn``: what is heavy is imported by the commands that need it."""
+"""The program ``beamdyn``: a command imports its own module alone, and the list of commands none of them."""
 
 from __future__ import annotations
 
+import ast
 import sys
 from collections.abc import Sequence
 from functools import cache
+from importlib import import_module
+from pathlib import Path
 
 from cyclopts import App
 
 from beamdyn._version import __version__
 from beamdyn.analyses import COMMANDS, analyses
+from beamdyn.cli import interactive
 from beamdyn.common.edge import program
+
+# Commands that are not analyses of a scene: the module here that adds each, and the function that it runs.
+_OTHERS = {
+    "campbell": ("campbell_diagram", "campbell"),
+    "import": ("decks", "import_deck"),
+    "reproduce": ("published", "reproduce"),
+}
 
 
 @cache
-def command_line(command: str = "") -> App:
-    """The program: with the command of one analysis alone, which starts sooner, or with all commands."""
+def command_line(command: str = "", *, listed: bool = False) -> App:
+    """The program with one command alone, with all of them, or with all as the list in its help has them."""
     app = App(
         name="beamdyn",
         version=__version__,
@@ -26,18 +37,41 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
         help_format="markdown",
         suppress_keyboard_interrupt=False,
     )
-    alone = command in COMMANDS
-    for name, each in analyses((command,) if alone else tuple(COMMANDS)).items():
-        app.command(each.command(), name=name, help_epilogue=program.examples(*each.examples))
-    if not alone:
-        from beamdyn.cli import campbell_diagram, decks, interactive, published
-
-        for add in (campbell_diagram.add, decks.add, interactive.add, published.add, program.add_completion):
-            add(app)
+    for name in [command] if command else [*COMMANDS, *_OTHERS]:
+        if listed:
+            app.command(App(name=name, help=_question(name)))
+        elif name in COMMANDS:
+            each = analyses((name,))[name]
+            app.command(each.command(), name=name, help_epilogue=program.examples(*each.examples))
+        else:
+            import_module(f"beamdyn.cli.{_OTHERS[name][0]}").add(app)
+    if not command:
+        interactive.add(app)
+        program.add_completion(app)
     return app
+
+
+def _question(command: str) -> str:
+    """First line of the docstring of a command's function, from its source: to import that takes long."""
+    if command in COMMANDS:
+        file, function = f"analyses/{COMMANDS[command]}.py", command.replace("-", "_")
+    else:
+        file, function = f"cli/{_OTHERS[command][0]}.py", _OTHERS[command][1]
+    return _first_lines(Path(__file__).parents[1] / file)[function]
+
+
+@cache
+def _first_lines(file: Path) -> dict[str, str]:
+    """First lines of the docstrings of a module's functions, by their names."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    functions = (node for node in tree.body if isinstance(node, ast.FunctionDef))
+    return {each.name: (ast.get_docstring(each) or "").partition("\n")[0] for each in functions}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; see `beamdyn.common.edge.program.run`."""
     given = sys.argv[1:] if arguments is None else [*arguments]
-    return program.run(command_line(*[name for name in given[:1] if name in COMMANDS]), given)
+    command = next((word for word in given if not word.startswith("-")), "")
+    if command in COMMANDS or command in _OTHERS:
+        return program.run(command_line(command), given)
+    return program.run(command_line(listed=command != "completion"), given)

@@ -8,7 +8,9 @@ from cyclopts import App
 
 from beamdyn.common.edge.outputs import Flag, check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.tables import console
 from beamdyn.common.edge.varying import SomeFolder
+from beamdyn.reproduce import compare_all
 
 
 def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
@@ -21,9 +23,6 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
     tables
         Compare with the tables of beams and blades of other sources too; takes some twenty seconds.
     """
-    from beamdyn.common.edge.tables import console
-    from beamdyn.reproduce import compare_all
-
     check_folder("output", output)
     screen = console()
     screen.print(f"Pictures go into the folder {output} (--output names another).\n")

@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
+from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
@@ -114,8 +115,6 @@ class FrequencyResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
-        from beamdyn.common.plots.plots import plot_frequency_response
-
         labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]

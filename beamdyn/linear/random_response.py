@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
+from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
@@ -122,8 +123,6 @@ class RandomResponse(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the density over frequency, both logarithmic."""
-        from beamdyn.common.plots.plots import plot_frequency_response
-
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
         label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
         return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)

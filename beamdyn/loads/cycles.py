@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, kind, positive
+from beamdyn.common.plots.curves import plot_exceedance
 from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.loads.stations import UNITS
@@ -115,8 +116,6 @@ class LoadCycles(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw how many cycles exceed each range."""
-        from beamdyn.common.plots.curves import plot_exceedance
-
         unit = UNITS[self.quantity] or "-"
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)
 

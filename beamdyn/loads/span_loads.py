@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
+from beamdyn.common.plots.curves import plot_along_span
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.effects import modelled_directions
@@ -239,8 +240,6 @@ class SpanLoads(Result):
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
         """Draw values (C, S, k) of a quantity along the span, if the result has it."""
-        from beamdyn.common.plots.curves import plot_along_span
-
         self.check_known(quantity)
         named = self.components(quantity)
         return plot_along_span(self.x, values(quantity), named, label, ax, self.display_units)

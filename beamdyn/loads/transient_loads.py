@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
+from beamdyn.common.plots.curves import plot_load_over_time
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.span_loads import (
     AskedLoads,
@@ -165,8 +166,6 @@ class TransientLoads(SpanLoads):
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
-        from beamdyn.common.plots.curves import plot_load_over_time
-
         values, labels = self.values(quantity)[:, station], self.components(quantity)
         label = f"{quantity} at {self.x[station]:.6g} m [{UNITS[quantity] or '-'}]"
         return plot_load_over_time(self.t, values, labels, label, ax)

@@ -11,6 +11,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
+from beamdyn.common.plots.plots import plot_branches
+from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
@@ -109,8 +111,6 @@ class Equilibrium(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam."""
-        from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
-
         across = _direction(self.scene)
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
         title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
@@ -302,8 +302,6 @@ class EquilibriumBranches(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        from beamdyn.common.plots.plots import plot_branches
-
         across, length = _direction(self.scene), self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
         return plot_branches(lines, ax, self.display_units)

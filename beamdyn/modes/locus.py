@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
@@ -138,8 +139,6 @@ class Locus(TellsKinds, StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
-        from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
-
         units = self.display_units
         if self.scene.physics.planes == 2:
             (solid, _), words = drawn_order(self.scene)

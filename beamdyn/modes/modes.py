@@ -13,6 +13,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, real, real_array, within
+from beamdyn.common.plots.export import write_shapes
+from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
@@ -30,7 +32,9 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
@@ -119,9 +123,6 @@ class Modes(TellsKinds, StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of each frequency by the effects that the model leaves out (m,)."""
-        # It is imported here for the time that it takes to import.
-        from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
-
         return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -182,8 +183,6 @@ class Modes(TellsKinds, StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the mode shapes, those of a strip that twists or cambers as seen from above."""
-        from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
-
         if (mesh := self.mesh()) is not None:
             return plot_surfaces(*mesh, self.labels(), ax, self.display_units)
         x = np.linspace(0, self.scene.beam.length, 201)
@@ -204,8 +203,6 @@ class Modes(TellsKinds, StatesModelError):
 
         A strip that twists or cambers is drawn in its own width.  The labels are `labels()` if not given.
         """
-        from beamdyn.common.plots.export import write_shapes
-
         mesh, drawn = self.mesh(), width
         if mesh is None:
             x = np.linspace(0, self.scene.beam.length, 101)
@@ -282,9 +279,6 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     if scene.chooses_physics:
-        # It is imported here for the time that it takes to import.
-        from beamdyn.modes.model_error.effect_choice import choose_physics
-
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]

@@ -11,6 +11,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.drawing.layout import length_text, round_below
+from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
@@ -103,8 +104,6 @@ class RotorDrawing(Result):
 
     def figure(self) -> Figure:
         """Draw both views by matplotlib."""
-        from beamdyn.common.drawing.on_axes import figure_of
-
         rows = self.drawings()
         return figure_of(rows, _paper(rows))
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds, Words
@@ -173,8 +174,6 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
-        from beamdyn.common.plots.campbell import Curves, plot_campbell
-
         lines = {line.name: line.multiple for line in self.lines}
         marked = {kind: [(c.speed, c.frequency) for c in self if c.kind == kind] for kind in KINDS}
         names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))

@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import ascending, count, positive
+from beamdyn.common.plots.plots import plot_response
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, states, warned
 from beamdyn.common.results.pickling import FieldsOnly
@@ -229,8 +230,6 @@ class SteadyResponse(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the resonance curve, and where the beam bends in two directions also that in each."""
-        from beamdyn.common.plots.plots import plot_response
-
         names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.plots.curves import plot_over_input
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import InputValue, Statement, Words, joined
@@ -196,8 +197,6 @@ class Study(StatesModelError):
 
         Crosses at the bottom stand where there is no number; inputs after the second have their first value.
         """
-        from beamdyn.common.plots.curves import plot_over_input
-
         first, rest = self.inputs[0], self._rest()
         title, words = f"at {', '.join(rest)}" if rest else "", f"{self._words()} [{self.unit}]"
         states = np.unique(self.status[~np.isfinite(self.value)]).tolist()

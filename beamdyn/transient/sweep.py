@@ -30,6 +30,7 @@ from beamdyn.common.inputs.checks import (
 )
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.plots.plots import plot_sweep
 from beamdyn.common.results.announced import announced, unannounced
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
@@ -181,8 +182,6 @@ class Sweep(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the peaks over speed, as in Fig. 6 of Lee and Yoo (2019)."""
-        from beamdyn.common.plots.plots import plot_sweep
-
         names = modelled_directions(self.scene)
         if len(names) == 1:
             return plot_sweep(self.speeds, self.peaks, ax, units=self.display_units)

@@ -15,6 +15,8 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.accuracy.margins import MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import real, real_array
+from beamdyn.common.plots.export import write_series
+from beamdyn.common.plots.plots import plot_transient
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement
@@ -289,8 +291,6 @@ class Transient(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the tip deflection over time."""
-        from beamdyn.common.plots.plots import plot_transient
-
         names = modelled_directions(self.scene)
         tips = np.array([self.tip, self.tip_across][: len(names)])
         return plot_transient(self.t, tips, ax, names, self.display_units)
@@ -299,8 +299,6 @@ class Transient(StatesModelError):
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
     ) -> None:
         """Write the deflected beam from start to end [s] as a time series for ParaView."""
-        from beamdyn.common.plots.export import write_series
-
         self._check_window(start, end)
         x = np.linspace(0, self.scene.beam.length, 41)
         t = np.linspace(start, end, frames)

@@ -12,7 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER, parse_speeds
+from beamdyn.analyses.values import parse_speeds
+from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER
 from beamdyn.common.results.digits import supported, supported_or_range
 
 ROOT = Path(__file__).parents[2]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, Words, kind_of, of_kind, said_in, worded
@@ -71,8 +72,6 @@ def noted(draw: Callable[[], Figure], result: Any) -> Callable[[], Figure]:
     """A function that draws a figure, with the notes of a result below it."""
 
     def made() -> Figure:
-        from beamdyn.common.plots.axes_and_lines import note_below
-
         return note_below(draw(), notes_of(result))
 
     return made

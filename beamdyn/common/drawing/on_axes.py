@@ -13,6 +13,7 @@ from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
 from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, letters_of, strokes_of
 from beamdyn.common.drawing.style import colour
 from beamdyn.common.drawing.text_width import LINE_HEIGHT
+from beamdyn.common.results.pictures import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,11 +35,9 @@ def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
     paper : Paper, optional
         Size of the figure; by what is drawn if not given.
     """
-    from matplotlib.figure import Figure
-
     paper = paper or Paper.of(rows)
     width, height = paper.width, paper.height
-    figure = Figure(figsize=(width / _INCH, height / _INCH))
+    figure = new_figure(width / _INCH, height / _INCH, layout="none")
     for layout in lay_out(rows, paper):
         left, top, right, bottom = layout.frame
         box = (left / width, 1 - bottom / height, (right - left) / width, (bottom - top) / height)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
-from typing import Any
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import ScalarFormatter
 
 from beamdyn.common.results.display_units import DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend
+from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend, new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _LETTERS = 15.0  # letters of a note in an inch
 _COLOUR = "#5a4200"  # colour of notes
@@ -24,22 +26,13 @@ def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)
     ax.tick_params(labelsize=11)
-    for axis in (ax.xaxis, ax.yaxis):
-        if isinstance(
-            formatter := axis.get_major_formatter(), ScalarFormatter
-        ):  # not of axes drawn on before
-            formatter.set_useOffset(False)
+    for axis in ("x", "y"):
+        with suppress(AttributeError):  # where axes drawn on before have a scale that has no offset
+            ax.ticklabel_format(axis=axis, useOffset=False)
     ax.margins(x=0.02)
     ax.grid(color="0.85", linewidth=0.7)
     ax.set_axisbelow(True)
     return ax
-
-
-def new_axes() -> Axes:
-    """Axes of a new figure, which matplotlib keeps to show it."""
-    from matplotlib import pyplot
-
-    return pyplot.subplots(figsize=(7.5, 4.8), layout="constrained")[1]
 
 
 def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, list[Axes]]:
@@ -64,9 +57,7 @@ def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, 
     columns = min(columns, count)
     rows = -(-count // columns)
     if ax is None:
-        from matplotlib import pyplot
-
-        ax = pyplot.subplots(figsize=(6.5 * columns, 4.5 * rows), layout="constrained")[1]
+        ax = new_axes(6.5 * columns, 4.5 * rows)
     place, figure = ax.get_subplotspec(), ax.get_figure()
     if place is None or figure is None:
         raise ValueError("ax: give axes made by subplots: their place is divided")

@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patheffects import withStroke
-from matplotlib.transforms import ScaledTranslation
 
 from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
 _HEADROOM = 1.06
@@ -128,6 +128,8 @@ def plot_campbell(
     handles, labels = ax.get_legend_handles_labels()
     if labels:  # below the axes, where it covers nothing
         columns = 3 if max(map(len, labels)) <= _LONGEST else 2
+        from matplotlib.transforms import ScaledTranslation
+
         below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
         place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
         ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
@@ -187,6 +189,8 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
                 yield _CurveName(name + more, float(y[-1]), style["color"])
             elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
                 place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}
+                from matplotlib.patheffects import withStroke
+
                 halo = [withStroke(linewidth=3, foreground="white")]
                 ax.annotate(name, (x[shown[0]], y[shown[0]]), fontsize=9, path_effects=halo, **place)
         if len(scenes) > 1:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatterSciNotation
 
 from beamdyn.common.plots.axes_and_lines import line_style, position_label, set_up_axes
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, add_legend
+from beamdyn.common.results.pictures import COLOURS, add_legend, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MOST_CURVES = 8
 _LOWEST, _ROW = 0.02, 0.03  # heights of crosses on the axes, and between those of two curves
@@ -39,7 +40,7 @@ def sweep_figure(swept: Any) -> Figure:
     Figure
     """
     groups, two = panels_of(swept), _has_curves(swept)
-    figure = Figure(figsize=(7.5, max(4.5, 2.7 * len(groups))), layout="constrained")
+    figure = new_figure(7.5, max(4.5, 2.7 * len(groups)))
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
     further = [f"{input_words(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
     second = "\n".join([input_words(swept, 1), *further]) if two else None
@@ -346,6 +347,8 @@ def plot_work_precision(
     -------
     Axes
     """
+    from matplotlib.ticker import LogFormatterSciNotation
+
     ax = set_up_axes(ax, "time [s]", "relative error")
     ax.set(xscale="log", yscale="log")
     ax.set_title(title, fontsize=11)

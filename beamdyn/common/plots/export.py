@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.inputs.checks import ascending
+from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.files import check_writable, replacing
-from beamdyn.common.results.pictures import save_animation
+from beamdyn.common.results.pictures import new_figure, save_animation
 
 if TYPE_CHECKING:
     import meshio
@@ -168,12 +169,8 @@ def animate(
     OSError
         If it cannot be written.
     """
-    from matplotlib.figure import Figure
-
-    from beamdyn.common.plots.axes_and_lines import note_below
-
     x, t, deflection = _check_history(x, t, deflection)
-    figure = note_below(Figure(figsize=(6.4, 3.6), layout="constrained"), notes)
+    figure = note_below(new_figure(6.4, 3.6), notes)
     ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # axes hold the whole motion
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from beamdyn.common.plots.axes_and_lines import (
     draw_by_plane,
@@ -20,6 +20,9 @@ from beamdyn.common.plots.axes_and_lines import (
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend
 from beamdyn.common.results.pictures import save_figure as save_figure  # exported with the plots
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _MOST_THICK = 2000  # samples above which a line over time is drawn thin
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.contour import ContourSet
 
 from beamdyn.common.plots.axes_and_lines import (
     draw_lines,
@@ -20,6 +19,10 @@ from beamdyn.common.plots.axes_and_lines import (
 )
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
 
 _COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # of surfaces
 _FLAT = 1e-6  # relative deflection below which a surface has no nodal lines

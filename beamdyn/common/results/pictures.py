@@ -7,7 +7,7 @@ from functools import wraps
 from inspect import Parameter, signature
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from beamdyn.common.results.files import check_writable, replacing
 
@@ -111,11 +111,23 @@ def add_legend(ax: Axes) -> Axes:
 
 def figure_of(draw: Callable[[Axes], object], size: tuple[float, float] = (7.5, 4.8)) -> Figure:
     """Make a figure, of a size in inches, of what a function draws on axes; nobody has to close it."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
+    figure = new_figure(*size)
     draw(figure.subplots())
     return figure
+
+
+def new_axes(width: float = 7.5, height: float = 4.8) -> Axes:
+    """Axes of a new figure of a size in inches, which matplotlib keeps to show it."""
+    from matplotlib import pyplot
+
+    return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
+
+
+def new_figure(width: float, height: float, layout: Literal["constrained", "none"] = "constrained") -> Figure:
+    """An empty figure of a size in inches; constrained, its parts make room for one another."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout=layout)
 
 
 # Several results on one pair of axes ----------------------------------------------------------------

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS, new_axes, new_figure
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.spreading.first_order import FirstOrderRange
 from beamdyn.common.spreading.statistics import Scatter, SobolIndices
@@ -186,7 +186,7 @@ def draw_scatter(
     ax : Axes, optional
         Where to draw; new axes if not given.
     """
-    ax, drawn = _axes(ax), values[np.isfinite(values)]
+    ax, drawn = (ax or new_axes(height=4.0)), values[np.isfinite(values)]
     ax.set_xlabel(label)
     ax.set_ylabel("random designs [%]")
     low, high = _seen(drawn)
@@ -232,7 +232,7 @@ def draw_indices(
     ax : Axes, optional
         Where to draw; new axes if not given.
     """
-    ax, shown = _axes(ax), min(len(answers), len(COLOURS))
+    ax, shown = (ax or new_axes(height=4.0)), min(len(answers), len(COLOURS))
     height, rows = 0.8 / shown, np.arange(len(inputs))[::-1]
     if not np.isfinite(total).any():
         ax.text(0.5, 0.5, "no shares: see the warnings", ha="center", va="center", transform=ax.transAxes)
@@ -255,21 +255,11 @@ def draw_indices(
 
 def spread_figure(spread: Any) -> Figure:
     """Draw how the first answers of a `Spread` scatter, a panel each, and below them which inputs matter."""
-    from matplotlib.figure import Figure
-
     panels = min(len(spread.answers), _MOST_PANELS)
     below = 1.2 + 0.35 * len(spread.inputs)
-    figure = Figure(figsize=(7.5, 2.4 * panels + below), layout="constrained")
+    figure = new_figure(7.5, 2.4 * panels + below)
     axes = figure.subplots(panels + 1, 1, height_ratios=[2.4] * panels + [below])
     for answer in range(panels):
         spread.plot(axes[answer], answer)
     spread.plot_indices(axes[-1])
     return figure
-
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is not None:
-        return ax
-    from matplotlib import pyplot
-
-    return pyplot.subplots(figsize=(7.5, 4.0), layout="constrained")[1]

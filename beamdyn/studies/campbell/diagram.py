@@ -12,6 +12,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
+from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
@@ -37,8 +38,6 @@ from beamdyn.studies.campbell.crossings import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from beamdyn.common.plots.campbell import Curves
 
 UNITS = ("rad/s", "rpm")
 _MOST_ORDERS = 100
@@ -156,8 +155,6 @@ class Campbell(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the diagram; flap solid and edge dashed where two planes are modelled."""
-        from beamdyn.common.plots.campbell import plot_campbell
-
         return plot_campbell(
             [self._curves(i) for i in range(len(self.loci))],
             {line.name: line.multiple for line in self.lines},
@@ -169,8 +166,6 @@ class Campbell(StatesModelError):
         )
 
     def _curves(self, i: int) -> Curves:
-        from beamdyn.common.plots.campbell import Curves
-
         locus, label, names = self.loci[i], self.labels[i], self.names[i]
         if locus.scene.physics.planes == 1:
             return Curves(locus.speeds, locus.frequency, names, label)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.scene.beam import PROPERTY_UNITS, Beam
@@ -238,7 +239,5 @@ class Sensitivities(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative change of each answer over that of each number, the most important on top."""
-        from beamdyn.common.plots.curves import plot_bars
-
         names = [each.name for each in self.inputs]
         return plot_bars(names, self.relative, self.answers, "relative change over that of the number", ax)

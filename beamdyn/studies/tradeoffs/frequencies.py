@@ -15,6 +15,7 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.digits import percent
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.effects import LARGE_DEFLECTION, STRETCH
+from beamdyn.equations.fem import Fem
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import frequency_bounds
 from beamdyn.modes.locus import frequency_locus
@@ -161,8 +162,6 @@ def _basis_settings(
 
 def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
     """Families of finite elements, plain and extrapolated."""
-    from beamdyn.equations.fem import Fem  # loads scikit-fem
-
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (

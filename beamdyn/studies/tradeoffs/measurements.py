@@ -13,6 +13,7 @@ import numpy as np
 from numpy.linalg import LinAlgError
 
 from beamdyn.common.inputs.checks import reason_of
+from beamdyn.common.plots.curves import plot_work_precision
 from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
 
@@ -175,8 +176,6 @@ class Diagram(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw error against time, one line per family, and the front."""
-        from beamdyn.common.plots.curves import plot_work_precision
-
         lines: dict[str, list[tuple[float, float]]] = {}
         for m in self.measurements:
             lines.setdefault(m.family, []).append((m.time, m.error))

@@ -13,6 +13,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, function, positive, real
+from beamdyn.common.plots.axes_and_lines import panels
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Provenance, Result
@@ -93,8 +94,6 @@ class Tradeoff(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw all diagrams side by side, in place of the axes."""
-        from beamdyn.common.plots.axes_and_lines import panels
-
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):
             diagram.plot(place)
