@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -16,6 +16,8 @@ _DEEP = 0.012  # depth of the drawn beam over its length
 _SHOWN = 0.22  # largest deflection drawn, over the length
 _PHI, _PSI, _ETA = np.radians((36.0, 35.0, 24.0))
 _ROOT, _LENGTH, _TIP = np.array([1.0, 0.0]), 0.9, 0.16
+_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # of a step along y, in an oblique view
+_SECTIONS = 4  # positions from a section that is drawn to the next
 _HUB = 0.16  # radius at which the sense of rotation is drawn
 
 
@@ -67,16 +69,12 @@ def bent_beam(
     """
     length = float(x[-1])
     half = 0.5 * _DEEP * length
-    wall = np.array([[0.0, -0.09 * length], [0.0, 0.09 * length]])
-    back = np.array([-0.03 * length, -0.02 * length])
-    ticks = wall[0] + np.linspace(0, 1, 7)[:, None] * (wall[1] - wall[0])
     edge = np.vstack([np.column_stack([x, deflection + half]), np.column_stack([x, deflection - half])[::-1]])
     corners = np.array([[0.0, -room], [1.1 * length, room]])
     shapes: list[DrawnShape] = [
         Outline([(0, 0), (length, 0)], "axis", 0.9, (5.0, 3.0)),
         *(Outline(np.column_stack([x, other]), "ghost", 1.4) for other in envelope),
-        *(Outline([tick, tick + back], "ground", 0.9) for tick in ticks),
-        Outline(wall, "ground", 2.4),
+        *_wall(length),
         Outline(edge, "beam", 1.2, closed=True, filled=True),
         Symbol("dot", (length, deflection[-1]), "mark", 5.0),
     ]
@@ -84,6 +82,55 @@ def bent_beam(
     labels = [Label(label, tip, "mark", (1.0, 0.4))] if label else []
     words = "A bent beam, drawn along its own axis, clamped at the left"
     return Drawing(shapes, labels, title, words, room=corners, scale=scale)
+
+
+def _wall(length: float) -> Iterator[DrawnShape]:
+    """Yield the clamp of a beam of a length, at its root."""
+    wall = np.array([[0.0, -0.09 * length], [0.0, 0.09 * length]])
+    back = np.array([-0.03 * length, -0.02 * length])
+    ticks = wall[0] + np.linspace(0, 1, 7)[:, None] * (wall[1] - wall[0])
+    yield from (Outline([tick, tick + back], "ground", 0.9) for tick in ticks)
+    yield Outline(wall, "ground", 2.4)
+
+
+def bent_strip(
+    x: np.ndarray, y: np.ndarray, deflection: np.ndarray, across: np.ndarray, title: str, room: float
+) -> Drawing:
+    """Draw a strip as a mesh of lines along and across, seen obliquely, with its root at the left.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Positions along the strip [m], from 0 to its length.
+    y : ndarray, shape (n, k)
+        Positions across it [m].
+    deflection : ndarray, shape (n, k)
+        Deflection as drawn [m].
+    across : ndarray, shape (n,)
+        That along -y [m].
+    title : str
+        Title.
+    room : float
+        Largest deflection as drawn [m] for which to leave room.
+    """
+
+    def seen(deflection: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.stack([x[:, None] + _AWAY[0] * y, deflection + _AWAY[1] * y], axis=-1)
+
+    rest, bent = seen(0 * deflection, y), seen(deflection, y - across[:, None])
+    root, sections = rest[0], slice(None, None, _SECTIONS)
+    lines = [*bent.transpose(1, 0, 2), *bent[sections]]
+    gap = np.full((1, 2), np.nan)
+    border = np.concatenate([rest[:, 0], rest[::-1, -1]])
+    shapes: list[DrawnShape] = [
+        Outline(border, "ghost", 1.4, closed=True),
+        Outline(np.concatenate([part for line in lines for part in (line, gap)]), "beam", 1.0),
+        Outline(root, "ground", 3.0),
+    ]
+    aside = _AWAY[1] * float(np.ptp(y)) / 2
+    corners = np.array([[0.0, -room - aside], [1.1 * float(x[-1]), room + aside]])
+    words = "A strip seen obliquely, drawn along its own axis, clamped at the left"
+    return Drawing(shapes, [], title, words, room=corners)
 
 
 # Sketches of symbols ----------------------------------------------------------------------------------

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from beamdyn import natural_modes
-from beamdyn.app.drawings import bent_beam
+from beamdyn.app.drawings import bent_beam, bent_strip
 from beamdyn.app.inputs import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screens import Drag, KeyResult, Slider
@@ -18,8 +19,8 @@ from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes
 
-_PLACES = 41  # along the beam
-_LARGEST = 0.22  # deflection drawn, over the length
+_PLACES, _ROWS = 41, 5  # along the beam, and across a strip
+_LARGEST, _LARGEST_OF_STRIP = 0.22, 0.12  # deflection drawn, over the length
 _ABREAST = 2  # drawings in a row
 
 
@@ -31,6 +32,8 @@ def solve(tables: Mapping[str, Any]) -> Modes:
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
     """Each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the undeflected beam."""
+    if (mesh := modes.mesh(_PLACES, _ROWS)) is not None:
+        return _abreast(_strips(modes, mesh, 1.0 - place))
     length, words = modes.scene.beam.length, words_of_directions(modes.scene)
     x = np.linspace(0.0, length, _PLACES)
     each = []
@@ -40,7 +43,22 @@ def drawings(modes: Modes, place: float = 0.0) -> Rows:
         shape *= _LARGEST * length / (np.abs(shape).max() or 1.0)
         title = f"{name}, drawn in {words[main]}" if words else name
         each.append(bent_beam(x, (1.0 - place) * shape, title, "", (shape, -shape), _LARGEST * length))
-    return [each[i : i + _ABREAST] for i in range(0, len(each), _ABREAST)]
+    return _abreast(each)
+
+
+def _strips(modes: Modes, mesh: tuple[np.ndarray, ...], swing: float) -> list[Drawing]:
+    """Each mode shape of a strip that twists or cambers, as a part of its extreme position."""
+    x, y, shapes, across = mesh
+    room = _LARGEST_OF_STRIP * float(x[-1])
+    each = []
+    for name, shape, aside in zip(modes.labels(), shapes, across, strict=True):
+        scale = swing * room / (max(np.abs(shape).max(), np.abs(aside).max()) or 1.0)
+        each.append(bent_strip(x, y, scale * shape, scale * aside, name, room))
+    return each
+
+
+def _abreast(drawings: list[Drawing]) -> Rows:
+    return [drawings[i : i + _ABREAST] for i in range(0, len(drawings), _ABREAST)]
 
 
 def quick_headline(modes: Modes) -> Iterator[KeyResult]:

@@ -176,6 +176,30 @@ def test_mode_shapes_of_two_planes_say_in_which_they_are_drawn():
     assert all("drawn in" in drawing.title for row in rows for drawing in row)
 
 
+STRIP = {"physics.torsion": "true", "physics.camber": "true", "beam.poissons_ratio": "0.3"}
+
+
+def mesh_of(drawing):
+    """The lines of a strip as drawn: those along, and the sections, each shape (n, 2)."""
+    (mesh,) = (np.asarray(s.points) for s in drawing.shapes if isinstance(s, Outline) and s.role == "beam")
+    lines = np.split(mesh, np.flatnonzero(np.isnan(mesh[:, 0])))
+    return [line[np.isfinite(line[:, 0])] for line in lines if len(line) > 1]
+
+
+def test_mode_shapes_of_a_strip_are_meshes_that_swing_through_rest():
+    answer = solved(MODE_SHAPES, **STRIP, **{"options.modes": "3"})
+    one, rest, other = (MODE_SHAPES.drawings(answer, p)[1][0] for p in (0.0, 1.0, 2.0))
+    assert one.title.endswith("torsion")
+    for there, still, back in zip(*map(mesh_of, (one, rest, other)), strict=True):
+        np.testing.assert_allclose(there - still, still - back, rtol=0, atol=1e-15)
+    *_, tip = mesh_of(one)
+    *_, tip_at_rest = mesh_of(rest)
+    twisted = (tip - tip_at_rest)[:, 1]
+    surface = answer.surface([0.05], np.linspace(1, -1, len(tip)))[2, 0]
+    np.testing.assert_allclose(twisted / twisted[0], surface / surface[0], rtol=0, atol=1e-9)
+    assert np.abs(twisted).max() == pytest.approx(0.12 * 0.05)
+
+
 # Steady response ----------------------------------------------------------------------------------------
 
 
