@@ -103,6 +103,20 @@ def test_modes_writes_files(run, tmp_path):
     assert len(meshio.read(names["shapes"]).point_data) == 3
 
 
+def test_modes_of_a_strip_are_written_as_surfaces(run, tmp_path):
+    scene = tmp_path / "strip.toml"
+    given = Path(SCENE).read_text().replace("[beam]", "[beam]\npoissons_ratio = 0.3")
+    scene.write_text(f"{given}\n[physics]\ntorsion = true\ncamber = true\n")
+    files = {option: tmp_path / f"{option}{suffix}" for option, suffix in FILES.items()}
+    code, out, _ = run("modes", scene, *(x for o, path in files.items() for x in (f"--{o}", path)))
+    assert code == DONE and "torsion" in out
+    assert [row["kind"] for row in read_csv(files["csv"])] == ["bending", "bending", "torsion"]
+    assert json.loads(files["json"].read_text())["kind"] == ["bending", "bending", "torsion"]
+    mesh = meshio.read(files["shapes"])
+    assert np.ptp(mesh.points, axis=0) == pytest.approx([0.05, 0.01, 0.0])
+    assert [name.endswith("torsion") for name in mesh.point_data] == [False, False, True]
+
+
 FILES = {"json": ".json", "csv": ".csv", "plot": ".png", "shapes": ".vtu"}
 
 
