@@ -21,7 +21,7 @@ from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.one_line import number
-from beamdyn.common.screens.screens import KeyResult
+from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
 from beamdyn.modes.model_error.effect_choice import plain_physics

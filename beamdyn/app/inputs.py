@@ -16,7 +16,7 @@ from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, de
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.display_units import known_unit
-from beamdyn.common.screens.screens import Drag
+from beamdyn.common.screens.screen_parts import Drag
 from beamdyn.files.scene_inputs import RectangularInput, SceneInput, StiffnessInput
 from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene

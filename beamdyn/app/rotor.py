@@ -12,7 +12,7 @@ from beamdyn import draw as draw_rotor
 from beamdyn.app.inputs import first_frequency, read_scene
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.screens.screens import Handle
+from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
 _STEPS = 200  # lengths are dragged in steps of about so many parts of the beam

@@ -22,7 +22,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoin
 from beamdyn.common.edge.tables import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.one_line import number
-from beamdyn.common.screens.screens import Drag, KeyResult
+from beamdyn.common.screens.screen_parts import Drag, KeyResult
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Modes

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -37,7 +38,7 @@ from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.screens.screens import FoldedPart, Handle, KeyResult, Slider
+from beamdyn.common.screens.screen_parts import Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
 
 if TYPE_CHECKING:
@@ -226,8 +227,8 @@ class BrakeType(ABC, Generic[FileModel]):
         Results of a sweep if none are named, separated by commas.
     slider : Slider, optional
         Slider on which its drawings depend.
-    more : tuple of FoldedPart
-        Drawings and tables that fold out on its screen.
+    more : mapping of str to callable
+        Further drawings, which fold out on its screen: ``more[title](answer)`` are rows of them.
     most_cases : int
         Largest number of designs of a sweep.
     key_results : tuple of (words, name)
@@ -244,7 +245,7 @@ class BrakeType(ABC, Generic[FileModel]):
     example_sweep: str
     sweep_results: str
     slider: Slider | None = None
-    more: tuple[FoldedPart, ...] = ()
+    more: Mapping[str, Callable[[Any], Rows]] = MappingProxyType({})
     most_cases: int = MOST_ONE_BY_ONE
     key_results: tuple[tuple[str, str], ...] = ()
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range, in_small_units
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.screens.screens import FoldedPart, Slider
+from beamdyn.common.screens.screen_parts import Slider
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -295,7 +296,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     example_sweep = "points.C.x=17:20:13 mm"
     sweep_results = "work"
     slider = Slider("stroke", ("as drawn", "end of the stroke"), step=0.1)
-    more = (FoldedPart.of_drawings("Free bodies", lambda answer: free_body_drawings(answer.equilibria)),)
+    more = MappingProxyType({"Free bodies": lambda answer: free_body_drawings(answer.equilibria)})
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
         """Tables and text of a file, or of the caliper of a name."""

@@ -17,7 +17,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results.result import plain
-from beamdyn.common.screens.screens import Handle, Slider
+from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.screens.screens import Handle
+from beamdyn.common.screens.screen_parts import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 

@@ -17,7 +17,7 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results.one_line import error_at_most, rounded_up
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.screens.screens import Handle
+from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput

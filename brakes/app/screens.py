@@ -76,7 +76,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
         lambda answer: answer.rows(),
         slider=brake.slider,
         sweeps=make_sweeps(brake),
-        more=(*brake.more, *more),
+        more=(*(FoldedPart.of_drawings(*each) for each in brake.more.items()), *more),
         handles=lambda answer, place: answer.handles(place),
         drawings=lambda answer, place: answer.drawings(place),
         charts=lambda answer, place: answer.charts(place),

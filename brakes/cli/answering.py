@@ -16,7 +16,9 @@ from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.html_report import Question
+    from rich.console import RenderableType
+
+    from beamdyn.common.edge.html_report import Question, Report
     from brakes.answers.base import Answer, BrakeType
 
 
@@ -85,7 +87,7 @@ def run_command(
     ValueError
         For bad input.
     """
-    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.html_report import Question
     from beamdyn.common.edge.tables import show
 
     written = {option: path for option, (path, _) in (further or {}).items()}
@@ -107,8 +109,7 @@ def run_command(
         raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
     answer = brake.answer(tables, file)
     shown = answer.tables()
-    more = [(part.title, partial(part.in_report, answer)) for part in brake.more]
-    report = Report(question, shown, [*answer.refusals, *answer.warnings], more)
+    report = None if outputs.report is None else _report(brake, question, answer, shown)
     write(answer, outputs, answer.rows(), answer.figure, report)
     for path, save in (further or {}).values():
         if path is not None:
@@ -117,6 +118,18 @@ def run_command(
     program.warn("brakes", answer.warnings)
     if answer.refusals:
         raise NoAnswer("; ".join(answer.refusals))
+
+
+def _report(
+    brake: BrakeType[Any], question: Question, answer: Answer, shown: Sequence[RenderableType]
+) -> Report:
+    """The HTML report of an answer with its tables; its further drawings need the screens."""
+    from beamdyn.common.edge.html_report import Report
+    from beamdyn.common.screens.screens import FoldedPart
+
+    folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())
+    more = [(part.title, partial(part.in_report, answer)) for part in folded]
+    return Report(question, shown, [*answer.refusals, *answer.warnings], more)
 
 
 def _answer_many(

@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
+from beamdyn.common.drawing.on_axes import draw_in
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
@@ -68,8 +69,6 @@ def caliper_figure(
         A line under the title.
     """
     from matplotlib.figure import Figure
-
-    from beamdyn.common.drawing.on_axes import draw_in
 
     figure = Figure(figsize=(11.5, 7.6))  # laid out by hand: a layout engine takes twice as long
     place = float(run.cable[-1] if cable is None else cable)

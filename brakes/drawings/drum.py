@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
+from beamdyn.common.drawing.on_axes import draw_in
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
 from brakes.drawings.arrows import ForceArrows
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
@@ -24,8 +25,6 @@ def brake_figure(result: BrakeResult) -> Figure:
     result : BrakeResult
         A result of one case.
     """
-    from beamdyn.common.drawing.on_axes import draw_in
-
     figure = Figure(figsize=(11.5, 7.0))
     draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing_of(result))
     charts = charts_of(result)

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.plots.curves import curves
@@ -20,8 +21,6 @@ from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
     """Draw the truck, the brake's two stages and the free bodies of its shoes, if these are given."""
-    from beamdyn.common.drawing.on_axes import figure_of
-
     rows = answer_drawings(stop, followed, forces, followed)
     return figure_of(rows) if rows else Figure(figsize=(10.0, 4.0))
 

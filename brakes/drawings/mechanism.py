@@ -12,7 +12,10 @@ import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
+from beamdyn.common.drawing.layout import Fit
+from beamdyn.common.drawing.on_axes import draw_in, draw_on, figure_of, frame_of
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
+from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.results.pictures import save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Equilibrium, Load, Position, free_body
@@ -101,11 +104,6 @@ def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple
     aside = (-way[1], way[0]) if way[0] >= 0 else (way[1], -way[0])
     places = first + _ALONG[:, None] * way
     sketch.labels.append(Label(member.name + size, places, role, aside, priority=_MEMBERS))
-
-
-def _pin(at: np.ndarray, grounded: bool) -> list[DrawnShape]:
-    support: list[DrawnShape] = [Symbol("ground", at, "ground", 14.0)] if grounded else []
-    return [*support, Symbol("pin", at, "pin")]
 
 
 def _faces(position: Position) -> Iterator[np.ndarray]:
@@ -257,9 +255,6 @@ def free_body_diagrams(equilibria: Mapping[str, Equilibrium]) -> Figure:
     equilibria : mapping
         Equilibria at one position by their headings, such as without and with friction; one may be "".
     """
-    from beamdyn.common.drawing.on_axes import figure_of
-    from beamdyn.common.drawing.sheet import Paper
-
     rows = free_body_drawings(equilibria)
     return figure_of(rows, Paper.of_squares(rows))
 
@@ -325,9 +320,6 @@ def animate(
         Pictures a second.
     """
     from matplotlib.figure import Figure
-
-    from beamdyn.common.drawing.layout import Fit
-    from beamdyn.common.drawing.on_axes import draw_on, frame_of
 
     figure = Figure(figsize=(5.6, 5.2))
     low, high = (_MM * corner for corner in parts.extent(positions))
@@ -395,8 +387,6 @@ def mechanism_figure(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
         From `loads_over_stroke`; none if there is no stroke.
     """
     from matplotlib.figure import Figure
-
-    from beamdyn.common.drawing.on_axes import draw_in
 
     width = 12.0 if charts else 7.5
     figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long

@@ -9,7 +9,7 @@ pytest.importorskip("nicegui")
 
 from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.screens import Slider
+from beamdyn.common.screens.screen_parts import Slider
 from brakes.app.program import BRAKES
 from tests.app.browsing import go
 from tests.app.serving import IN_BROWSER

@@ -14,7 +14,7 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import differing
-from beamdyn.common.screens.screens import KeyResult
+from beamdyn.common.screens.screen_parts import KeyResult
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -10,7 +10,7 @@ from typing import Any
 from nicegui import background_tasks, ui
 
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.screens import Slider
+from beamdyn.common.screens.screen_parts import Slider
 
 STYLE = """
 .stroke { flex-wrap: nowrap; align-items: center; gap: 0; }

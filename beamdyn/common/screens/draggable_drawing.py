@@ -12,7 +12,7 @@ from nicegui import ui
 from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.screens.handles import Place, Sheet, Viewport
 from beamdyn.common.screens.page_writer import PageWriter, toggle
-from beamdyn.common.screens.screens import Handle
+from beamdyn.common.screens.screen_parts import Handle
 
 STYLE = (
     page_colours(":root")

@@ -31,7 +31,8 @@ from beamdyn.common.screens.form_entries import (
 )
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.screens import Drag, Screen
+from beamdyn.common.screens.screen_parts import Drag
+from beamdyn.common.screens.screens import Screen
 
 
 class Form:

@@ -20,7 +20,8 @@ from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.screens.comparison import with_ghost
 from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for, usual_unit
-from beamdyn.common.screens.screens import Handle, Screen
+from beamdyn.common.screens.screen_parts import Handle
+from beamdyn.common.screens.screens import Screen
 
 Place = tuple[float, float]
 _NARROW = 400.0  # width of the paper on a narrow page [pt]

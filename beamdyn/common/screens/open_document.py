@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.screens.form_entries import Entries, by_field, tables_of, toml_of
-from beamdyn.common.screens.screens import Document, KeyResult, Screen
+from beamdyn.common.screens.screen_parts import KeyResult
+from beamdyn.common.screens.screens import Document, Screen
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -29,7 +29,8 @@ from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.panels import ComparisonPanel, FoldedPanel, SketchPanel, headline_of
 from beamdyn.common.screens.processes import RunsTasks, Task
-from beamdyn.common.screens.screens import Handle, Screen
+from beamdyn.common.screens.screen_parts import Handle
+from beamdyn.common.screens.screens import Screen
 from beamdyn.common.screens.sweep_panel import SweepPanel
 from beamdyn.common.screens.tasks import at_fault, outcome_of
 

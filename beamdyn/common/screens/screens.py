@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.on_axes import figure_of
@@ -19,6 +18,7 @@ from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.screens.form_entries import Entries, entries_of
 from beamdyn.common.screens.lists import Lists
+from beamdyn.common.screens.screen_parts import Drag, Handle, KeyResult, Slider
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,116 +50,6 @@ class Sweeps:
     results: str
     run: Callable[[Mapping[str, Any], str, str], InputSweep]
     draw: Callable[[InputSweep], Figure] = sweep_figure
-
-
-@dataclass(frozen=True)
-class Slider:
-    """A slider above the drawing, which changes the drawing only.
-
-    Parameters
-    ----------
-    label : str
-        Name of the quantity that it sets.
-    marks : tuple of str
-        Labels of its positions 0, 1, ...
-    step : float
-        Step between positions when it is moved by hand.
-    seconds : float
-        Time to play it from one end to the other [s].
-    onward : bool
-        Whether it is played at a constant rate, and from 0 again after the end; else back and forth, slowly
-        at both ends.
-    """
-
-    label: str
-    marks: tuple[str, ...]
-    step: float = 0.05
-    seconds: float = 2.5
-    onward: bool = False
-
-    @property
-    def last(self) -> float:
-        """Position at its end."""
-        return len(self.marks) - 1.0
-
-    def place(self, elapsed: float) -> float:
-        """Position when it has been played for a time [s]."""
-        if self.onward:
-            return self.last * (elapsed / self.seconds % 1.0)
-        return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
-
-    def elapsed(self, place: float) -> float:
-        """Time at which it is at a position when it is played, on its way there [s]."""
-        if self.onward:
-            return self.seconds * place / self.last
-        if place >= self.last:
-            return self.seconds
-        return self.seconds / math.pi * math.acos(1 - 2 * max(place, 0.0) / self.last)
-
-
-@dataclass(frozen=True)
-class Drag:
-    """A slider below a field of the form, which writes into the field.
-
-    Parameters
-    ----------
-    path : str
-        Path of the field's input.
-    low, high, step : float
-        Its range and step, in `unit`.
-    unit : str
-        Unit in which it writes.
-    """
-
-    path: str
-    low: float
-    high: float
-    step: float
-    unit: str
-
-
-class KeyResult(NamedTuple):
-    """A result that stands first on a screen, such as ("stopping distance", "13.4 m").
-
-    Parameters
-    ----------
-    words : str
-        Name of the result.
-    value : str
-        The number with its unit, or a word.
-    """
-
-    words: str
-    value: str
-
-
-@dataclass(frozen=True)
-class Handle:
-    """A draggable point of a drawing, which writes into fields of the form.
-
-    Parameters
-    ----------
-    label : str
-        Name of the point.
-    at : tuple of float
-        Its place (x, y) [m].
-    moved : callable
-        ``moved(x, y)``: values in SI for a new place [m], by the path of their input: a number, or a pair for
-        a point.
-    scale : float
-        Units of the drawing in a metre: 1000 where it is in mm.
-    step : float
-        Distance by which an arrow key moves it [m].
-    grain : float
-        Step to which a length is rounded [m].
-    """
-
-    label: str
-    at: tuple[float, float]
-    moved: Callable[[float, float], Mapping[str, float | tuple[float, float]]]
-    scale: float = 1.0
-    step: float = 5e-4
-    grain: float = 1e-4
 
 
 @dataclass(frozen=True)
