@@ -29,7 +29,7 @@ from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.program import Interrupted
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varying import Folder
-from beamdyn.common.plots.export import animate, write_series
+from beamdyn.common.plots.export import animate
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -192,12 +192,11 @@ def _write_close_up(
     speed = float(run.scene.motion.at(np.array([middle])).speed[0]) if run.scene.motion else 0.0
     half = _PERIODS / 2 / float(bd.natural_modes(run.scene, speed, 1).frequency[0])
     t = np.linspace(max(middle - half, 0.0), min(middle + half, run.path.end), _FRAMES)
-    x = np.linspace(0, run.scene.beam.length, 41)
-    deflection = run.shape(x, t)
     if series is not None:
-        write_series(series, x, t, deflection, force=force)
+        run.export(series, t[0], t[-1], _FRAMES, force)
     if animation is not None:
-        animate(x, t, deflection, animation, force=force, notes=notes_of(run))
+        x = np.linspace(0, run.scene.beam.length, 41)
+        animate(x, t, run.shape(x, t), animation, force=force, notes=notes_of(run))
 
 
 # Sweeps -------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.inputs.checks import real_array
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
@@ -159,7 +160,11 @@ class Equations:
         """Deflection in the direction of bending over a strip per coordinate: shape (n, k, l).
 
         It is given at xi = x/L (k,) along and eta = 2 y/b (l,) across, where y is in the direction across.
+        A ValueError is raised if an eta lies beside the strip.
         """
+        eta = real_array("eta", eta)
+        if eta.size and np.abs(eta).max() > 1:
+            raise ValueError("eta: positions across run from -1 to 1, at the edges of the strip")
         values = np.repeat(self.deflection(xi)[:, :, None], len(eta), axis=2)
         for name, functions in self.sections:
             of_field = self.shapes[name]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import count, real, real_array, within
+from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.plots.export import write_shapes
 from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
 from beamdyn.common.results.announced import announced
@@ -140,11 +140,8 @@ class Modes(TellsKinds, StatesModelError):
         width b, from -1 to 1, where y points in the direction across.  Its mean over eta is `shape`; where
         neither torsion nor camber is modelled, it is that everywhere.
         """
-        across = real_array("eta", eta)
-        if across.size and np.abs(across).max() > 1:
-            raise ValueError("eta: positions across run from -1 to 1, at the edges of the strip")
         equations = self.model.equations_at(self.speed)
-        return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), across), 1)
+        return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)
 
     def mesh(self, along: int = 101, across: int = 21) -> tuple[np.ndarray, ...] | None:
         """Shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
@@ -167,11 +164,10 @@ class Modes(TellsKinds, StatesModelError):
 
         None where the sections keep their shape, or their width is not known.
         """
-        section = self.scene.beam.section
-        if self.kinds is None or section is None:
+        places = self.model.over_strip(along, across)
+        if places is None:
             return None
-        x, eta = np.linspace(0, self.scene.beam.length, along), np.linspace(1, -1, across)
-        y = np.outer(section.width(np.linspace(0, 1, along)), -eta / 2)
+        x, eta, y = places
         return x, y, np.real(self.surface(x, eta)), np.real(self.shape(x, 1))
 
     def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:

@@ -86,6 +86,10 @@ class ElasticaSystem:
         slopes = np.sin(q @ self.elastica.angles)[..., :-1]
         return points.length * slopes @ points.quadrature.integrate_to(np.asarray(xi)).T
 
+    def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Deflection [m] over a strip, whose sections keep their shape, at xi (k,), eta (l,): (T, k, l)."""
+        return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
+
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Energy [J] at times t (T,): kinetic relative to the rotating axes, elastic, of the root's motion.
 

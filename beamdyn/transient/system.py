@@ -57,6 +57,10 @@ class ModalSystem:
         """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
         return q @ self.equations.deflection(xi, direction=direction)
 
+    def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Deflection [m] over a strip, at xi (k,), eta (l,), as `Equations.surface`: shape (T, k, l)."""
+        return np.tensordot(q, self.equations.surface(xi, eta), 1)
+
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Energy of the vibration [J] at times t (T,): q' q' / 2 + q K q / 2 - f q."""
         _, K, f = self.coefficients(t)

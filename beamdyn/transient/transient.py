@@ -222,6 +222,19 @@ class Transient(StatesModelError):
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.shape(self.at(t)[0], xi, direction)
 
+    def surface(
+        self,
+        x: np.ndarray | Sequence[float],
+        eta: np.ndarray | Sequence[float],
+        t: np.ndarray | Sequence[float],
+    ) -> np.ndarray:
+        """Deflection [m] over the area of a strip at times t [s]: shape (len(t), len(x), len(eta)).
+
+        The places and the direction are those of `Modes.surface`.
+        """
+        xi = np.asarray(x) / self.scene.beam.length
+        return self.system.surface(self.at(t)[0], xi, np.asarray(eta))
+
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
 
@@ -298,11 +311,19 @@ class Transient(StatesModelError):
     def export(
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
     ) -> None:
-        """Write the deflected beam from start to end [s] as a time series for ParaView."""
+        """Write the deflected beam from start to end [s] as a time series for ParaView.
+
+        A strip that twists or cambers has its own width.
+        """
         self._check_window(start, end)
-        x = np.linspace(0, self.scene.beam.length, 41)
-        t = np.linspace(start, end, frames)
-        write_series(path, x, t, self.shape(x, t), force=force, across=self.shape(x, t, 1))
+        t, places = np.linspace(start, end, frames), self.request.model.over_strip(41, 11)
+        if places is None:
+            x, width = np.linspace(0, self.scene.beam.length, 41), None
+            deflection = self.shape(x, t)
+        else:
+            x, eta, y = places
+            deflection, width = self.surface(x, eta, t), np.ptp(y, axis=1)
+        write_series(path, x, t, deflection, width, force, self.shape(x, t, 1))
 
 
 @dataclass(frozen=True)

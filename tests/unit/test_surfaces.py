@@ -74,22 +74,21 @@ def test_the_modal_mass_is_one(width):
     np.testing.assert_allclose(mass, 1.0, rtol=1e-3)  # rho t^3/12 times the squared twist
 
 
+OBLIQUE = replace(strip(), mount=bd.Mount(0.215, np.pi, bending_angle=0.5))
+
+
+def static_tip(speed):
+    """Static deflection of the tip at eta -1, 0, 1, of the strip that stands obliquely."""
+    equations = assemble_equations(OBLIQUE, BASIS)
+    pencil = equations.steady()
+    q = np.linalg.solve(pencil.K0 + speed**2 * pencil.K2, speed**2 * pencil.f2)
+    return np.tensordot(q, equations.surface(np.ones(1), np.array([-1.0, 0.0, 1.0])), 1)[0]
+
+
 def test_rotation_turns_an_oblique_strip_into_its_plane():
     """The point at eta = 1, -sin(psi) b2 + cos(psi) b3 from the axis, thus moves against the bending."""
-    scene = replace(strip(), mount=bd.Mount(0.215, np.pi, bending_angle=0.5))
-    equations = assemble_equations(scene, BASIS)
-    pencil = equations.steady()
-    q = np.linalg.solve(pencil.K0 + 50.0**2 * pencil.K2, 50.0**2 * pencil.f2)
-    left, axis, right = np.tensordot(q, equations.surface(np.ones(1), np.array([-1.0, 0.0, 1.0])), 1)[0]
+    left, axis, right = static_tip(50.0)
     assert right < axis < left
-
-
-@pytest.mark.parametrize(
-    ("x", "eta", "name"), [([0.051], [0.0], "x"), ([0.0], [1.1], "eta"), ([0.0], [np.nan], "eta")]
-)
-def test_places_beside_the_strip_are_refused(modes, x, eta, name):
-    with pytest.raises(ValueError, match=f"^{name}"):
-        modes.surface(x, eta)
 
 
 # Pictures and files -------------------------------------------------------------------------------------
@@ -157,3 +156,42 @@ def test_files_for_paraview_have_both_directions(tmp_path):
     for field, across in zip(fields, sideways, strict=True):
         assert np.abs(field).max(axis=0) == pytest.approx([0, 0.005 * across, 0.005 * (not across)])
     assert 0 < sideways.sum() < 6
+
+
+# Motions ------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def run():
+    """A strip on a wheel that spins up so slowly that it does not ring."""
+    motion = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=2.0))
+    return bd.simulate(replace(OBLIQUE, motion=motion), 2.5, 3, discretization=BASIS)
+
+
+def test_a_strip_that_moves_twists_about_its_mean(run):
+    t, (eta, weights) = np.linspace(0.1, 2.5, 5), leggauss(12)
+    mean = run.shape(X, t)
+    size = 1e-12 * np.abs(mean).max()  # rounding
+    np.testing.assert_allclose(run.surface(X, eta, t) @ weights / 2, mean, rtol=0, atol=size)
+    left, _, right = run.surface([0.05], [-1.0, 0.0, 1.0], [2.5])[0, 0]
+    expected = static_tip(55.0)
+    assert right - left == pytest.approx(expected[2] - expected[0], rel=0.05)  # of one mode of torsion
+
+
+def test_a_strip_that_moves_is_written_as_a_surface(run, tmp_path):
+    run.export(tmp_path / "run.xdmf", 0.1, 2.3, frames=3)
+    reader = meshio.xdmf.TimeSeriesReader(tmp_path / "run.xdmf")
+    points, _ = reader.read_points_cells()
+    time, fields, _ = reader.read_data(1)
+    assert np.ptp(points, axis=0) == pytest.approx([0.05, 0.01, 0.0])
+    rows = points[:, 1].reshape(11, -1)[:, 0] / -0.005
+    expected = run.surface(points[:41, 0], rows.clip(-1, 1), [time])[0].T
+    np.testing.assert_allclose(fields["displacement"][:, 2].reshape(11, 41), expected, rtol=1e-9, atol=1e-15)
+
+
+def test_a_beam_that_moves_has_its_deflection_at_every_place_across():
+    for physics in (bd.Physics(), bd.Physics(large_deflection=True)):
+        motion = bd.RollingWheel(0.3, bd.SpinUp(55.0, duration=0.2))
+        run = bd.simulate(bd.Scene(strip().beam, MOUNT, motion, physics=physics), 0.3, 2)
+        surface = run.surface(X, [-1.0, 0.0], [0.3])
+        np.testing.assert_allclose(surface[0].T, [run.shape(X, [0.3])[0]] * 2, rtol=1e-12)

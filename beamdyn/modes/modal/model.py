@@ -103,6 +103,17 @@ class Model(FieldsOnly):
             return self.solver.solve_static(speeds, self.equations.tips)
         return self._deflected.tips(speeds)
 
+    def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Places of a mesh over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
+
+        None where the sections keep their shape, or their width is not known.
+        """
+        section = self.scene.beam.section
+        if section is None or not self.equations.sections:
+            return None
+        xi, eta = np.linspace(0, 1, along), np.linspace(1, -1, across)
+        return self.scene.beam.length * xi, eta, np.outer(section.width(xi), -eta / 2)
+
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""
         return reduce_to_modes(self.equations, ModalBasis(basis) if isinstance(basis, int) else basis)
