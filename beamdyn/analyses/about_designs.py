@@ -26,15 +26,13 @@ from beamdyn.analyses.values import (
 )
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
+from beamdyn.common.edge.varied_inputs import designs_of, in_units_of, numbers, parse_axis, parse_spreads
 from beamdyn.common.edge.varying import (
     NO_SPREAD,
     NOTHING_VARIED,
     OPTION,
     SpreadOptions,
     VaryOptions,
-    in_units_of,
-    parse_spreads,
 )
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue, check_used

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from cyclopts import App
 
-from beamdyn.common.screens.server import add_command
+from beamdyn.common.screens.app_command import add_command
 
 if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program

@@ -12,8 +12,8 @@ from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
-from beamdyn.common.edge.varied_inputs import Axis
-from beamdyn.common.edge.varying import SPREAD, in_units_of, parse_spreads
+from beamdyn.common.edge.varied_inputs import Axis, in_units_of, parse_spreads
+from beamdyn.common.edge.varying import SPREAD
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
-from beamdyn.common.screens.server import add_command
+from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
 from brakes.cli.answering import What, app, run_command
 

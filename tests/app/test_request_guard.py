@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.screens.server import MISSING
+from beamdyn.common.screens.app_command import MISSING
 from tests.app.serving import PATIENCE, free_port, start, stop
 
 pytestmark = pytest.mark.skipif(find_spec("nicegui") is None, reason=MISSING)

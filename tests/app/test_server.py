@@ -9,7 +9,7 @@ import pytest
 
 import beamdyn.cli
 import brakes.cli
-from beamdyn.common.screens.server import MISSING
+from beamdyn.common.screens.app_command import MISSING
 from tests.app.serving import free_port, listens_to, start, stop
 
 COMMANDS = {"beamdyn": beamdyn.cli.main, "brakes": brakes.cli.main}
@@ -98,4 +98,5 @@ def test_host_without_an_address(said, host):
 
 def test_without_nicegui_it_says_what_to_install(said, monkeypatch):
     monkeypatch.setitem(sys.modules, "nicegui", None)
+    monkeypatch.delitem(sys.modules, "beamdyn.common.screens.server", raising=False)
     assert MISSING in said("--port", str(free_port()))

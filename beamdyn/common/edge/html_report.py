@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beamdyn._version import __version__
+from beamdyn.common.edge.config import read
 from beamdyn.common.edge.rendering import STYLE, drawing, html, picture
 
 if TYPE_CHECKING:
@@ -53,8 +54,6 @@ class Question:
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
         """Make one from a file; raises `ConfigError` if it cannot be read."""
-        from beamdyn.common.edge.config import read
-
         return cls.of(command, file, read(file), **options)
 
 

@@ -6,6 +6,7 @@ import os
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beamdyn.common.results.files import check_writable, same_file, write_text
+from beamdyn.common.results.pictures import figure_of, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -166,14 +168,12 @@ def write(
     if outputs.report is not None and report is not None:
         write_text(outputs.report, report.page(draw))
     if outputs.plot is not None and draw is not None:
-        from beamdyn.common.results.pictures import save_figure
-
         save_figure(draw(), outputs.plot, outputs.force)
 
 
 def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
     """Write rows as text, separated by commas, in a file named .tsv by tabs."""
-    from beamdyn.common.edge.rendering import csv_text
+    from beamdyn.common.edge.rendering import csv_text  # with numpy, which help does without
 
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
@@ -191,13 +191,7 @@ def check_folder(option: str, folder: Path) -> None:
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     """Return a function that makes a figure with what `draw` draws on axes."""
-
-    def made() -> Figure:
-        from beamdyn.common.results.pictures import figure_of
-
-        return figure_of(draw)
-
-    return made
+    return partial(figure_of, draw)
 
 
 def _named_by(scene: Path) -> list[Path]:

@@ -15,6 +15,7 @@ from cyclopts import App, CycloptsError
 
 from beamdyn.common.edge.option_words import TYPED, as_given, as_typed, check_names, say_mistake
 from beamdyn.common.edge.progress import at_work, quiet
+from beamdyn.common.edge.tables import Terminal, spell_output
 from beamdyn.common.results.announced import OutsideLinearTheory
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -83,8 +84,6 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     int
         Exit code: 0 done, 1 the model has no answer, 2 bad input, 130 interrupted.
     """
-    from beamdyn.common.edge.tables import Terminal, spell_output
-
     name = app.name[0]
     given = sys.argv[1:] if arguments is None else list(arguments)
     TYPED.set((app, given))

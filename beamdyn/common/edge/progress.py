@@ -12,6 +12,9 @@ from datetime import timedelta
 from threading import RLock, Timer
 from typing import TYPE_CHECKING
 
+from rich.console import Console
+from rich.text import Text
+
 if TYPE_CHECKING:
     from rich.progress import Progress
 
@@ -90,9 +93,7 @@ class _ProgressLine:
 
 
 def _bar(pace: Pace) -> Progress:
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
-    from rich.text import Text
 
     class Remaining(ProgressColumn):
         """The remaining time, where steps are counted."""

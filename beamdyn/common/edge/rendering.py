@@ -11,6 +11,9 @@ from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
 
 from beamdyn.common.inputs.checks import reason_of
 
@@ -19,7 +22,6 @@ _SENTENCE = 36  # letters from which on the words of a cell are a sentence
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import RenderableType
-    from rich.table import Table
 
 
 def svg(figure: Figure) -> str:
@@ -74,10 +76,6 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
 
     If a table has more than `most` rows, the first and last ones are shown, and how many are not.
     """
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
     made = []
     for part in parts:
         if isinstance(part, Group):
@@ -110,8 +108,6 @@ def _table(made: Table, most: int | None) -> str:
 
 def _cell(cell: object) -> str:
     """A cell in HTML; dimmed digits of a number stand at its end."""
-    from rich.text import Text
-
     if not isinstance(cell, Text) or not cell.spans:
         return escape(str(cell))
     start = cell.spans[0].start

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Group
@@ -12,13 +11,11 @@ from rich.text import Text
 from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
+from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
 from beamdyn.common.results.digits import percent, supported
-from beamdyn.common.spreading.result import Spread
+from beamdyn.common.spreading.result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _DIGITS = 6  # most of an answer
 _WIDTH, _GAP, _OF_SHARES = 119, 3, 20  # characters of a table, between columns, of two shares
@@ -192,19 +189,7 @@ def spread_csv(result: Spread) -> Columns:
     return Columns(*columns)
 
 
-def _sweep_figure(result: Any) -> Figure:
-    from beamdyn.common.plots.curves import sweep_figure
-
-    return sweep_figure(result)
-
-
-def _spread_figure(result: Any) -> Figure:
-    from beamdyn.common.spreading.result import spread_figure
-
-    return spread_figure(result)
-
-
 VIEWS = {
-    "InputSweep": View(None, sweep_csv, 0, _sweep_figure),
-    "Spread": View(spread_table, spread_csv, 0, _spread_figure),
+    "InputSweep": View(None, sweep_csv, 0, sweep_figure),
+    "Spread": View(spread_table, spread_csv, 0, spread_figure),
 }

@@ -1,18 +1,23 @@
-"""An input of a file and the values that it takes, such as "stop.speed=10:30:9 km/h"."""
+"""An input of a file with the values that it takes, such as "stop.speed=10:30:9 km/h", or its tolerance."""
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import get_args, get_origin
 
 import numpy as np
 
 from beamdyn.common.edge.inputs import Input, parts_of
-from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character
+from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character, quantity
+from beamdyn.common.edge.varying import SPREAD
+from beamdyn.common.edge.wording import in_unit_of
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)
@@ -185,3 +190,62 @@ def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
         Whether they are combined each with each, or taken together.
     """
     return Designs([VariedInput(axis.input.path, axis.unit, axis.given) for axis in axes], combine)
+
+
+# Tolerances ------------------------------------------------------------------------------------------
+
+
+def parse_spreads(
+    inputs: Sequence[Input], texts: Sequence[str], nominal: Callable[[Input], tuple[float, str]]
+) -> tuple[SpreadInput, ...]:
+    """Read inputs with their tolerances.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+        Those that may have a tolerance.
+    texts : sequence of str
+        KEY=TOLERANCE of each; the key as for `parse_axis`.
+    nominal : callable
+        ``nominal(input)``: value of an input in SI, and its SI unit.
+
+    Returns
+    -------
+    tuple of SpreadInput
+
+    Raises
+    ------
+    ValueError
+        If there is no such input, it is given twice, or its tolerance cannot be read.
+    """
+    made: dict[str, SpreadInput] = {}
+    for text in texts:
+        words = f'{SPREAD} = "{text}"'
+        key, _, tolerance = (part.strip() for part in text.partition("="))
+        if not tolerance:
+            raise ValueError(f'{words}: give KEY=TOLERANCE, such as "{key or "thickness"}=+-2%"')
+        entry = find_input(inputs, key, words)
+        if entry.path in made:
+            raise ValueError(f"{words}: {entry.path} has a spread already; give each input once")
+        value, unit = nominal(entry)
+
+        def in_si(number: str, written: str, unit: str = unit) -> float:
+            return quantity(f"{number} {written}".strip(), unit)
+
+        try:
+            given = parse_tolerance(entry.path, tolerance, value, unit, in_si)
+        except InvalidValue as error:
+            said = f"{entry.path}={tolerance}"
+            raise InvalidInput(SPREAD, said, error.bound, error.remedy, error.unit, error.limit) from None
+        made[entry.path] = SpreadInput(entry.path, unit, value, given)
+    return tuple(made.values())
+
+
+@contextmanager
+def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
+    """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
+    texts = {each.name: each.text for each in given}
+    try:
+        yield
+    except InvalidValue as error:
+        raise in_unit_of(error, texts.get(error.field, "")) from None

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -14,9 +13,7 @@ from beamdyn.common.edge.outputs import Flag
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 
 if TYPE_CHECKING:
-    from beamdyn.common.edge.inputs import Input
     from beamdyn.common.parallel.tasks import TaskRunner
-    from beamdyn.common.spreading.tolerances import SpreadInput
 
 OPTION, SPREAD = "--vary", "--spread"
 _MOST_WORKERS = 128
@@ -154,66 +151,3 @@ NO_SPREAD = SpreadOptions()
 
 def _key(text: str) -> str:
     return text.partition("=")[0].strip()
-
-
-def parse_spreads(
-    inputs: Sequence[Input], texts: Sequence[str], nominal: Callable[[Input], tuple[float, str]]
-) -> tuple[SpreadInput, ...]:
-    """Read inputs with their tolerances.
-
-    Parameters
-    ----------
-    inputs : sequence of Input
-        Those that may have a tolerance.
-    texts : sequence of str
-        KEY=TOLERANCE of each; the key as for `parse_axis`.
-    nominal : callable
-        ``nominal(input)``: value of an input in SI, and its SI unit.
-
-    Returns
-    -------
-    tuple of SpreadInput
-
-    Raises
-    ------
-    ValueError
-        If there is no such input, it is given twice, or its tolerance cannot be read.
-    """
-    from beamdyn.common.edge.units import InvalidInput, quantity
-    from beamdyn.common.edge.varied_inputs import find_input
-    from beamdyn.common.inputs.checks import InvalidValue
-    from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
-
-    made: dict[str, SpreadInput] = {}
-    for text in texts:
-        words = f'{SPREAD} = "{text}"'
-        if not text.partition("=")[2].strip():
-            raise ValueError(f'{words}: give KEY=TOLERANCE, such as "{_key(text) or "thickness"}=+-2%"')
-        entry = find_input(inputs, _key(text), words)
-        if entry.path in made:
-            raise ValueError(f"{words}: {entry.path} has a spread already; give each input once")
-        (value, unit), tolerance = nominal(entry), text.partition("=")[2].strip()
-
-        def in_si(number: str, written: str, unit: str = unit) -> float:
-            return quantity(f"{number} {written}".strip(), unit)
-
-        try:
-            given = parse_tolerance(entry.path, tolerance, value, unit, in_si)
-        except InvalidValue as error:
-            said = f"{entry.path}={tolerance}"
-            raise InvalidInput(SPREAD, said, error.bound, error.remedy, error.unit, error.limit) from None
-        made[entry.path] = SpreadInput(entry.path, unit, value, given)
-    return tuple(made.values())
-
-
-@contextmanager
-def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
-    """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
-    from beamdyn.common.edge.wording import in_unit_of
-    from beamdyn.common.inputs.checks import InvalidValue
-
-    texts = {each.name: each.text for each in given}
-    try:
-        yield
-    except InvalidValue as error:
-        raise in_unit_of(error, texts.get(error.field, "")) from None

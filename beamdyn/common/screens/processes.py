@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import pickle
+import signal
 import sys
 from asyncio import subprocess
 from collections import deque
@@ -12,8 +13,11 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from functools import cache
+from threading import Thread
+from time import sleep
 from typing import Any, Protocol
 
+from beamdyn.common.parallel.workers import serve
 from beamdyn.common.screens.screens import Document, Program, Screen
 
 LONGEST = 120.0  # time limit of an answer [s]
@@ -266,11 +270,6 @@ class _Worker:
 
 def serve_tasks(caller: int) -> None:
     """Run the tasks that arrive on the standard input; end with the caller, also in the middle of a task."""
-    import signal
-    from threading import Thread
-    from time import sleep
-
-    from beamdyn.common.parallel.workers import serve
 
     def end_with_caller() -> None:  # the closed input would be seen only between two tasks
         while os.name == "nt" or os.getppid() == caller:  # on Windows it stays the same
@@ -291,7 +290,7 @@ def _prepare(make: Callable[[], Program], memory: int) -> None:
     """
     _screens(make)
     try:
-        import resource
+        import resource  # which Windows lacks
 
         with open("/proc/self/statm") as file:
             data = int(file.read().split()[5]) * resource.getpagesize()

@@ -2,67 +2,21 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import App, Parameter
+from nicegui import app, ui
 
-from beamdyn.common.edge.program import examples
-
-if TYPE_CHECKING:
-    from beamdyn.common.screens.processes import RunsTasks
-    from beamdyn.common.screens.screens import Program
-
-MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
-_HOME = "127.0.0.1"
-
-
-def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
-    """Give a program's command line the command `app`.
-
-    Parameters
-    ----------
-    app : App
-        The command line.
-    program : callable
-        Makes the interactive program; it is called when it is known that it can be shown.
-    port : int
-        Port, if no other is asked for.
-    about : str
-        What the interactive program shows, in a sentence.
-    """
-    usual = port
-
-    @app.command(
-        name="app",
-        help=f"{about} Ctrl-C ends it.",
-        help_epilogue=examples(f"{app.name[0]} app", f"{app.name[0]} app --port 8090 --no-browser"),
-    )
-    def interactive(
-        *,
-        port: int = usual,
-        host: str = _HOME,
-        browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
-    ) -> None:
-        """Serve the interactive program.
-
-        Parameters
-        ----------
-        port
-            Port to serve on.
-        host
-            Address or name to serve on; only this computer can reach the usual one. Requests to other
-            names are refused.
-        browser
-            Open the browser.
-        """
-        serve(program, host, port, browser)
+from beamdyn.common.edge.progress import quiet
+from beamdyn.common.screens import HOME
+from beamdyn.common.screens.page import add_style_and_scripts, open_page
+from beamdyn.common.screens.processes import Processes, RunsTasks, Share
+from beamdyn.common.screens.request_guard import RequestGuard
+from beamdyn.common.screens.screens import Program
 
 
 def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]]:
     """The function that builds the page for a client."""
-    from beamdyn.common.screens.page import open_page
-    from beamdyn.common.screens.processes import Share
 
     async def root() -> None:
         await open_page(program, Share(solver))
@@ -88,19 +42,10 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     Raises
     ------
     ValueError
-        If NiceGUI is missing, or the port is none or taken.
+        If the port is none or taken.
     """
     if not 1 <= port <= 65535:
         raise ValueError(f"--port = {port}: give a port from 1 to 65535")
-    try:
-        from nicegui import app, ui
-    except ImportError:
-        raise ValueError(MISSING) from None
-    from beamdyn.common.edge.progress import quiet
-    from beamdyn.common.screens.page import add_style_and_scripts
-    from beamdyn.common.screens.processes import Processes
-    from beamdyn.common.screens.request_guard import RequestGuard
-
     _check_free(host, port)
     made, processes = program(), Processes(program)
     app.add_middleware(RequestGuard, host=host)
@@ -125,9 +70,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
 
 def _check_free(host: str, port: int) -> None:
     """Refuse an address that is blank or unknown, or cannot be listened on, before the server tries."""
-    import socket
-
-    remedy = f"give an address or a name of this computer, such as {_HOME}, or leave --host out"
+    remedy = f"give an address or a name of this computer, such as {HOME}, or leave --host out"
     if not host.strip():
         raise ValueError(f'--host = "{host}": it is blank; {remedy}')
     try:
@@ -139,7 +82,7 @@ def _check_free(host: str, port: int) -> None:
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(address)
     except OSError as error:
-        remedy = "give another --port" if host == _HOME else "give another --port, or leave --host out"
+        remedy = "give another --port" if host == HOME else "give another --port, or leave --host out"
         raise ValueError(
             f"--host = {host}, --port = {port}: cannot listen there ({error.strerror}); {remedy}"
         ) from None

@@ -1,0 +1,62 @@
+"""The command that serves an interactive program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import App, Parameter
+
+from beamdyn.common.edge.program import examples
+from beamdyn.common.screens import HOME
+
+if TYPE_CHECKING:
+    from beamdyn.common.screens.screens import Program
+
+MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
+
+
+def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
+    """Give a program's command line the command `app`.
+
+    Parameters
+    ----------
+    app : App
+        The command line.
+    program : callable
+        Makes the interactive program; it is called when it is known that it can be shown.
+    port : int
+        Port, if no other is asked for.
+    about : str
+        What the interactive program shows, in a sentence.
+    """
+    usual = port
+
+    @app.command(
+        name="app",
+        help=f"{about} Ctrl-C ends it.",
+        help_epilogue=examples(f"{app.name[0]} app", f"{app.name[0]} app --port 8090 --no-browser"),
+    )
+    def interactive(
+        *,
+        port: int = usual,
+        host: str = HOME,
+        browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+    ) -> None:
+        """Serve the interactive program.
+
+        Parameters
+        ----------
+        port
+            Port to serve on.
+        host
+            Address or name to serve on; only this computer can reach the usual one. Requests to other
+            names are refused.
+        browser
+            Open the browser.
+        """
+        try:
+            from beamdyn.common.screens.server import serve
+        except ModuleNotFoundError:
+            raise ValueError(MISSING) from None
+        serve(program, host, port, browser)
