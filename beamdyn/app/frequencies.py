@@ -119,12 +119,13 @@ def motion_speed(scene: Scene) -> float | None:
 
 def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPoint]:
     """Where lines meet the modes of a locus, taken as straight between its speeds."""
+    names = locus.names()
     for line in lines:
         apart = locus.frequency - line.multiple * locus.speeds[:, None] / (2 * np.pi)
         for s, mode in np.argwhere(apart[:-1] * apart[1:] < 0).tolist():
             share = apart[s, mode] / (apart[s, mode] - apart[s + 1, mode])
             speed = float(locus.speeds[s] + share * (locus.speeds[s + 1] - locus.speeds[s]))
-            yield speed, line.multiple * speed / (2 * np.pi), f"mode {mode + 1}, {line.name}"
+            yield speed, line.multiple * speed / (2 * np.pi), f"{names[mode]}, {line.name}"
 
 
 def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
@@ -132,8 +133,7 @@ def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
     speed = motion_speed(locus.scene)
     if speed is None or speed > locus.speeds[-1] or not lines:
         return ()
-    names = [f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1)]
-    return tuple(margins_at_rated("", names, locus, lines, speed))
+    return tuple(margins_at_rated("", locus.names(), locus, lines, speed))
 
 
 def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
@@ -142,10 +142,10 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
     speed, last = locus.display_units.speed_unit(), float(locus.speeds[-1])
     top = _top(locus.frequency, [line.multiple * last / (2 * np.pi) for line in lines])
     curves = []
-    for i, frequency in enumerate(locus.frequency.T, 1):
+    for name, frequency in zip(locus.names(), locus.frequency.T, strict=True):
         least = np.nanmin(frequency, initial=np.inf)
         above = f" (above: from {least:.4g} Hz)" if top < least < np.inf else ""
-        curves.append(ChartCurve(f"mode {i}{above}", speed.of(locus.speeds), frequency))
+        curves.append(ChartCurve(f"{name}{above}", speed.of(locus.speeds), frequency))
     for line in lines:  # each up to where it leaves the chart
         end = min(last, 2 * np.pi * top / line.multiple) if line.multiple > 0 else last
         ends = np.array([0.0, end])
@@ -233,8 +233,7 @@ def draw(answer: Frequencies, _: float = 0.0) -> Figure:
         answer.crossings.plot(ax)
     else:  # crossings of other frequencies than these
         lines = {line.name: line.multiple for line in answer.crossings.lines}
-        names = tuple(f"mode {i}" for i in range(1, answer.locus.frequency.shape[1] + 1))
-        curves = Curves(answer.locus.speeds, answer.locus.frequency, names)
+        curves = Curves(answer.locus.speeds, answer.locus.frequency, answer.locus.names())
         plot_campbell([curves], lines, {}, ax, units.speed_unit().name)
     mark_critical(ax, answer.critical.speed, critical_label(answer.critical), units)
     return note_below(figure, notes_of(answer.locus))

@@ -17,7 +17,7 @@ from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screen_parts import Drag, KeyResult, Slider
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.model_error.left_out_effects import say_size
-from beamdyn.modes.modes import Modes
+from beamdyn.modes.modes import Mesh, Modes
 
 _PLACES, _ROWS = 41, 5  # along the beam, and across a strip
 _LARGEST, _LARGEST_OF_STRIP = 0.22, 0.12  # deflection drawn, over the length
@@ -46,7 +46,7 @@ def drawings(modes: Modes, place: float = 0.0) -> Rows:
     return _abreast(each)
 
 
-def _strips(modes: Modes, mesh: tuple[np.ndarray, ...], swing: float) -> list[Drawing]:
+def _strips(modes: Modes, mesh: Mesh, swing: float) -> list[Drawing]:
     """Each mode shape of a strip that twists or cambers, as a part of its extreme position."""
     x, y, shapes, across = mesh
     room = _LARGEST_OF_STRIP * float(x[-1])

@@ -17,7 +17,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
-from beamdyn.modes.kinds import TellsKinds, kinds_of_modes
+from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model, plane_share, static_load
 from beamdyn.modes.modal.over_speeds import track
@@ -137,14 +137,19 @@ class Locus(TellsKinds, StatesModelError):
         """The result as plain numbers, lists and strings, with its model error and what is left out."""
         return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
+    def names(self) -> tuple[str, ...]:
+        """Name of each mode: its number, and its kind where it does not mostly bend at the first speed."""
+        kinds = (f", {kind}" if kind != BENDING else "" for kind in self.kind[0])
+        return tuple(f"mode {i}{kind}" for i, kind in enumerate(kinds, 1))
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies over speed."""
-        units = self.display_units
+        units, names = self.display_units, self.names()
         if self.scene.physics.planes == 2:
             (solid, _), words = drawn_order(self.scene)
             share = self.plane_share[:, :, solid]
-            return plot_locus_by_plane(self.speeds, self.frequency, share, words, ax, units=units)
-        return plot_locus(self.speeds, self.frequency, ax, units=units)
+            return plot_locus_by_plane(self.speeds, self.frequency, share, words, ax, names, units)
+        return plot_locus(self.speeds, self.frequency, ax, names, units=units)
 
 
 @announced

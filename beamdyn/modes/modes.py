@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -40,6 +40,9 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # what `Modes.mesh` returns
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,7 @@ class Modes(TellsKinds, StatesModelError):
         equations = self.model.equations_at(self.speed)
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)
 
-    def mesh(self, along: int = 101, across: int = 21) -> tuple[np.ndarray, ...] | None:
+    def mesh(self, along: int = 101, across: int = 21) -> Mesh | None:
         """Shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
 
         Parameters

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from rich.console import Console
 
 import beamdyn as bd
@@ -91,3 +92,14 @@ def test_kinds_are_kept_in_files(tmp_path):
     for result in (bd.natural_modes(STRIP, modes=3), bd.frequency_locus(STRIP, [0.0], 3)):
         result.save(tmp_path / "result.json", force=True)
         assert bd.load(tmp_path / "result.json").kind.tolist() == result.kind.tolist()
+
+
+def test_modes_over_speed_are_named_by_their_kinds():
+    speeds = [0.0, 50.0]
+    locus = bd.frequency_locus(STRIP, speeds, 3, BASIS)
+    assert locus.names() == ("mode 1", "mode 2", "mode 3, torsion")
+    legend = locus.plot(Figure().subplots()).get_legend().get_texts()
+    assert [text.get_text() for text in legend] == [*locus.names()]
+    blade = replace(STRIP, mount=bd.Mount(0.2, np.pi, bending_angle=np.pi / 2))
+    assert bd.campbell(STRIP, speeds, modes=3).names == (locus.names(),)
+    assert bd.campbell(blade, speeds, modes=3).names == (("flap 1", "flap 2", "torsion 1"),)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -136,20 +137,11 @@ def plot_surfaces(
     """
     largest = np.maximum(np.abs(shapes).max(axis=(1, 2)), np.abs(across).max(axis=1))
     scale = 1 / np.where(largest == 0, 1.0, largest)
-    width, unit = float(np.ptp(y)), units.length_unit("m")
+    width = float(np.ptp(y))
+    scaled, moved = shapes * scale[:, None, None], y - _ASIDE * width * (across * scale[:, None])[:, :, None]
     ax, each = panels(len(labels), ax, _panels_in_a_row(len(labels), float(x[-1]), width))
-    for panel, shape, aside, label in zip(
-        each, shapes * scale[:, None, None], across * scale[:, None], labels, strict=True
-    ):
-        places = np.broadcast_to(x[:, None], y.shape), y - _ASIDE * width * aside[:, None]
-        colours = _draw_surface(panel, *(unit.of(place) for place in places), shape)
-        panel.set_title(label, fontsize=9)
-        panel.set_xlabel(position_label(units), fontsize=9)
-        panel.set_ylabel(f"y [{unit.name}]", fontsize=9)
-        panel.set_yticks(unit.of(y[0, [0, -1]]))
-        panel.tick_params(labelsize=9)
-        panel.label_outer()
-    bar = ax.figure.colorbar(colours, ax=each, ticks=[-1, 0, 1], shrink=0.8)
+    colours = [_draw_surface(*one, units) for one in zip(each, repeat(x), moved, scaled, labels)]
+    bar = ax.figure.colorbar(colours[0], ax=each, ticks=[-1, 0, 1], shrink=0.8)
     bar.set_label("deflection / its largest value")
     return ax
 
@@ -164,8 +156,12 @@ def _panels_in_a_row(count: int, length: float, width: float) -> int:
     return max(sizes, key=lambda columns: sizes[columns])
 
 
-def _draw_surface(ax: Axes, x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> ContourSet:
+def _draw_surface(
+    ax: Axes, x: np.ndarray, y: np.ndarray, shape: np.ndarray, label: str, units: DisplayUnits
+) -> ContourSet:
     """Draw a deflection of at most 1 over a strip clamped at the left, with its nodal lines and outline."""
+    unit = units.length_unit("m")
+    x, y = unit.of(np.broadcast_to(x[:, None], y.shape)), unit.of(y)
     colours = ax.contourf(x, y, shape, levels=_LEVELS, cmap=_COLOURS_OF_SIGN)
     if np.abs(shape).max() > _FLAT:  # not of rounding
         ax.contour(x[1:], y[1:], shape[1:], levels=[0.0], colors="black", linewidths=1.2)
@@ -173,6 +169,12 @@ def _draw_surface(ax: Axes, x: np.ndarray, y: np.ndarray, shape: np.ndarray) -> 
     ax.plot(*outline, color="0.3", linewidth=0.8)
     ax.plot(x[0], y[0], color="black", linewidth=3.0)
     ax.set_aspect("equal")
+    ax.set_title(label, fontsize=9)
+    ax.set_xlabel(position_label(units), fontsize=9)
+    ax.set_ylabel(f"y [{unit.name}]", fontsize=9)
+    ax.set_yticks(y[0, [0, -1]])
+    ax.tick_params(labelsize=9)
+    ax.label_outer()
     return colours
 
 

@@ -19,6 +19,7 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
+from beamdyn.modes.kinds import BENDING
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.model_error.left_out_changes import nothing_known
@@ -378,12 +379,14 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
-    """Names of the modes by the direction in which each mostly bends at the first speed."""
+    """Names of the modes by the direction in which each mostly bends at the first speed, or by its kind."""
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0  # it points outward
     if "flap" not in words or not is_blade:
-        return tuple(f"mode {i}" for i in range(1, locus.frequency.shape[1] + 1))
-    chosen = [words[0 if locus.scene.physics.planes == 1 else k] for k in locus.plane_share[0].argmax(axis=1)]
+        return locus.names()
+    bent = [words[0 if locus.scene.physics.planes == 1 else k] for k in locus.plane_share[0].argmax(axis=1)]
+    kinds = map(str, locus.kind[0])
+    chosen = [word if kind == BENDING else kind for word, kind in zip(bent, kinds, strict=True)]
     return tuple(f"{word} {chosen[: i + 1].count(word)}" for i, word in enumerate(chosen))
 
 
