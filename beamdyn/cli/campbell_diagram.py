@@ -14,7 +14,7 @@ from cyclopts import App, Parameter
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
-from beamdyn.analyses.results.of_studies import crossings_of_lines_csv
+from beamdyn.analyses.results.of_studies import crossings_columns
 from beamdyn.analyses.values import naming_option, parse_positive, parse_speed
 from beamdyn.cli.decks import read_with
 from beamdyn.common.edge.config import read
@@ -105,7 +105,7 @@ def campbell(
             bounds=bounds, **options,
         )  # fmt: skip
     if crossings is not None:
-        write_table(crossings, crossings_of_lines_csv(result))
+        write_table(crossings, crossings_columns(result))
     ignored = (warning for given in inputs for warning in given.warnings)
     warnings = *ignored, *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
     deliver(Answer(result, warnings=warnings), outputs, question)

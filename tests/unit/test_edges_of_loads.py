@@ -7,7 +7,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import warnings_of
-from beamdyn.analyses.results.of_studies import study_csv, study_table
+from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.announced import unannounced
 from beamdyn.scene.validity import warn_of_elastic_limit
@@ -84,7 +84,7 @@ def test_a_number_beyond_the_list_is_refused():
 
 def test_heads_put_the_number_of_a_mode_last():
     found = bd.study(bd.Scene(POINTED), {"beam.thickness": [2e-4, 3e-4]}, "frequencies", modes=2)
-    head = next(iter(study_csv(found)))
+    head = next(iter(rows_of(found)))
     assert list(head[1:3]) == ["frequency_Hz_1", "frequency_Hz_2"]
 
 
@@ -106,7 +106,7 @@ def test_a_row_without_an_answer_has_no_error():
     assert np.isfinite(found.value[0, 0]) and not np.isfinite(found.value[1, 0])
     console = Console(width=120)
     with console.capture() as shown:
-        console.print(study_table(found))
+        console.print(tables_of(found))
     last = next(line for line in shown.get().splitlines() if "400" in line)
     assert last.rstrip(" │┃").endswith("-")
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 import beamdyn as bd
-from beamdyn.analyses.results.of_modes import locus_csv, locus_table, modes_csv, modes_table
+from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.modes.kinds import kinds_of_modes
 from benchmarks.cases.scenes import HARVESTER
 
@@ -66,25 +66,25 @@ def test_equal_shares_are_decided_by_the_order(energy, kind):
 def test_modes_over_speed_have_their_kinds():
     locus = bd.frequency_locus(STRIP, [0.0, 100.0], 3, BASIS)
     assert locus.kind.tolist() == [["bending", "bending", "torsion"]] * 2
-    assert columns(locus_csv(locus))["kind_3"] == ("torsion", "torsion")
-    text = printed(locus_table(locus))
+    assert columns(rows_of(locus))["kind_3"] == ("torsion", "torsion")
+    text = printed(tables_of(locus))
     assert "(t: mostly torsion)" in text and text.count(" t ") == 2
 
 
 def test_tables_and_files_have_kinds_where_sections_deform():
     modes = bd.natural_modes(STRIP, modes=3, discretization=BASIS)
-    assert columns(modes_csv(modes))["kind"] == ("bending", "bending", "torsion")
+    assert columns(rows_of(modes))["kind"] == ("bending", "bending", "torsion")
     assert modes.to_dict()["kind"] == ["bending", "bending", "torsion"]
-    assert "torsion   stable" in printed(modes_table(modes))
+    assert "stable   torsion" in printed(tables_of(modes))
     bends = bd.natural_modes(STRIP, modes=2, discretization=BASIS)
-    assert " kind " not in printed(modes_table(bends)) and "kind" in columns(modes_csv(bends))
+    assert " kind " not in printed(tables_of(bends)) and "kind" in columns(rows_of(bends))
 
 
 def test_beams_that_only_bend_have_no_column_of_kinds():
     modes, locus = bd.natural_modes(HARVESTER), bd.frequency_locus(HARVESTER, [0.0, 1.0], 2)
     assert set(modes.kind) == set(locus.kind.ravel()) == {"bending"} and locus.kind.shape == (2, 2)
-    for result, csv in ((modes, modes_csv), (locus, locus_csv)):
-        heads = [*result.to_dict(), *columns(csv(result))]
+    for result in (modes, locus):
+        heads = [*result.to_dict(), *columns(rows_of(result))]
         assert not [head for head in heads if "kind" in head]
 
 

@@ -13,10 +13,10 @@ import pytest
 from rich.console import Console
 
 import beamdyn as bd
-from beamdyn.analyses.results.of_modes import locus_csv, locus_table, modes_table
 from beamdyn.cli.program import main
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
@@ -176,7 +176,7 @@ def test_locus_knows_its_model_error_up_to_the_last_stable_speed() -> None:
     """At 161 speeds, of which 16 are evenly spread, and past the critical speed nowhere."""
     scene = bd.Scene(HARVESTER, bd.Mount(0.215))
     locus = bd.frequency_locus(scene, np.linspace(0.0, 200.0, 161), 2)
-    header, *rows = locus_csv(locus)
+    header, *rows = rows_of(locus)
     stable = (locus.status == "stable").all(axis=1)
     assert 100 < stable.sum() < 160
     error = np.array([row[header.index("model_error_1")] for row in rows], dtype=float)
@@ -187,7 +187,7 @@ def test_locus_knows_its_model_error_up_to_the_last_stable_speed() -> None:
     assert locus.to_dict()["warnings"][-1].startswith(f"at {first:g} to 200 rad/s the model error may exceed")
     screen = Console(width=120)
     with screen.capture() as capture:
-        screen.print(locus_table(locus))
+        screen.print(tables_of(locus))
     assert "model error" in capture.get()
 
 
@@ -300,8 +300,8 @@ def test_digits_beyond_the_model_error_are_dimmed_and_kept() -> None:
     assert '55.62<span class="beyond">047</span>' in html([table("t", ["f"], [[cell]])])
     console = Console(force_terminal=True, color_system="truecolor", width=120)
     with console.capture() as captured:
-        console.print(modes_table(bd.natural_modes(SCENE, 100.0)))
-        console.print(locus_table(bd.frequency_locus(SCENE, [0.0, 100.0], 2)))
+        console.print(tables_of(bd.natural_modes(SCENE, 100.0)))
+        console.print(tables_of(bd.frequency_locus(SCENE, [0.0, 100.0], 2)))
     assert captured.get().count("\x1b[2m") >= 3 + 4  # each frequency
 
 

@@ -12,10 +12,10 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import critical_label, labels_of, notes_of, warnings_of
-from beamdyn.analyses.results.of_modes import modes_csv
 from beamdyn.app.frequencies import FREQUENCIES
 from beamdyn.common.edge.file_words import as_in_files
 from beamdyn.common.edge.rendering import csv_text, html
+from beamdyn.common.edge.views import rows_of
 from beamdyn.scene.validity import warn_of_static_deflection
 from beamdyn.studies.tradeoffs.measurements import Diagram
 from beamdyn.studies.tradeoffs.tradeoff import tradeoff
@@ -98,7 +98,7 @@ def test_picture_names_and_rows_state_the_model_error():
     assert notes_of(bent) == ["with large deflection"]
     assert labels_of(modes) == ["mode 1: 55.62 Hz, model error 9.1 %"]
     assert labels_of(bent) == bent.labels()
-    (row,) = csv.DictReader(io.StringIO(csv_text(modes_csv(modes))))
+    (row,) = csv.DictReader(io.StringIO(csv_text(rows_of(modes))))
     assert float(row["model_error"]) == modes.model_error[0]
     assert "Physics(" not in " ".join(warnings_of(modes))
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.analyses.results.of_studies import study_csv
+from beamdyn.common.edge.views import rows_of
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.scene.numbers import number_at, units, with_numbers
@@ -411,6 +411,6 @@ def test_each_crossing_of_a_rolling_beam_has_a_head_of_its_own():
     """Of the sum and of the difference of the road's frequency and the rotation's, forced and parametric."""
     rolling = bd.load_scene("examples/rolling_harvester.toml")
     found = bd.study(rolling, {"beam.length": [0.05, 0.051]}, "crossings", speed=150.0, modes=2)
-    heads = next(iter(study_csv(found)))
+    heads = next(iter(rows_of(found)))
     assert len(set(heads)) == len(heads) == 1 + 3 * len(found.labels)
     assert "resonance_speed_rad_per_s_1_road_plus_forced" in heads

@@ -17,15 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.analyses.results.of_motion import (
-    crossings_csv,
-    crossings_table,
-    steady_csv,
-    steady_table,
-    sweep_csv,
-    sweep_table,
-    transient_csv,
-)
+from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import choose_model
@@ -371,11 +363,11 @@ def test_static_vector_is_the_static_deflection() -> None:
 
 def test_csv_has_both_directions() -> None:
     found = bd.steady_response(TWISTED, [60.0], modes=2, harmonics=1)
-    heads, row = steady_csv(found)
+    heads, row = rows_of(found)
     assert dict(zip(heads, row, strict=True))["largest_across_m"] == found.largest_tip(1)[0]
     one = bd.steady_response(replace(TWISTED, physics=bd.Physics()), [60.0], modes=2, harmonics=1)
-    assert "largest_across_m" not in next(iter(steady_csv(one)))
-    heads, *rows = crossings_csv(bd.resonance_speeds(FLAT, 400.0, modes=2))
+    assert "largest_across_m" not in next(iter(rows_of(one)))
+    heads, *rows = rows_of(bd.resonance_speeds(FLAT, 400.0, modes=2))
     across = {row[heads.index("mode")]: row[heads.index("share_across")] for row in rows}
     assert across == {1: 0.0, 2: pytest.approx(1.0, abs=1e-12)}
 
@@ -399,22 +391,20 @@ def test_one_set_of_words(angle: float, words: tuple[str, str], names: tuple[str
     scene = replace(TWISTED, mount=replace(TWISTED.mount, bending_angle=angle))
     steady = bd.steady_response(scene, [10 / 3, 60.0], modes=2, harmonics=1)
     sweep = bd.sweep(scene, [10 / 3, 60.0], (0.0, 0.02), modes=2)
-    tables = printed(steady_table(steady)), printed(sweep_table(sweep))
+    tables = printed(tables_of(steady)), printed(tables_of(sweep))
     for text in tables:
         assert all(f"{word} [mm]" in text for word in words) and "…" not in text
         assert "largest tip deflection [mm]" in text and "status" in text
     crossings = bd.resonance_speeds(scene, 400.0, modes=2)
-    assert f"{words[0]}, {words[1]} [%]" in printed(crossings_table(crossings))
+    assert f"{words[0]}, {words[1]} [%]" in printed(tables_of(crossings))
     legend = steady.plot(Figure().subplots()).get_legend()
     assert legend is not None
     labels = [text.get_text() for text in legend.get_texts()]
     assert [label for label in labels if label in names] == [*names]
-    heads = [
-        list(next(iter(rows))) for rows in (steady_csv(steady), sweep_csv(sweep), crossings_csv(crossings))
-    ]
+    heads = [list(next(iter(rows))) for rows in (rows_of(steady), rows_of(sweep), rows_of(crossings))]
     for row, name in zip(heads, ("largest_{}_m", "largest_{}_m", "share_{}"), strict=True):
         assert all(name.format(direction) in row for direction in ("bending", "across"))
-    run = transient_csv(bd.simulate(scene, 0.01, 2))
+    run = rows_of(bd.simulate(scene, 0.01, 2))
     tips = "tip_deflection_bending_m", "tip_deflection_across_m"
     assert next(iter(run)) == ["time_s", *tips, "model_error_of_largest"]
 

@@ -107,19 +107,20 @@ def squared(unit: str) -> str:
 
 def matrices_table(result: Matrices) -> Group:
     """Table of the coordinates, with the diagonals of mass and stiffness."""
-    columns = {
-        "row": [str(k + 1) for k in range(len(result.coordinates))],
-        "coordinate": result.coordinates,
-        "mass, diagonal": [f"{entry:.6g}" for entry in result.mass.diagonal()],
-        "stiffness, diagonal": [f"{entry:.6g}" for entry in result.stiffness.diagonal()],
-    }
     speed = result.display_units.speed_unit().say(result.speed)
     lowest = result.error[: 2 * _PAIRS : 2].tolist()
     of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
     errors = f"Relative errors of the lowest poles, pair by pair: {of_pairs}."
     inputs = f"{errors} Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
-    title = f"Equations at {speed}, by {result.provenance.method}"
-    return Group(table_of(title, columns, ("coordinate",)), Text(inputs))
+    columns = Columns(
+        Column("row", range(1, len(result.coordinates) + 1)),
+        Column("coordinate", result.coordinates),
+        Column("mass, diagonal", result.mass.diagonal()),
+        Column("stiffness, diagonal", result.stiffness.diagonal()),
+        title=f"Equations at {speed}, by {result.provenance.method}",
+        note=inputs,
+    )
+    return table_of(columns, result.display_units)
 
 
 def matrices_csv(result: Matrices) -> Columns:

@@ -14,6 +14,7 @@ from beamdyn.common.edge.tables import table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
+from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
@@ -65,18 +66,28 @@ def _table(
     result: SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
 ) -> Group:
     """Rows of stations: axial and shear forces, moments, and the strain and stress that are largest there."""
-    columns = {f"position [{result.display_units.length_unit().name}]": _positions(result)}
-    for name, (scale, unit) in _SCALES.items():
+    columns = [_positions(result)]
+    for name in _SCALES:
         found = result.values(name)[case] if values is None else values[name]
         error = result.error_of(name) if case is None else result.error_of(name)[case]
         if name not in ("strain", "stress"):
-            for k, head in enumerate(_heads(result, name)):
-                columns[f"{head} [{unit}]"] = _cells(found[:, k], error[:, k])
+            heads = _heads(result, name)
+            columns += (_load(name, head, found[:, k], error[:, k]) for k, head in enumerate(heads))
         elif found.shape[1] and np.isfinite(found).any():
             k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]  # the largest of the points
-            at_largest = (np.take_along_axis(scale * each, k, 1)[:, 0] for each in (found, error))
-            columns[f"{name} [{unit}]"] = _cells(*at_largest)
-    return table_of(title, columns)
+            at_largest = (np.take_along_axis(each, k, 1)[:, 0] for each in (found, error))
+            columns.append(_load(name, name, *at_largest))
+    return table_of(Columns(*columns, title=title), result.display_units)
+
+
+def _supported(value: float, error: float) -> str:
+    return supported(value, error, _MOST_DIGITS)
+
+
+def _load(quantity: str, head: str, values: np.ndarray, errors: np.ndarray, form: Any = _supported) -> Column:
+    """A column of a load in the unit for people."""
+    scale, unit = _SCALES[quantity]
+    return Column(head, scale * values, unit, error=scale * errors, form=form)
 
 
 def _heads(result: SpanLoads, quantity: str) -> list[str]:
@@ -87,17 +98,14 @@ def _heads(result: SpanLoads, quantity: str) -> list[str]:
     return ["axial force", *(f"{word}shear" for word in words)]
 
 
-def _positions(result: SpanLoads) -> list[str]:
+def _positions(result: SpanLoads) -> Column:
     """Positions; those with two sides with the side."""
     x, unit = result.x, result.display_units.length_unit()
     jumps = np.flatnonzero(np.diff(x) == 0)
     twice = np.isin(np.arange(len(x)), [*jumps, *(jumps + 1)])
     sides = ["-" if inboard else "+" for inboard in result.inboard]
-    return [f"{unit.of(at):.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
-
-
-def _cells(values: np.ndarray, errors: np.ndarray) -> list[str]:
-    return [supported(float(v), float(e), _MOST_DIGITS) for v, e in zip(values, errors, strict=True)]
+    cells = [f"{unit.of(at):.6g}{side if two else ''}" for at, side, two in zip(x, sides, twice, strict=True)]
+    return Column("position", x, "m", cells=cells)
 
 
 def _largest_lines(result: Any, **window: float) -> list[Text]:
@@ -133,10 +141,9 @@ def _say_component(result: SpanLoads, found: LargestLoad) -> str:
 
 def random_loads_table(result: RandomLoads) -> Group:
     """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
-    units, at = result.display_units, np.arange(len(result.x))
-    columns = {f"position\n[{units.length_unit().name}]": _positions(result)}
+    units, at, columns = result.display_units, np.arange(len(result.x)), [_positions(result)]
     for name in ("moment", "strain", "stress"):
-        (scale, unit), values = _SCALES[name], result.values(name)[0]
+        values = result.values(name)[0]
         if not np.isfinite(values).any():
             continue
         if name == "moment":
@@ -144,16 +151,16 @@ def random_loads_table(result: RandomLoads) -> Group:
         else:  # the load of the point that is largest there
             shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
         for k, head in shown:
-            rms, error = (scale * each(name)[at, k] for each in (result.rms, result.rms_error))
-            most, wrong = (scale * each(name)[0][at, k] for each in (result.values, result.error_of))
-            columns[f"{head}\nrms [{unit}]"] = _cells(rms, error)
-            columns[f"{head}\nlargest [{unit}]"] = [*map(_expected, most, wrong)]
+            rms, error = (each(name)[at, k] for each in (result.rms, result.rms_error))
+            most, wrong = (each(name)[0][at, k] for each in (result.values, result.error_of))
+            columns.append(_load(name, f"{head}\nrms", rms, error))
+            columns.append(_load(name, f"{head}\nlargest", most, wrong, _expected))
     title = (
         f"Largest magnitudes expected in {result.duration:g} s by random {result.input} "
         f"at {units.speed_unit().say(result.speed)}, by {said_in(units, result.provenance.method)}"
     )
     lines = _lines(result, lambda name: _say_expected(result, result.largest(name)))
-    return Group(table_of(title, columns), *lines, Text(_ESTIMATE))
+    return Group(table_of(Columns(*columns, title=title), units), *lines, Text(_ESTIMATE))
 
 
 _ESTIMATE = (
@@ -193,25 +200,26 @@ def cycles_table(cycles: LoadCycles) -> Group:
     scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
     edges = np.linspace(0, scale * float(cycles.ranges.max(initial=0.0)) or 1.0, _CLASSES + 1)
     counts, _ = np.histogram(scale * cycles.ranges, edges, weights=cycles.counts)
-    columns = {
-        f"range [{unit}]": [f"{low:.4g} to {high:.4g}" for low, high in pairwise(edges)][::-1],
-        "cycles": [f"{count:g}" for count in counts[::-1]],
-    }
     place = cycles.display_units.length_unit().say(cycles.x)
-    title = f"Cycles of {cycles.quantity} at {place}, {cycles.start:g} to {cycles.end:g} s"
-    return table_of(title, columns)
+    columns = Columns(
+        Column("range", (), unit, cells=[f"{low:.4g} to {high:.4g}" for low, high in pairwise(edges)][::-1]),
+        Column("cycles", counts[::-1], form="g"),
+        title=f"Cycles of {cycles.quantity} at {place}, {cycles.start:g} to {cycles.end:g} s",
+    )
+    return table_of(columns, cycles.display_units)
 
 
 def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
     """Ranges of equal cycles of one quantity that do the damage of those counted, by the Woehler exponent."""
     quantity, number = equivalents[0].quantity, equivalents[0].cycles
     scale, unit = _SCALES.get(quantity, (1.0, "1/m"))
-    ranges = [supported(scale * each.range, scale * each.error, _MOST_DIGITS) for each in equivalents]
-    columns = {
-        "Woehler exponent": [f"{each.exponent:g}" for each in equivalents],
-        f"range of {quantity} [{unit}]": ranges,
-    }
-    return table_of(f"Damage-equivalent ranges (number of equal cycles: {number:g})", columns)
+    ranges, errors = scale * np.array([(each.range, each.error) for each in equivalents]).T
+    columns = Columns(
+        Column("Woehler exponent", [each.exponent for each in equivalents], form="g"),
+        Column(f"range of {quantity}", ranges, unit, error=errors, form=_supported),
+        title=f"Damage-equivalent ranges (number of equal cycles: {number:g})",
+    )
+    return table_of(columns, SI_UNITS)
 
 
 def cycles_csv(result: LoadCycles) -> Columns:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 Cell: TypeAlias = "str | Text"  # cell of a table
 _MOST_ROWS = 16  # rows of a printed table, besides peaks and changes of status
 _ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
-_WIDTH = 119  # width of a table's columns, so that none is cut at 120
 _CRITICAL_DIGITS = 12  # most digits of a critical speed
 _FEW = 4  # modes of a locus whose frequencies have all digits
 _DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
@@ -48,27 +47,21 @@ _AXES = "b1", "b2", "b3"  # along the beam at rest, in the direction of bending,
 # Parts of tables of all kinds -------------------------------------------------------------------------
 
 
-def model_line(result: Result, sentence: str) -> Text:
-    """The line on the model below a table."""
-    return Text(as_in_files(said_in(result.display_units, sentence)))
+def said_of_model(result: Result, sentence: str) -> str:
+    """What stands below a table on its model, in words and units of files."""
+    return as_in_files(said_in(result.display_units, sentence))
 
 
-def line_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> Text:
-    """The line on the model below a table over speeds, with the place of each effect."""
+def said_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> str:
+    """What stands below a table over speeds on its model, with the place of each effect."""
     effects, speeds = result.left_out_effects, result.left_out_speeds
-    return model_line(result, effects.sentence(what, where_worst(effects, speeds), speeds))
+    return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
 
 def between_speeds(result: Locus | SteadyResponse | Sweep, error: np.ndarray) -> np.ndarray:
     """Model errors (S,) at all speeds, from those (k,) where they are computed; the nearest outside these."""
     known = result.left_out_speeds
     return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
-
-
-def speed_column(result: Result, speeds: np.ndarray) -> dict[str, list[str]]:
-    """A column of speeds, by its head."""
-    unit = result.display_units.speed_unit()
-    return {f"speed [{unit.name}]": [f"{speed:.8g}" for speed in unit.of(speeds)]}
 
 
 def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
@@ -91,41 +84,42 @@ def csv_directions(scene: Scene) -> tuple[str, ...]:
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 
-def _csv_kinds(result: Modes | Locus) -> dict[str, np.ndarray]:
-    """Columns of the share of each direction, and of what deforms, where there are several."""
-    each = enumerate(csv_directions(result.scene))
-    shares = {f"share_{direction}": result.plane_share[..., k] for k, direction in each}
-    return shares if result.kinds is None else shares | {"kind": result.kinds}
-
-
 # Modes ------------------------------------------------------------------------------------------------
 
 
-def modes_table(result: Modes) -> Group:
-    """Table of natural modes, and what the model leaves out; digits beyond the model error are dimmed."""
-    size = np.abs(result.eigenvalue) * result.error  # absolute error of the eigenvalues
-    effects, words = result.left_out_effects, words_of_directions(result.scene)
-    frequency = [
-        set_apart(supported_or_range(f, wrong / (2 * np.pi)).replace("none", "-"), beyond * abs(f))
-        for f, wrong, beyond in zip(result.frequency, size, result.model_error, strict=True)
-    ]
-    rates = zip(result.growth_rate, size, strict=True)
-    columns: dict[str, Sequence[Cell]] = {
-        "mode": [str(mode + 1) for mode in range(len(size))],
-        "frequency [Hz]": frequency,
-        "relative error": [f"{error:.0e}" for error in result.error],
-        "model error": [_say_model_error(float(each), effects.lack_data) for each in effects.total],
-        "growth rate [1/s]": ["0" if rate == 0 else supported(rate, wrong) for rate, wrong in rates],
-    }
-    if words:
-        drawn = first_drawn(result.scene)
-        columns[f"share of {words[drawn]}"] = [f"{share[drawn]:.3f}" for share in result.plane_share]
-    if (result.kind != BENDING).any():
-        columns["kind"] = [*map(str, result.kind)]
-    columns["status"] = [*map(str, result.status)]
+def modes_columns(result: Modes) -> Columns:
+    """Frequency, errors, growth rate and status of each mode, and in which way it deforms the beam."""
+    size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate  # absolute errors
+    count, effects = len(size), result.left_out_effects
+    model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
+    beyond = result.model_error * np.abs(result.frequency)
     at = result.display_units.speed_unit().say(result.speed, 10)
-    shown = table_of(f"Natural modes at {at}, by {result.provenance.method}", columns, ("status",))
-    return Group(shown, model_line(result, effects.sentence()))
+    return Columns(
+        Column("mode", range(1, count + 1)),
+        Column("speed", [result.speed] * count, "rad/s", words=None),
+        Column("frequency", result.frequency, "Hz", "", size / (2 * np.pi), beyond, _say_frequency),
+        Column("relative_error", result.error, form=".0e"),
+        Column("model_error", result.model_error, cells=model_errors),
+        Column("growth_rate", rate, "1/s", error=np.where(rate == 0, 0.0, size)),
+        Column("status", result.status),
+        *_kinds(result),
+        title=f"Natural modes at {at}, by {result.provenance.method}",
+        note=said_of_model(result, effects.sentence()),
+    )
+
+
+def _say_frequency(frequency: float, error: float) -> str:
+    return supported_or_range(frequency, error).replace("none", "-")
+
+
+def _kinds(result: Modes) -> Iterator[Column]:
+    """The share of each of two planes, of which tables have one, that is drawn; and what deforms."""
+    drawn, words = first_drawn(result.scene), words_of_directions(result.scene)
+    for k, direction in enumerate(csv_directions(result.scene)):
+        shown = f"share of {words[k]}" if k == drawn else None
+        yield Column(f"share_{direction}", result.plane_share[:, k], form=".3f", words=shown)
+    if result.kinds is not None:
+        yield Column("kind", result.kinds, words="" if (result.kinds != BENDING).any() else None)
 
 
 def _say_model_error(size: float, lacks_data: bool) -> str:
@@ -134,58 +128,41 @@ def _say_model_error(size: float, lacks_data: bool) -> str:
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 
-def modes_csv(result: Modes) -> Columns:
-    """Frequency, errors, growth rate and status of each mode, and its kind as `_csv_kinds` has it."""
-    count = len(result.frequency)
-    return Columns(
-        Column("mode", np.arange(1, count + 1)),
-        Column("speed", [result.speed] * count, "rad/s"),
-        Column("frequency", result.frequency, "Hz"),
-        Column("relative_error", result.error),
-        Column("model_error", result.model_error),
-        Column("growth_rate", result.growth_rate, "1/s"),
-        Column("status", result.status),
-        *(Column(name, values) for name, values in _csv_kinds(result).items()),
-    )
-
-
 def locus_table(result: Locus) -> Group:
     """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
 
     Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends; that
-    of a mode which does not mostly bend tells what deforms. The column of model errors is left out where
-    another table would be needed for it alone.
+    of a mode which does not mostly bend tells what deforms.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, rows_worth_showing(result.status)
     model_errors, lacks = model_error_at(result, shown), result.left_out_effects.lack_data
     beyond = model_errors * np.abs(result.frequency[shown])
-    modes = {
-        f"mode {mode + 1} [Hz]": [
-            _locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)
-        ]
-        for mode in range(result.frequency.shape[1])
-    }
-    quality = {
-        "largest error": [f"{result.error[s].max():.0e}" for s in shown],
-        "tracking": [f"{result.confidence[s].min():.2f}" for s in shown],
-    }
     vibrating = np.isin(result.status[shown], ("stable", "neutral"))
     known = [errors[counts] for errors, counts in zip(model_errors, vibrating, strict=True)]
-    of_model = [_say_model_error(float(each.max()), lacks) if len(each) else "-" for each in known]
-    speeds = speed_column(result, result.speeds[shown])
-    width = _WIDTH - sum(map(_column_width, speeds.items()))
-    packed = _blocks(modes | quality, width)
-    wider = _blocks(modes | {"model error": of_model} | quality, width)
-    blocks = [speeds | block for block in (packed if len(wider) > len(packed) else wider)]
+    modes = (
+        [_locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)]
+        for mode in range(result.frequency.shape[1])
+    )
     words = *words_of_directions(result.scene), *_other_kinds(result)
     letters = "; ".join(f"{word[0]}: mostly {word}" for word in words)
     title = (
-        f"Natural frequencies{f' ({letters})' if words else ''}, by {result.provenance.method}"
+        f"Natural frequencies{letters and f' ({letters})'}, by {result.provenance.method}"
         f"{selection_note(shown, result.speeds)}"
     )
-    titles = (title, *["The same speeds, further columns"] * (len(blocks) - 1))
-    made = (table_of(head, block) for head, block in zip(titles, blocks, strict=True))
-    return Group(*made, line_over_speeds(result, "mode"))
+    columns = Columns(
+        Column("speed", result.speeds[shown], "rad/s", form=".8g"),
+        *(Column("mode", (), "Hz", number, cells=cells) for number, cells in enumerate(modes, 1)),
+        Column("model_error", (), cells=[_say_largest(each, lacks) for each in known]),
+        Column("largest_error", result.error[shown].max(axis=1), form=".0e"),
+        Column("tracking", result.confidence[shown].min(axis=1), form=".2f"),
+        title=title,
+        note=said_over_speeds(result, "mode"),
+    )
+    return table_of(columns, result.display_units)
+
+
+def _say_largest(model_errors: np.ndarray, lacks_data: bool) -> str:
+    return _say_model_error(float(model_errors.max()), lacks_data) if len(model_errors) else "-"
 
 
 def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
@@ -214,24 +191,6 @@ def _other_kinds(result: Locus) -> list[str]:
     return [kind for kind in map(str, np.unique(result.kind)) if kind != BENDING]
 
 
-def _blocks(columns: Mapping[str, Sequence[Cell]], width: int) -> list[dict[str, Sequence[Cell]]]:
-    """Pack columns, in their order, into as few tables of at most a width as will do."""
-    blocks: list[dict[str, Sequence[Cell]]] = []
-    left = -1
-    for column in columns.items():
-        left -= _column_width(column)
-        if left < 0:
-            blocks.append({})
-            left = width - _column_width(column)
-        blocks[-1] |= [column]
-    return blocks
-
-
-def _column_width(column: tuple[str, Sequence[Cell]]) -> int:
-    """Width of a column with its padding and the gap after it."""
-    return max(map(len, (column[0], *column[1]))) + 3
-
-
 def locus_csv(result: Locus) -> Columns:
     """Frequency, errors, growth rate, status, confidence and kind of each mode, a row a speed."""
     of_modes = {
@@ -241,8 +200,13 @@ def locus_csv(result: Locus) -> Columns:
         ("growth_rate", "1/s"): result.growth_rate,
         ("status", ""): result.status,
         ("confidence", ""): result.confidence,
-        **{(name, ""): values for name, values in _csv_kinds(result).items()},
+        **{
+            (f"share_{direction}", ""): result.plane_share[..., k]
+            for k, direction in enumerate(csv_directions(result.scene))
+        },
     }
+    if result.kinds is not None:
+        of_modes["kind", ""] = result.kinds
     each = (
         Column(name, values, unit, mode)
         for (name, unit), of_all in of_modes.items()
@@ -272,7 +236,7 @@ def critical_answer(result: CriticalPoint) -> Group:
         straight = of_kind(result.warnings, OUTSIDE)
         which = "a straight beam would buckle" if straight else "the beam buckles"
         said = Text.assemble("critical speed: ", shown, f" {unit.name}; above it {which}: {result.reason}")
-    return Group(said, model_line(result, result.left_out_effects.sentence("")))
+    return Group(said, Text(said_of_model(result, result.left_out_effects.sentence(""))))
 
 
 def critical_csv(result: CriticalPoint) -> Columns:
@@ -281,49 +245,31 @@ def critical_csv(result: CriticalPoint) -> Columns:
     return columns_of_rows(heads, [(result.speed, result.error, result.none_below, result.reason)])
 
 
-def limits_table(result: SettingAngleLimits) -> Group:
-    """Table of setting-angle limits."""
-    top = result.display_units.speed_unit().say(result.top_speed, 10)
-    columns = {
-        "limit": ("first", "second"),
-        "angle [deg]": [supported(*np.degrees([limit, result.error]).tolist()) for limit in result],
-        "": (
-            "below it the first frequency falls with speed; above it, it rises from rest",
-            "below it the first frequency falls before the top speed; above it, it rises",
-        ),
-    }
-    title = f"Setting-angle limits up to {top}, by {result.provenance.method}"
-    return table_of(title, columns, ("limit", ""))
-
-
-def limits_csv(result: SettingAngleLimits) -> Columns:
+def limits_columns(result: SettingAngleLimits) -> Columns:
     """Both limits with their error and the top speed of the second."""
-    names = zip(("first", "second"), result, strict=True)
-    rows = ((name, angle, result.error, result.top_speed) for name, angle in names)
-    return columns_of_rows(("limit", ("angle", "rad"), ("error", "rad"), ("top_speed", "rad/s")), rows)
-
-
-def bounds_table(result: FrequencyBounds) -> Group:
-    """Lower and upper bound of each frequency, and how they are guaranteed."""
-    columns = {
-        "mode": [str(mode) for mode in range(1, len(result.lower) + 1)],
-        "at least [Hz]": [f"{low:.10g}" for low in result.lower],
-        "at most [Hz]": [f"{high:.10g}" for high in result.upper],
-        "relative width": [f"{width:.0e}" for width in result.width],
-    }
-    at = result.display_units.speed_unit().say(result.speed, 10)
-    shown = table_of(f"Guaranteed bounds at {at}, of the model", columns)
-    return Group(shown, Text(f"{result.how[:1].upper()}{result.how[1:]}."))
-
-
-def bounds_csv(result: FrequencyBounds) -> Columns:
-    """Bounds of each frequency, one row a mode."""
+    top = result.display_units.speed_unit().say(result.top_speed, 10)
     return Columns(
-        Column("mode", range(1, len(result.lower) + 1)),
-        Column("speed", [result.speed] * len(result.lower), "rad/s"),
-        Column("lower", result.lower, "Hz"),
-        Column("upper", result.upper, "Hz"),
-        Column("relative_width", result.width),
+        Column("limit", ("first", "second")),
+        Column("angle", [*result], "rad", error=np.full(2, result.error)),
+        Column("error", [result.error] * 2, "rad", words=None),
+        Column("top_speed", [result.top_speed] * 2, "rad/s", words=None),
+        title=f"Setting-angle limits up to {top}, by {result.provenance.method}",
+        note="Below the first limit the first frequency falls with speed; above it, it rises from rest. "
+        "Below the second it falls before the top speed; above it, it rises.",
+    )
+
+
+def bounds_columns(result: FrequencyBounds) -> Columns:
+    """Lower and upper bound of each frequency, and how they are guaranteed."""
+    count = len(result.lower)
+    return Columns(
+        Column("mode", range(1, count + 1)),
+        Column("speed", [result.speed] * count, "rad/s", words=None),
+        Column("lower", result.lower, "Hz", form=".10g", words="at least"),
+        Column("upper", result.upper, "Hz", form=".10g", words="at most"),
+        Column("relative_width", result.width, form=".0e"),
+        title=f"Guaranteed bounds at {result.display_units.speed_unit().say(result.speed, 10)}, of the model",
+        note=f"{result.how[:1].upper()}{result.how[1:]}.",
     )
 
 
@@ -444,10 +390,10 @@ VIEWS = {
     "CriticalPoint": View(critical_answer, critical_csv),
     "Equilibrium": View(equilibrium_table, equilibrium_csv, 1),
     "EquilibriumBranches": View(branches_table, branches_csv, 2),
-    "FrequencyBounds": View(bounds_table, bounds_csv, 1),
+    "FrequencyBounds": View(None, bounds_columns, 1),
     "Locus": View(locus_table, locus_csv, 1),
-    "Modes": View(modes_table, modes_csv, 1),
+    "Modes": View(None, modes_columns, 1),
     "RotorDrawing": View(rotor_table, rotor_csv, 0, lambda result: result.figure()),
-    "SettingAngleLimits": View(limits_table, limits_csv, 1),
+    "SettingAngleLimits": View(None, limits_columns, 1),
     "Terms": View(terms_table, terms_csv, 1),
 }

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,18 +12,16 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.analyses.results.of_modes import (
-    Cell,
     between_speeds,
     csv_directions,
-    line_over_speeds,
-    model_line,
     rows_worth_showing,
+    said_of_model,
+    said_over_speeds,
     selection_note,
-    speed_column,
 )
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.results.columns import Column, Columns, columns_of_rows
+from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.effects import modelled_directions, words_of_directions
@@ -36,6 +35,8 @@ if TYPE_CHECKING:
 _DIGITS = 6  # most digits of a deflection, which the modal truncation error allows
 _ASSUMED_ERROR = 5e-4  # relative error assumed for the digits of a deflection whose error is not estimated
 _WHERE_COMPUTED = "model_error_where_computed"
+_LARGEST = "largest tip deflection"
+_WORDS = {"amplitude": _LARGEST, "largest_deflection": _LARGEST, "sum_of_lines": "sum of the lines"}
 
 
 # Transients -------------------------------------------------------------------------------------------
@@ -64,8 +65,8 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         )
     else:
         errors = f"Estimated time-integration error {unit.say(run.time_error, 1)}, {modes}."
-    left_out = model_line(run, run.left_out_effects.sentence("", "of the largest deflection"))
-    return Group(shown, Text(errors), left_out)
+    left_out = said_of_model(run, run.left_out_effects.sentence("", "of the largest deflection"))
+    return Group(shown, Text(errors), Text(left_out))
 
 
 def time_of_peak(
@@ -111,38 +112,36 @@ def transient_csv(run: Transient) -> Columns:
 # Deflections over speed -------------------------------------------------------------------------------
 
 
-def _deflections_table(
-    result: SteadyResponse | Sweep,
-    title: str,
-    sizes: dict[str, np.ndarray],
-    error: np.ndarray,
-    status: Sequence[str] | np.ndarray,
-    peaks_at: np.ndarray,
-) -> Group:
-    """Deflections [m] at some speeds, the peaks included; digits beyond the model error are dimmed."""
-    unit, shown = result.display_units.length_unit(), rows_worth_showing(np.array(status), peaks_at)
-    beyond, high = between_speeds(result, result.model_error), {*peaks_at.tolist()}
-    columns: dict[str, Sequence[Cell]] = {**speed_column(result, result.speeds[shown])}
-    for name, values in sizes.items():
-        each = zip(*(row[shown].tolist() for row in (unit.of(values), unit.of(error), beyond)), strict=True)
-        columns[f"{name} [{unit.name}]"] = [
-            set_apart(supported(value, wrong, _DIGITS), relative * abs(value))
-            for value, wrong, relative in each
-        ]
-    columns["status"] = [f"{status[s]}, peak" if s in high else str(status[s]) for s in shown.tolist()]
-    made = table_of(title + selection_note(shown, result.speeds), columns, ("status",))
-    return Group(made, line_over_speeds(result))
+def _table_over_speeds(result: SteadyResponse | Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
+    """The columns at some speeds, the peaks included, which the status names."""
+    shown, high = rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
+    states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
+    status = Column("status", states)
+    title = columns.title + selection_note(shown, result.speeds)
+    note = said_over_speeds(result)
+    return table_of(Columns(*columns.at(shown).columns, status, title=title, note=note), result.display_units)
+
+
+def _deflections(result: SteadyResponse | Sweep, error: np.ndarray, **sizes: np.ndarray) -> Iterator[Column]:
+    """Speeds, and deflections by the name in files; digits beyond the model error are dimmed."""
+    words = dict(zip(csv_directions(result.scene), words_of_directions(result.scene), strict=True))
+    yield Column("speed", result.speeds, "rad/s", form=".8g")
+    beyond, form = between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
+    for name, size in sizes.items():
+        head = _WORDS.get(name) or words[name.removeprefix("largest_")]
+        yield Column(name, size, "m", "", error, beyond * np.abs(size), form, words=head)
+
+
+def _by_direction(result: SteadyResponse | Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
+    """Largest deflections by the name in files, where two directions are modelled."""
+    return {f"largest_{name}": size for name, size in zip(csv_directions(result.scene), sizes, strict=False)}
 
 
 def steady_table(result: SteadyResponse) -> Group:
     """Table of a steady response at some of its speeds, the peaks included."""
     with np.errstate(divide="ignore"):
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
-    by_direction = dict(zip(words_of_directions(result.scene), largest_by_direction(result), strict=True))
-    sizes = {"largest tip deflection": result.amplitude} | by_direction | {"sum of the lines": result.bound}
-    title = f"Steady response, by harmonic balance with {result.provenance.method}"
-    error = result.error * result.bound
-    return _deflections_table(result, title, sizes, error, result.status, peaks_at)
+    return _table_over_speeds(result, steady_columns(result), peaks_at)
 
 
 def largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
@@ -150,29 +149,35 @@ def largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
     return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
 
 
-def steady_csv(result: SteadyResponse) -> Columns:
+def steady_columns(result: SteadyResponse) -> Columns:
     """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
-    each = zip(csv_directions(result.scene), largest_by_direction(result), strict=True)
+    error, each = result.error * result.bound, _by_direction(result, largest_by_direction(result))
     return Columns(
-        Column("speed", result.speeds, "rad/s"),
-        Column("amplitude", result.amplitude, "m"),
-        *(Column(f"largest_{direction}", size, "m") for direction, size in each),
-        Column("sum_of_lines", result.bound, "m"),
-        Column("relative_error", result.error),
-        Column(_WHERE_COMPUTED, _model_error_of(result)),
-        Column("growth_rate", result.growth_rate, "1/s"),
-        Column("growth_rate_error", result.growth_rate_error, "1/s"),
-        Column("status", result.status),
+        *_deflections(result, error, amplitude=result.amplitude, **each, sum_of_lines=result.bound),
+        Column("relative_error", result.error, words=None),
+        Column(_WHERE_COMPUTED, _model_error_of(result), words=None),
+        Column("growth_rate", result.growth_rate, "1/s", words=None),
+        Column("growth_rate_error", result.growth_rate_error, "1/s", words=None),
+        Column("status", result.status, words=None),
+        title=f"Steady response, by harmonic balance with {result.provenance.method}",
     )
 
 
 def sweep_table(result: Sweep) -> Group:
     """Table of a sweep at some of its speeds, the peaks included."""
-    start, end = result.window
-    title = f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}"
-    each = zip(words_of_directions(result.scene), result.peaks_by_direction.T, strict=False)
-    sizes = {"largest tip deflection": result.peaks, **dict(each)}
-    return _deflections_table(result, title, sizes, result.peak_error, result.status, sweep_peaks(result))
+    return _table_over_speeds(result, sweep_columns(result), sweep_peaks(result))
+
+
+def sweep_columns(result: Sweep) -> Columns:
+    """Largest deflection, where two directions are modelled also in each, and its errors."""
+    (start, end), each = result.window, _by_direction(result, result.peaks_by_direction.T)
+    return Columns(
+        *_deflections(result, result.peak_error, largest_deflection=result.peaks, **each),
+        Column("time_error", result.time_error, "m", words=None),
+        Column("mode_error", result.peak_error - result.time_error, "m", words=None),
+        Column(_WHERE_COMPUTED, _model_error_of(result), words=None),
+        title=f"Largest tip deflection in {start:g} to {end:g} s, by {result.provenance.method}",
+    )
 
 
 def sweep_peaks(result: Sweep) -> np.ndarray:
@@ -188,19 +193,6 @@ def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
     return known[find_peaks(values[known], prominence=prominence)[0]]
 
 
-def sweep_csv(result: Sweep) -> Columns:
-    """Largest deflection, where two directions are modelled also in each, and its errors."""
-    each = zip(csv_directions(result.scene), result.peaks_by_direction.T, strict=False)
-    return Columns(
-        Column("speed", result.speeds, "rad/s"),
-        Column("largest_deflection", result.peaks, "m"),
-        *(Column(f"largest_{direction}", peaks, "m") for direction, peaks in each),
-        Column("time_error", result.time_error, "m"),
-        Column("mode_error", result.peak_error - result.time_error, "m"),
-        Column(_WHERE_COMPUTED, _model_error_of(result)),
-    )
-
-
 def _model_error_of(result: SteadyResponse | Sweep) -> np.ndarray:
     """Model error at each speed (S,); nan where it is not computed."""
     at = np.isin(result.speeds, result.left_out_speeds)
@@ -212,48 +204,49 @@ def _model_error_of(result: SteadyResponse | Sweep) -> np.ndarray:
 # Resonances ---------------------------------------------------------------------------------------------
 
 
-def crossings_table(result: Crossings) -> Group:
-    """Table of resonance speeds, with the plane of each mode where two are modelled."""
-    unit, words, rows = result.display_units.speed_unit(), words_of_directions(result.scene), []
-    for c, beyond in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False):
-        speed = unit.of(c.speed)
-        shares = [s for s in (c.plane_share, c.second_plane_share) if s is not None]
-        planes = " and ".join(f"{100 * bending:.0f}, {100 * across:.0f}" for bending, across in shares)
-        rows.append(
-            (
-                set_apart(supported(speed, c.error * speed), beyond * speed),
-                f"{c.line.name}: {c.line.multiple:.6g} times the speed",
-                str(c.mode) if c.second_mode is None else f"{c.mode} and {c.second_mode}",
-                *([planes] if words else []),
-                set_apart(supported(c.frequency, c.error * c.frequency), beyond * c.frequency),
-                c.kind,
-            )
-        )
-    number = f"{len(rows) or 'No'} resonance speed{'s' * (len(rows) != 1)}"
-    title = f"{number}, by {result.provenance.method}. {said_in(result.display_units, result.extent)}"
-    plane = [f"{', '.join(words)} [%]"] if words else []
-    heads = (f"speed [{unit.name}]", "line", "mode", *plane, "frequency [Hz]", "kind")
-    line = model_line(result, result.left_out_effects.sentence("resonance" if len(rows) > 1 else ""))
-    return Group(table(title, heads, rows, (1, len(heads) - 1)), line)
-
-
-def crossings_csv(result: Crossings) -> Columns:
+def crossings_columns(result: Crossings) -> Columns:
     """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
-    directions = csv_directions(result.scene)
-    shares = [f"{mode}share_{direction}" for mode in ("", "second_") for direction in directions]
-    rows = []
-    for c, model_error in zip(result, np.atleast_1d(result.model_error).tolist(), strict=False):
-        second = "" if c.second_mode is None else c.second_mode
-        values = *c.plane_share, *(c.second_plane_share or ("", ""))
-        row = c.speed, c.error, model_error, c.frequency, c.line.name, c.line.multiple, c.mode, second, c.kind
-        rows.append((*row, *values[: len(shares)]))
-    first = ("speed", "rad/s"), "relative_error", "model_error", ("frequency", "Hz")
-    return columns_of_rows((*first, "line", "multiple", "mode", "second_mode", "kind", *shares), rows)
+    speed, frequency, error = (
+        np.array([getattr(c, name) for c in result]) for name in ("speed", "frequency", "error")
+    )
+    model_error = np.atleast_1d(result.model_error)[: len(result)]
+    second = ["" if c.second_mode is None else c.second_mode for c in result]
+    modes = [f"{c.mode} and {c.second_mode}" if c.second_mode else f"{c.mode}" for c in result]
+    lines = [f"{c.line.name}: {c.line.multiple:.6g} times the speed" for c in result]
+    number = f"{len(result) or 'No'} resonance speed{'s' * (len(result) != 1)}"
+    extent = said_in(result.display_units, result.extent)
+    left_out = result.left_out_effects.sentence("resonance" if len(result) > 1 else "")
+    return Columns(
+        Column("speed", speed, "rad/s", error=error * speed, beyond=model_error * speed),
+        Column("relative_error", error, words=None),
+        Column("model_error", model_error, words=None),
+        Column("frequency", frequency, "Hz", error=error * frequency, beyond=model_error * frequency),
+        Column("line", [c.line.name for c in result], cells=lines),
+        Column("multiple", [c.line.multiple for c in result], words=None),
+        Column("mode", [c.mode for c in result], cells=modes),
+        Column("second_mode", second, words=None),
+        Column("kind", [c.kind for c in result]),
+        *_shares(result),
+        title=f"{number}, by {result.provenance.method}. {extent}",
+        note=said_of_model(result, left_out),
+    )
+
+
+def _shares(result: Crossings) -> Iterator[Column]:
+    """Shares of both planes in each mode; tables have them in one column, in percent."""
+    head: str | None = f"{', '.join(words_of_directions(result.scene))} [%]"
+    known = [[s for s in (c.plane_share, c.second_plane_share) if s is not None] for c in result]
+    cells = [" and ".join(f"{100 * a:.0f}, {100 * b:.0f}" for a, b in shares) for shares in known]
+    for of_mode, mode in enumerate(("", "second_")):
+        for k, direction in enumerate(csv_directions(result.scene)):
+            values = [shares[of_mode][k] if len(shares) > of_mode else "" for shares in known]
+            yield Column(f"{mode}share_{direction}", values, cells=cells, words=head)
+            head = None
 
 
 VIEWS = {
-    "Crossings": View(crossings_table, crossings_csv, 1),
-    "SteadyResponse": View(steady_table, steady_csv, 1),
-    "Sweep": View(sweep_table, sweep_csv, 1),
+    "Crossings": View(None, crossings_columns, 1),
+    "SteadyResponse": View(steady_table, steady_columns, 1),
+    "Sweep": View(sweep_table, sweep_columns, 1),
     "Transient": View(transient_table, transient_csv, 1),
 }

@@ -10,9 +10,16 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.edge.file_words import as_in_files
-from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.results.columns import Column, Columns, column_named, columns_of_rows, name_in_heads
+from beamdyn.common.results.columns import (
+    Column,
+    Columns,
+    attributes,
+    column_named,
+    columns_of_rows,
+    name_in_heads,
+)
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.equations.effects import first_drawn
@@ -47,53 +54,57 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
     units : dict, optional
         By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
     """
-    columns, value, error, status = _flat(result)
-    number = len(value)
+    columns, number, inputs = study_columns(result).columns, result.designs.count, len(result.inputs)
     shown = np.linspace(0, number - 1, min(number, _MOST_ROWS)).round().astype(int)
-    in_units = {each.name: (each.unit, 1.0) for each in result.inputs} | (units or {})
-    inputs = [columns[name][shown] / in_units[name][1] for name in columns]
-    heads = [f"{name} [{in_units[name][0]}]" if in_units[name][0] else name for name in columns]
-    rows = (
-        (*(f"{column[k]:.6g}" for column in inputs), *_answers(value[i], error[i], status[i]))
-        for k, i in enumerate(shown)
-    )
-    own = [f"{label} [{result.unit}]" for label in result.labels or (result.question.kind.word,)]
-    title = f"{number} design{'s' * (number > 1)}, by {result.provenance.method}"
+    in_units = {name: (1 / size, unit) for name, (unit, size) in (units or {}).items()}
+    given = (column.times(*in_units.get(column.words or "", (1.0, ""))) for column in columns[:inputs])
+    known = np.where(np.isfinite(result.value), result.error, np.nan).reshape(number, -1)
+    errors = ["-" if np.isnan(each).all() else f"{np.nanmax(each):.1g}" for each in known]
     notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
     if judged := len(result.left_out_places):
-        where, what = f"at the worst of {judged} design{'s' * (judged > 1)}", "number" * (len(own) > 1)
+        where = f"at the worst of {judged} design{'s' * (judged > 1)}"
+        what = "number" * (len(result.labels) > 1)
         notes.append(as_in_files(result.left_out_effects.sentence(what, where)))
     else:
         notes.append("What the model leaves out is not computed: no design has an answer.")
-    return Group(table(title, (*heads, *own, "error"), rows, (), len(heads)), *map(Text, notes))
+    made = Columns(
+        *given,
+        *columns[inputs:],
+        Column("error", (), cells=errors),
+        title=f"{number} design{'s' * (number > 1)}, by {result.provenance.method}",
+        note="\n".join(notes),
+    )
+    return table_of(made.at(shown), result.display_units, keys=inputs + (len(result.labels) or 1))
 
 
-def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> Iterator[str]:
-    """Cells of the answers of a design, and of their largest error."""
-    for number, wrong, state in zip(value, error, status, strict=True):
-        yield supported(number, wrong * number, _DIGITS) if np.isfinite(number) else str(state)
-    known = error[np.isfinite(value)]
-    yield f"{known.max():.1g}" if known.size else "-"
-
-
-def _flat(result: Study) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, np.ndarray]:
-    """Inputs (N,) by name, and answers, errors and states (N, k) of all designs."""
-    number = int(np.prod(result.shape))
-    value, error, status = (each.reshape(number, -1) for each in (result.value, result.error, result.status))
-    return result.designs.columns(), value, error, status
-
-
-def study_csv(result: Study) -> Columns:
+def study_columns(result: Study) -> Columns:
     """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
-    columns, value, error, status = _flat(result)
+    parts = (result.value, result.error, result.status)
+    value, error, status = (each.reshape(result.designs.count, -1).T for each in parts)
+    kind, units = result.question.kind.word, {each.name: each.unit for each in result.inputs}
     numbers = [_plain_name(label) for label in result.labels] or [""]
-    units = {each.name: each.unit for each in result.inputs}
-    inputs = (column_named(name.replace(".", "_"), each, units[name]) for name, each in columns.items())
-    word = result.question.kind.word.replace(" ", "_")
-    answers = (column_named(word, each, result.unit, n) for each, n in zip(value.T, numbers, strict=True))
-    errors = (Column("relative_error", each, "", n) for each, n in zip(error.T, numbers, strict=True))
-    states = (Column("status", each, "", n) for each, n in zip(status.T, numbers, strict=True))
-    return Columns(*inputs, *answers, *errors, *states)
+    answers = zip(numbers, result.labels or (kind,), value, map(_answers, value, error, status), strict=True)
+    word = kind.replace(" ", "_")
+    return Columns(
+        *(
+            column_named(name.replace(".", "_"), each, units[name], words=name)
+            for name, each in result.designs.columns().items()
+        ),
+        *(
+            column_named(word, each, result.unit, n, cells=cells, words=head)
+            for n, head, each, cells in answers
+        ),
+        *(Column("relative_error", each, "", n, words=None) for each, n in zip(error, numbers, strict=True)),
+        *(Column("status", each, "", n, words=None) for each, n in zip(status, numbers, strict=True)),
+    )
+
+
+def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> list[str]:
+    """Cells of an answer in all designs: the number, or why there is none."""
+    return [
+        supported(number, wrong * number, _DIGITS) if np.isfinite(number) else str(state)
+        for number, wrong, state in zip(value, error, status, strict=True)
+    ]
 
 
 def _plain_name(label: str) -> str:
@@ -189,81 +200,92 @@ def _tradeoff_figure(result: Tradeoff) -> Figure:
 
 def campbell_tables(result: Campbell) -> Group:
     """Tables of the crossings, of the margins and of the bounds, those that there are."""
-    tables = [_crossings_table(result)]
-    tables += [_margins_table(result)] if result.margins else []
-    return Group(*tables, *([_bounds_table(result)] if result.bounds else []))
+    parts = crossings_columns(result), *_margins(result), *_bounds(result)
+    return Group(*(table_of(columns, result.display_units) for columns in parts))
 
 
-def _of_scenes(result: Campbell, title: str, heads: Sequence[str], rows: Sequence[Sequence[str | Text]],
-               words: Sequence[str]) -> Group:  # fmt: skip
-    """A table whose rows begin with the label of a scene, which stands there if there are several."""
-    first = 0 if len(result.labels) > 1 else 1
-    heads = ("scene", *heads)[first:]
-    left = [i for i, head in enumerate(heads) if head in ("scene", *words)]
-    return table(title, heads, [row[first:] for row in rows], left)
+def _scenes(result: Campbell, labels: Sequence[str]) -> Column:
+    """The scene of each row, which tables have if there are several."""
+    return Column("scene", labels, words="" if len(result.labels) > 1 else None)
 
 
-def _crossings_table(result: Campbell) -> Group:
-    (unit, factor), rows = result.display_units.speed_unit(), []
-    two_planes = any(locus.scene.physics.planes == 2 for locus in result.loci)
-    has_flap = any(name.startswith("flap") for names in result.names for name in names)
-    model_errors = result.model_error if result.crossings else np.zeros(0)
-    for c, model_error in zip(result.crossings, model_errors, strict=True):
-        scene, speed = result.loci[result.labels.index(c.label)].scene, factor * c.speed
-        share = f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"
-        rows.append(
-            (
-                c.label,
-                set_apart(supported(speed, c.error * speed, _DIGITS), model_error * speed),
-                c.line.name,
-                c.name,
-                supported(c.frequency, c.error * c.frequency, _DIGITS),
-                *([share] if two_planes else []),
-                f"{c.confidence:.2f}",
-                *([] if result.operating is None else ["yes" if c.operating else "no"]),
-            )
-        )
-    number = f"{len(rows) or 'No'} crossing{'s' * (len(rows) != 1)}"
-    top = f"{factor * result.loci[0].speeds[-1]:.6g} {unit}"
-    title = f"{number} up to {top}, by {result.provenance.method}"
-    share_head = ["share of flap" if has_flap else "share of bending"] if two_planes else []
-    operating = [] if result.operating is None else ["operating"]
-    heads = (f"speed [{unit}]", "line", "mode", "frequency [Hz]", *share_head, "tracking", *operating)
-    shown = _of_scenes(result, title, heads, rows, ("line", "mode", "operating"))
-    return Group(shown, Text(result.left_out_effects.sentence("crossing" if len(rows) > 1 else "")))
+def crossings_columns(result: Campbell) -> Columns:
+    """Crossings, one row each; tables have the share of the direction that is drawn."""
+    found, number = result.crossings, len(result.crossings)
+    speed, frequency, error = (
+        np.array(attributes(found, name), dtype=float) for name in ("speed", "frequency", "error")
+    )
+    model_error = result.model_error if found else np.zeros(0)
+    top = result.display_units.speed_unit().say(result.loci[0].speeds[-1])
+    operating = ["yes" if c.operating else "no" for c in found]
+    return Columns(
+        _scenes(result, attributes(found, "label")),
+        Column("line", attributes(found, "line.name")),
+        Column("multiple", attributes(found, "line.multiple"), words=None),
+        Column("mode", attributes(found, "mode"), words=None),
+        Column("name", attributes(found, "name"), words="mode"),
+        Column("speed", speed, "rad/s", "", error * speed, model_error * speed),
+        Column("speed", speed * _RPM, "rpm", words=None),
+        Column("frequency", frequency, "Hz", error=error * frequency),
+        Column("relative_error", error, words=None),
+        Column("tracking_confidence", attributes(found, "confidence"), form=".2f", words="tracking"),
+        *_shares(result),
+        Column(
+            "operating",
+            attributes(found, "operating"),
+            cells=operating,
+            words=None if result.operating is None else "",
+        ),
+        title=f"{number or 'No'} crossing{'s' * (number != 1)} up to {top}, by {result.provenance.method}",
+        note=result.left_out_effects.sentence("crossing" if number > 1 else ""),
+    )
 
 
-def _margins_table(result: Campbell) -> Group:
-    unit, factor = result.display_units.speed_unit()
-    rows = [
-        (
-            m.label,
-            m.name,
-            m.where,
-            f"{factor * m.speed:.6g}",
-            f"{m.frequency:.6g}",
-            m.line.name,
-            f"{100 * m.margin:+.1f} %" if m.margin else "crossed",
-        )
-        for m in result.margins
+def _shares(result: Campbell) -> Iterator[Column]:
+    """The share of each plane; tables have that of the direction that is drawn, where two are modelled."""
+    scenes = [result.loci[result.labels.index(c.label)].scene for c in result.crossings]
+    cells = [
+        f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"
+        for c, scene in zip(result.crossings, scenes, strict=True)
     ]
-    heads = ("mode", "at", f"speed [{unit}]", "frequency [Hz]", "nearest line", "margin")
-    title = "Margins: frequency of the nearest line over the natural frequency, less one"
-    return _of_scenes(result, title, heads, rows, ("mode", "at", "nearest line"))
+    flap = any(name.startswith("flap") for names in result.names for name in names)
+    two_planes = any(locus.scene.physics.planes == 2 for locus in result.loci)
+    head = f"share of {'flap' if flap else 'bending'}" if two_planes else None
+    yield Column("share_bending", [c.plane_share[0] for c in result.crossings], cells=cells, words=head)
+    yield Column("share_across", [c.plane_share[1] for c in result.crossings], words=None)
 
 
-def _bounds_table(result: Campbell) -> Group:
-    rows = []
-    for label, found in result.bounds:
-        for low, high, width in zip(found.lower, found.upper, found.width, strict=True):
-            known = (f"{low:.10g}", f"{width:.0e}") if 0 < low <= high else ("-", "-")
-            rows.append(
-                (label, _name_below(result, label, found.speed, high), known[0], f"{high:.10g}", known[1])
-            )
-    at = f"{result.display_units.speed_unit().of(result.bounds[0][1].speed):.6g}"
-    title = f"Guaranteed bounds at {at} {result.display_units.speed_unit().name}, of the model"
-    heads = ("mode", "at least [Hz]", "at most [Hz]", "relative width")
-    return _of_scenes(result, title, heads, rows, ("mode",))
+def _margins(result: Campbell) -> Iterator[Columns]:
+    if found := result.margins:
+        sizes = [f"{100 * m.margin:+.1f} %" if m.margin else "crossed" for m in found]
+        yield Columns(
+            _scenes(result, attributes(found, "label")),
+            Column("mode", attributes(found, "name")),
+            Column("at", attributes(found, "where")),
+            Column("speed", attributes(found, "speed"), "rad/s"),
+            Column("frequency", attributes(found, "frequency"), "Hz"),
+            Column("nearest line", attributes(found, "line.name")),
+            Column("margin", (), cells=sizes),
+            title="Margins: frequency of the nearest line over the natural frequency, less one",
+        )
+
+
+def _bounds(result: Campbell) -> Iterator[Columns]:
+    if result.bounds:
+        each = [(label, found.speed, high) for label, found in result.bounds for high in found.upper]
+        low, high, width = (
+            np.concatenate([getattr(found, name) for _, found in result.bounds])
+            for name in ("lower", "upper", "width")
+        )
+        known = (low > 0) & (low <= high)
+        yield Columns(
+            _scenes(result, [label for label, _, _ in each]),
+            Column("mode", [_name_below(result, *one) for one in each]),
+            Column("at least", (), "Hz", cells=np.where(known, np.char.mod("%.10g", low), "-").tolist()),
+            Column("at most", high, "Hz", form=".10g"),
+            Column("relative width", (), cells=np.where(known, np.char.mod("%.0e", width), "-").tolist()),
+            title=f"Guaranteed bounds at {result.display_units.speed_unit().say(each[0][1])}, of the model",
+        )
 
 
 def _name_below(result: Campbell, label: str, speed: float, high: float) -> str:
@@ -293,26 +315,11 @@ def campbell_csv(result: Campbell) -> Columns:
     )
 
 
-def crossings_of_lines_csv(result: Campbell) -> Columns:
-    """Crossings, one row each."""
-    rows = (
-        (c.label, c.line.name, c.line.multiple, c.mode, c.name, c.speed, c.speed * _RPM, c.frequency,
-         c.error, c.confidence, *c.plane_share, c.operating)
-        for c in result.crossings
-    )  # fmt: skip
-    heads = (
-        "scene", "line", "multiple", "mode", "name", ("speed", "rad/s"), ("speed", "rpm"),
-        ("frequency", "Hz"), "relative_error", "tracking_confidence", "share_bending", "share_across",
-        "operating",
-    )  # fmt: skip
-    return columns_of_rows(heads, rows)
-
-
 VIEWS = {
     "Campbell": View(campbell_tables, campbell_csv, 1, lambda result: figure_of(result.plot, (8.5, 6.0))),
     "Diagram": View(diagram_table, diagram_csv),
     "Sensitivities": View(sensitivities_table, sensitivities_csv, 1),
-    "Study": View(study_table, study_csv),
+    "Study": View(study_table, study_columns),
     "Tradeoff": View(lambda result: Group(*map(diagram_table, result.diagrams)), tradeoff_csv, 3,
                      _tradeoff_figure),
 }  # fmt: skip

@@ -6,9 +6,10 @@ import codecs
 import os
 import sys
 import textwrap
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from io import TextIOWrapper
-from typing import Any
+from math import pi
+from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from rich import box
@@ -19,7 +20,11 @@ from rich.text import Text
 
 from beamdyn.common.edge.progress import quiet
 from beamdyn.common.results.comparison import Comparison
-from beamdyn.common.results.digits import count_sure
+from beamdyn.common.results.digits import count_sure, supported
+
+if TYPE_CHECKING:  # the columns need numpy, which help does without
+    from beamdyn.common.results.columns import Column, Columns
+    from beamdyn.common.results.display_units import DisplayUnits
 
 _BETWEEN, _EDGES = 3, 1  # characters that a column, and a table, have beside their text
 _WORDS = 16  # least width of a column of words, in characters
@@ -218,10 +223,34 @@ def table(
     return Group(Text(title, style="bold"), made)
 
 
-def table_of(title: str, columns: Mapping[str, Sequence[str | Text]], words: Collection[str] = ()) -> Group:
-    """A table of columns by their heads; those in `words` stand at the left, all others are numbers."""
-    left = [i for i, head in enumerate(columns) if head in words]
-    return table(title, [*columns], zip(*columns.values(), strict=True), left)
+def table_of(columns: Columns, units: DisplayUnits, title: str = "", keys: int = 1) -> Group:
+    """A table of columns of a result, with the sentences that go with them, in units for people.
+
+    Words stand at the left, numbers at the right.  The title may be another than theirs; so many first
+    columns identify a row.
+    """
+    shown = [_for_people(column, units) for column in columns.columns if column.words is not None]
+    left = [i for i, column in enumerate(shown) if isinstance(next(iter(column.values), None), str)]
+    heads, cells = [column.title for column in shown], zip(*map(_cells, shown), strict=True)
+    made = table(title or columns.title, heads, cells, left, keys)
+    return Group(made, *map(Text, columns.note.splitlines()))
+
+
+def _for_people(column: Column, units: DisplayUnits) -> Column:
+    """A column in display units: angles in degrees, lengths in mm unless another unit is given."""
+    return column.times(180 / pi, "deg") if column.unit == "rad" else column.in_units(units, "mm")
+
+
+def _cells(column: Column) -> Sequence[str | Text]:
+    """What a table shows of a column's values."""
+    if column.cells is not None:
+        return column.cells
+    form = column.form or (".6g" if column.error is None else supported)
+    if isinstance(form, str):
+        return [each if isinstance(each, str) else format(each, form) for each in column.plain]
+    errors = [0.0] * len(column.values) if column.error is None else column.error.tolist()
+    texts = [*map(form, column.plain, errors)]
+    return texts if column.beyond is None else [*map(set_apart, texts, column.beyond.tolist())]
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:

@@ -15,10 +15,10 @@ import numpy as np
 from rich.console import Console, RenderableType
 
 from beamdyn.common.edge.rendering import html, png
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.described import descriptions
-from beamdyn.common.results.columns import in_display_units
+from beamdyn.common.results.columns import Columns
 from beamdyn.common.results.one_line import brief, spanned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result, plain
@@ -43,9 +43,9 @@ class View:
     Parameters
     ----------
     tables : callable, optional
-        ``tables(result)``: tables and sentences for people.
+        ``tables(result)``: tables and sentences for people; that of the columns if not given.
     rows : callable, optional
-        ``rows(result)``: rows of the CSV file, heads first.
+        ``rows(result)``: columns, or the rows of the CSV file, heads first.
     index : int
         Number of first columns that are the index of a data frame.
     figure : callable, optional
@@ -75,17 +75,21 @@ def tables_of(result: Result) -> RenderableType:
     if view.tables is not None:
         return view.tables(result)
     title = (type(result).__doc__ or type(result).__name__).partition("\n")[0].rstrip(".:;")
-    if view.rows is None:
+    rows = None if view.rows is None else view.rows(result)
+    if isinstance(rows, Columns):
+        return table_of(rows, result.display_units, rows.title or title)
+    if rows is None:
         fields = [(name.replace("_", " "), _cell(each), unit) for name, each, unit in _named_fields(result)]
         return table(title, ("", "value", "unit"), fields, (0, 1, 2))
-    heads, *rows = rows_of(result)
-    return table(title, [*map(str, heads)], [[_cell(value) for value in row] for row in rows], ())
+    heads, *cells = rows
+    return table(title, [*map(str, heads)], [[_cell(value) for value in row] for row in cells], ())
 
 
 def rows_of(result: Result) -> Rows:
     """Rows of the CSV file of a result, heads first, in its display units."""
     made = view_of(result).rows
-    return in_display_units(_fields_rows(result) if made is None else made(result), result.display_units)
+    rows = _fields_rows(result) if made is None else made(result)
+    return rows.in_units(result.display_units) if isinstance(rows, Columns) else rows
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from beamdyn.common.results.display_units import DisplayUnits
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a result.
+    """A column of a result, from which its place in tables, files and data frames follows.
 
     Parameters
     ----------
@@ -25,29 +26,64 @@ class Column:
         Unit of the values, in SI for a quantity that display units change: "rad/s"; empty of a pure number.
     number : object
         What follows the unit in the head where there are several of a name, such as the number of a mode.
+    error : ndarray, optional
+        Absolute errors of the values [unit]: tables show the digits that these support.
+    beyond : ndarray, optional
+        Errors [unit] beyond which tables dim the digits.
+    form : str or callable, optional
+        How tables write a value: a format, or ``form(value, error)``; by default with the digits that its
+        error supports, or six.
+    cells : sequence, optional
+        What tables show in place of the values.
+    words : str, optional
+        Head in tables, without the unit; if "", the name in words and the number.  None keeps the column out
+        of tables.
     """
 
     name: str
     values: np.ndarray | Sequence[Any]
     unit: str = ""
     number: object = ""
+    error: np.ndarray | None = None
+    beyond: np.ndarray | None = None
+    form: str | Callable[[float, float], str] | None = None
+    cells: Sequence[Any] | None = None
+    words: str | None = ""
 
     @property
     def head(self) -> str:
         """The head in files: "frequency_Hz_1"."""
         return "_".join(filter(None, (self.name, unit_in_heads(self.unit), str(self.number))))
 
-    def in_units(self, units: DisplayUnits) -> Column:
-        """A column of the same values in the display unit of their quantity."""
-        shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit("m")}.get(self.unit)
-        if shown is None or (unit := shown()).per_si == 1.0:
-            return self
-        scaled = [each * unit.per_si if isinstance(each, float | int) else each for each in self.cells()]
-        return replace(self, values=scaled, unit=unit.name)
+    @property
+    def title(self) -> str:
+        """The head in tables: "frequency [Hz]"."""
+        words = self.words or f"{self.name.replace('_', ' ')} {self.number}".rstrip()
+        return f"{words} [{self.unit}]" if self.unit else words
 
-    def cells(self) -> list[Any]:
+    @property
+    def plain(self) -> list[Any]:
         """The values as Python's numbers and words."""
         return self.values.tolist() if isinstance(self.values, np.ndarray) else [*self.values]
+
+    def in_units(self, units: DisplayUnits, usual: str = "m") -> Column:
+        """A column of the same values in the display unit of their quantity; lengths usually in `usual`."""
+        shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit(usual)}.get(self.unit)
+        return self if shown is None else self.times(shown().per_si, shown().name)
+
+    def times(self, factor: float, unit: str) -> Column:
+        """A column of the values, if they are numbers, times a factor, in the unit that they then have."""
+        if factor == 1.0:
+            return self
+        values = [each * factor if isinstance(each, float | int) else each for each in self.plain]
+        error, beyond = (None if each is None else each * factor for each in (self.error, self.beyond))
+        return replace(self, values=values, unit=unit, error=error, beyond=beyond)
+
+    def at(self, rows: Sequence[int] | np.ndarray) -> Column:
+        """The column in some rows, which count from 0."""
+        values, cells = (each and [each[row] for row in rows] for each in (self.plain, self.cells))
+        error, beyond = (None if each is None else each[rows] for each in (self.error, self.beyond))
+        return replace(self, values=values, error=error, beyond=beyond, cells=cells)
 
 
 class Columns:
@@ -57,14 +93,20 @@ class Columns:
     ----------
     *columns : Column
         The columns.
+    title, note : str
+        Title of their table, and the sentences below it, a line each.
     """
 
-    def __init__(self, *columns: Column) -> None:
-        self.columns = columns
+    def __init__(self, *columns: Column, title: str = "", note: str = "") -> None:
+        self.columns, self.title, self.note = columns, title, note
 
-    def __iter__(self) -> Iterator[Sequence[object]]:
+    def __iter__(self) -> Iterator[Sequence[Any]]:
         yield [column.head for column in self.columns]
-        yield from zip(*(column.cells() for column in self.columns), strict=True)
+        yield from zip(*(column.plain for column in self.columns), strict=True)
+
+    def at(self, rows: Sequence[int] | np.ndarray) -> Columns:
+        """A copy with some of the rows, which count from 0."""
+        return Columns(*(column.at(rows) for column in self.columns), title=self.title, note=self.note)
 
     def in_units(self, units: DisplayUnits) -> Columns:
         """A copy in display units; a column stays where another has its quantity in that unit."""
@@ -80,9 +122,16 @@ def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Seque
     return Columns(*(Column(name, each, unit) for (name, unit), each in zip(heads, cells, strict=True)))
 
 
-def column_named(name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "") -> Column:
+def column_named(
+    name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "", **shown: Any
+) -> Column:
     """A column of a quantity with a name of its own, such as an input; the head of a rate has "1_per_s"."""
-    return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number)
+    return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number, **shown)
+
+
+def attributes(things: Iterable[Any], path: str) -> list[Any]:
+    """An attribute of each of several things, such as "line.name"."""
+    return [*map(attrgetter(path), things)]
 
 
 def unit_in_heads(unit: str) -> str:
@@ -95,8 +144,3 @@ def name_in_heads(name: str, signs: str = ".") -> str:
     """A name as a part of a head: what is no letter, digit or one of the signs becomes "_"."""
     kept = (c if (c.isascii() and c.isalnum()) or c in signs else " " for c in name)
     return "_".join("".join(kept).split())
-
-
-def in_display_units(rows: Iterable[Sequence[object]], units: DisplayUnits) -> Iterable[Sequence[object]]:
-    """Rows of a file, heads first, whose columns, if they are known, are in display units in place of SI."""
-    return rows.in_units(units) if isinstance(rows, Columns) else rows
