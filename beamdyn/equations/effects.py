@@ -37,6 +37,8 @@ class Effect:
         Whether it can be combined with large deflection.
     taken_out : str
         Name of what is taken out where large deflection takes its place.
+    uncertainty : float
+        Share of its change that models here miss in short thick beams, held against solids.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Effect:
     needs: tuple[str, ...] = ()
     bends: bool = False
     taken_out: str = ""
+    uncertainty: float = 0.0
 
     def is_in(self, scene: Scene) -> bool:
         """Whether the model of a scene has the effect."""
@@ -88,6 +91,7 @@ SHEAR = Effect(
     "shear",
     needs=("shear_stiffness", "poissons_ratio"),
     taken_out="shear",
+    uncertainty=0.02,
 )
 ROTARY_INERTIA = Effect(
     "rotary inertia of sections",
@@ -95,6 +99,7 @@ ROTARY_INERTIA = Effect(
     "rotary_inertia",
     needs=("rotary_inertia",),
     bends=True,
+    uncertainty=0.02,
 )
 STRETCH = Effect(
     "stretch", "the beam is inextensible", "stretch", needs=("axial_stiffness",), taken_out="stretch"
@@ -104,6 +109,7 @@ CAMBER = Effect(
     "sections camber freely, at the clamped root too",
     "camber",
     needs=("poissons_ratio",),
+    uncertainty=0.1,
 )
 TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("poissons_ratio",))
 LARGE_DEFLECTION = Effect(

@@ -23,7 +23,7 @@ from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import bends
+from beamdyn.modes.modal.model import bends, static_load
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.model_error.left_out_changes import (
     EXCLUDED,
@@ -56,10 +56,13 @@ class EffectSizes:
         known.
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
+    strained : float
+        Relative change by the strain that rotation causes, which no model here follows, to its order.
     """
 
     sizes: dict[str, float]
     reasons: dict[str, str]
+    strained: float = 0.0
 
 
 Judge = Callable[[Scene], EffectSizes]
@@ -115,7 +118,8 @@ def choose_physics(
             # Where the straight beam is unstable, though rotation bends it before, nothing of it is right.
             ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
             rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
-        return _sizes_in_modes(candidate, effects, counts, rough)
+        sizes = _sizes_in_modes(candidate, effects, counts, rough)
+        return replace(sizes, strained=_change_by_strain(found, some))
 
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
@@ -138,6 +142,18 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
 def plain_physics(scene: Scene) -> Scene:
     """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone."""
     return replace(scene, physics=Physics()) if scene.chooses_physics else scene
+
+
+def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:
+    """Change of the first frequency by strain: the stiffness changes by about the strain of rotation.
+
+    Where rotation softens the beam, the change of what is left of its stiffness is as much larger.
+    """
+    _, strain = static_load(found.model, speeds)
+    first = np.abs(found.eigen.eigenvalue[:, 0])
+    known = (first > 0) & np.isfinite(strain)
+    softened = np.maximum(found.model.solver.lowest_at_rest / first[known] ** 2, 1.0)
+    return float(np.max(strain[known] * softened, initial=0.0))
 
 
 def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
@@ -229,12 +245,21 @@ class _Candidate:
         Sizes of the other effects.
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
+    strained : float
+        Relative change by the strain that rotation causes.
     """
 
     scene: Scene
     included: dict[str, float]
     left_out: dict[str, float]
     reasons: dict[str, str]
+    strained: float
+
+    @property
+    def beyond_models(self) -> float:
+        """Relative change that no model here has: what effects that are included miss, and the strain."""
+        missed = (NAMED[name].uncertainty * min(size, 1.0) for name, size in self.included.items())
+        return sum(missed, self.strained)
 
     @property
     def model_error(self) -> float:
@@ -267,7 +292,7 @@ class _Candidate:
             size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
-        return _Candidate(scene, included, left_out, judged.reasons | self.reasons)
+        return _Candidate(scene, included, left_out, judged.reasons | self.reasons, judged.strained)
 
 
 def choose_by(
@@ -297,7 +322,7 @@ def choose_by(
     """
     plain = plain_physics(scene)
     judged = judge(plain)
-    start = _Candidate(plain, {}, judged.sizes, judged.reasons)
+    start = _Candidate(plain, {}, judged.sizes, judged.reasons, judged.strained)
     if straight:
         start = start.without(_BENDING, straight)
     best = _grow(start, judge, tolerance, {_BENDING})
@@ -356,6 +381,7 @@ def _describe(
         time=float(together[0]),
         coordinates=float(together[1]),
         not_modelled=list_effects(plain)[2],
+        beyond_models=best.beyond_models,
     )
 
 

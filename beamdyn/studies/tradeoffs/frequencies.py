@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal
@@ -332,16 +333,15 @@ def _list_choices(
 
 
 def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
-    """The scene with all that the choices add; None if that cannot be combined."""
-    beam = next((c.scene.beam for c in choices if c.scene.beam is not scene.beam), scene.beam)
+    """The scene with all that the choices add, of a beam with the data for all; None if there is none."""
     added = {}
     for choice in choices:
         physics = choice.scene.physics
         added |= {k: v for k, v in vars(physics).items() if v != getattr(scene.physics, k)}
-    try:
-        return _with(replace(scene, beam=beam), **added)
-    except InvalidValue:
-        return None
+    for beam in (scene.beam, *(c.scene.beam for c in choices)):
+        with suppress(InvalidValue):
+            return _with(replace(scene, beam=beam), **added)
+    return None
 
 
 def _with(scene: Scene, **physics: object) -> Scene:
