@@ -213,7 +213,7 @@ class PhysicsChoice:
 
     @property
     def is_met(self) -> bool:
-        """Whether what is left out, and what no model here has, is within the tolerance as far as it is known."""
+        """Whether what is left out, and what no model here has, is within the tolerance, as far as known."""
         return self.model_error + self.beyond_models <= self.tolerance
 
     def sentence(self) -> str:
