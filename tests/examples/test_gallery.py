@@ -45,6 +45,13 @@ def mode_shapes(names: Names) -> None:
     assert abs(shape[0, -1]) == abs(shape[0]).max()
 
 
+def square_plate(names: Names) -> None:
+    """Another plate program, converged to 1e-5; torsion of a section with edges is less stiff by 0.6 t/b."""
+    of_plate = [3.4710, 8.5063, 21.284, 27.199, 30.955, 54.184]
+    assert_allclose(names["scaled"], of_plate, rtol=2e-3)
+    assert [*names["modes"].kind] == ["bending", "torsion", "bending", "camber", "torsion", "camber"]
+
+
 def guaranteed_bounds(names: Names) -> None:
     assert names["inside"].all()
 
@@ -260,7 +267,7 @@ def test_example(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = runpy.run_path(str(path))
     try:
         drawn = [pyplot.figure(number) for number in pyplot.get_fignums()]
-        assert drawn and all(ax.has_data() or ax.texts for figure in drawn for ax in figure.axes)
+        assert drawn and all(ax.has_data() or ax.texts for figure in drawn for ax in figure.axes if ax.axison)
         CLAIMS[path.stem](names)
     finally:
         pyplot.close("all")
