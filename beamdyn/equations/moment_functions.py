@@ -52,11 +52,13 @@ _DEPENDENT = 1e-9  # part of a function that the others lack, below which it is 
 Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by directions
 # Order of the derivative of a displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
+_ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
+_SCALAR = ("axial_stiffness", "torsion_stiffness", "warping_stiffness")  # those without a direction
 # Stiffnesses against displacements that cause forces in the functions for each.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
-    "axial_stiffness": ("axial_stiffness",),
+    **{name: (name,) for name in _SCALAR},
 }
 
 
@@ -186,9 +188,10 @@ def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpac
 
 
 def stiffness_tensor(beam: Beam, name: str) -> Tensor:
-    """A stiffness of the sections in the directions e1, e2; that against stretch has one entry."""
-    if name == "axial_stiffness":
-        return {} if beam.axial_stiffness is None else {(0, 0): beam.axial_stiffness}
+    """A stiffness of the sections in the directions e1, e2; those without a direction have one entry."""
+    if name in _SCALAR:
+        stiffness = getattr(beam, name)
+        return {} if stiffness is None else {(0, 0): stiffness}
     return section_tensor(beam, name)
 
 

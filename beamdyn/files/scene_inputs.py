@@ -240,6 +240,12 @@ class StiffnessInput(_BeamInput):
     second_rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0)
     ] = None
+    torsion_stiffness: Annotated[
+        Along | None, Varying("N m2", "G J", "stiffness against torsion", above=0)
+    ] = None
+    warping_stiffness: Annotated[
+        Along | None, Varying("N m4", "E Cw", "stiffness against warping, which the root holds", above=0)
+    ] = None
 
     @cached_property
     def core(self) -> Beam:

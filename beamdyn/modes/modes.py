@@ -371,7 +371,7 @@ def warn_of_modes(
         yield from warn_of_straight(deflection, speeds, model)
     if tolerance is not None:
         yield from warn_of_missed_tolerance(error.max(), tolerance)
-    elif error.max() > (PLATE_TARGET if scene.physics.has_width else 1e-6):
+    elif error.max() > (PLATE_TARGET if scene.models_width else 1e-6):
         said = f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
         quantity = "estimated relative error"
         yield Statement(said, kind=TOLERANCE, quantity=quantity, value=error.max(), limit=1e-6)

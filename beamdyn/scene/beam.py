@@ -12,6 +12,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, kind, positive, refuse, set_fields, several, size
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
@@ -55,6 +56,9 @@ class Beam(FieldsOnly, OneLine):
     section : rectangle, optional
         The rectangular section that the properties follow from, by `rectangular`; None where they do not.
         Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
+    torsion_stiffness, warping_stiffness : Profile, optional
+        Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
+        rectangular section follow from its sides.
 
     References
     ----------
@@ -84,6 +88,8 @@ class Beam(FieldsOnly, OneLine):
     point_masses: Sequence[PointMass] = ()
     point_springs: Sequence[PointSpring] = ()
     section: Rectangle | None = field(default=None, repr=False, compare=False)
+    torsion_stiffness: Profile | None = field(default=None, metadata=ADDED_LATER)
+    warping_stiffness: Profile | None = field(default=None, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
@@ -210,6 +216,8 @@ class Beam(FieldsOnly, OneLine):
         second_rotary_inertia: Property | None = None,
         point_masses: Sequence[PointMass] = (),
         point_springs: Sequence[PointSpring] = (),
+        torsion_stiffness: Property | None = None,
+        warping_stiffness: Property | None = None,
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -242,6 +250,10 @@ class Beam(FieldsOnly, OneLine):
             Point masses along the beam; those at one place add up.
         point_springs : sequence of PointSpring
             Springs that hold points of the beam to the carrier; those at one place add up.
+        torsion_stiffness : float, Polynomial, Table or callable, optional
+            G J [N m2]; torsion also needs both rotary inertias.
+        warping_stiffness : float, Polynomial, Table or callable, optional
+            E Cw [N m4], against warping of the section, which the root then holds.
 
         Returns
         -------
@@ -271,6 +283,8 @@ class Beam(FieldsOnly, OneLine):
             "second_shear_stiffness": other,
             "rotary_inertia": rotary_inertia,
             "second_rotary_inertia": second_rotary_inertia,
+            "torsion_stiffness": torsion_stiffness,
+            "warping_stiffness": warping_stiffness,
         }
         length = size("length", length, "m")
         given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
@@ -349,6 +363,8 @@ PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "second_shear_stiffness": "N",
     "rotary_inertia": "kg m",
     "second_rotary_inertia": "kg m",
+    "torsion_stiffness": "N m2",
+    "warping_stiffness": "N m4",
     "outer_fibre": "m",
 }
 

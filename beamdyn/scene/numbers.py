@@ -31,11 +31,15 @@ SCALE = "beam.scale."  # before the names of properties that are multiplied, wha
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
 # Powers of the sides of a section in its properties, whatever its form.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
-_OF_FIRST = ("bending_stiffness", "rotary_inertia")
+_OF_FIRST = ("bending_stiffness", "rotary_inertia", "torsion_stiffness")  # torsion as of flat sections
 _OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
 _SIDE_POWERS = {
-    "thickness": {"outer_fibre": 1} | dict.fromkeys((*_LINEAR, *_OF_SECOND), 1) | dict.fromkeys(_OF_FIRST, 3),
-    "width": dict.fromkeys((*_LINEAR, *_OF_FIRST), 1) | dict.fromkeys(_OF_SECOND, 3),
+    "thickness": {"outer_fibre": 1, "warping_stiffness": 3}
+    | dict.fromkeys((*_LINEAR, *_OF_SECOND), 1)
+    | dict.fromkeys(_OF_FIRST, 3),
+    "width": {"warping_stiffness": 3}
+    | dict.fromkeys((*_LINEAR, *_OF_FIRST), 1)
+    | dict.fromkeys(_OF_SECOND, 3),
 }
 
 

@@ -87,11 +87,6 @@ class Physics:
         if self.large_deflection:
             self._check_combination()
 
-    @property
-    def has_width(self) -> bool:
-        """Whether sections have fields of their own across the width."""
-        return self.camber or self.torsion
-
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""
         for name, without in (

@@ -170,6 +170,11 @@ class Scene(OneLine):
         return _without_unmodelled(self.beam, self.physics)
 
     @property
+    def models_width(self) -> bool:
+        """Whether deflections vary across the width: rectangular sections camber or twist."""
+        return _models_width(self.beam, self.physics)
+
+    @property
     def is_slender_beam_in_one_plane(self) -> bool:
         """Whether the model is a clamped Euler-Bernoulli beam in one plane, to which some theorems apply."""
         return (
@@ -265,22 +270,28 @@ _REMEDIES = {
     "shear_stiffness": "give it to Beam.from_stiffness, or poissons_ratio to Beam.rectangular",
     "rotary_inertia": "give it to Beam.from_stiffness; Beam.rectangular computes it",
     "axial_stiffness": "give it to Beam.from_stiffness; Beam.rectangular computes it",
+    "torsion_stiffness": "give it to Beam.from_stiffness, or poissons_ratio to Beam.rectangular",
 }
 
 
-def _needed_properties(physics: Physics) -> dict[str, str]:
+_OF_TORSION = ("torsion_stiffness", "rotary_inertia", "second_rotary_inertia")  # where no rectangle says them
+
+
+def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
     """The properties of the beam that a model reads beyond the usual ones, each with the effect it is for."""
     directions = ("", _SECOND) if physics.planes == 2 else ("",)
     needed = {direction + name: effect for effect, name in _NEEDED.items() for direction in directions}
     needed = {name: effect for name, effect in needed.items() if getattr(physics, effect)}
     if physics.planes == 2:
         needed[_SECOND + _BENDING] = "planes"
+    if physics.torsion and not physics.camber and beam.section is None:
+        needed |= dict.fromkeys(_OF_TORSION, "torsion")
     return needed | ({"axial_stiffness": "stretch"} if physics.stretch else {})
 
 
 def _check_properties(beam: Beam, physics: Physics) -> None:
     """Refuse physics for which the beam lacks a property."""
-    for name, effect in _needed_properties(physics).items():
+    for name, effect in _needed_properties(beam, physics).items():
         if getattr(beam, name) is None:
             remedy = _REMEDIES[name if name in _REMEDIES else name.removeprefix(_SECOND)]
             given = getattr(physics, effect)
@@ -294,17 +305,19 @@ _JUMP = 1e-9  # of the width: a smaller one is rounding
 
 
 def _check_width(beam: Beam, physics: Physics) -> None:
-    """Refuse torsion or camber of a section that is not rectangular, turns, or jumps in width."""
-    if not physics.has_width:
+    """Refuse camber of sections that are not rectangular, and of twisted ones; torsion of these, too."""
+    if not (physics.camber or physics.torsion):
         return
     section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
-    if section is None or section.poissons_ratio is None:
+    if (section is None and physics.camber) or (section is not None and section.poissons_ratio is None):
         lacking = "the sides of a rectangular section" if section is None else "poissons_ratio"
         remedy = "Beam.rectangular(..., poissons_ratio=0.3) makes one of steel"
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.twist is not None:
         bound, remedy = f"with {name} the beam must not be twisted", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
+    if section is None:
+        return
     left, right = section.width.end_values()
     jumps = np.flatnonzero(np.abs(right[:-1] - left[1:]) > _JUMP * right[:-1])
     if jumps.size:
@@ -312,6 +325,11 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         bound = f"with {name} the width must not jump"
         where = f" at x/L = {at:.3f}"
         raise InvalidValue("width", float(left[jumps[0] + 1]), bound, "taper it", "m", where=where)
+
+
+def _models_width(beam: Beam, physics: Physics) -> bool:
+    """Whether deflections vary across the width."""
+    return beam.section is not None and (physics.camber or physics.torsion)
 
 
 def _with_corners(beam: Beam, planes: int) -> Profile:
@@ -330,9 +348,10 @@ def _with_corners(beam: Beam, planes: int) -> Profile:
 def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     """The beam without the properties that a model with this physics does not read."""
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
-    unread = (optional | {_SECOND + _BENDING}) - _needed_properties(physics).keys()
+    unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
     unread |= {"twist"} if physics.planes == 1 else set()
+    unread |= set() if physics.torsion else {"warping_stiffness"}
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
-    if physics.has_width:
+    if _models_width(beam, physics):
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

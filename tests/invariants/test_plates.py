@@ -259,3 +259,16 @@ def test_a_square_section_has_no_propeller_moment():
         twist = equations.blocks["torsion"].start + np.arange(space.size)  # of the first function across
         first.append(equations.steady().K2[np.ix_(twist, twist)])
     np.testing.assert_allclose(first[0], first[1], rtol=0, atol=1e-12 * np.abs(first[0]).max())  # rounding
+
+
+def test_rotation_does_not_twist_a_square_section():
+    """Both its moments of inertia are the same: on rigid twist the load has no moment about the axis."""
+    mount, physics = bd.Mount(0.1, OUT, 0.7), bd.Physics(torsion=True)
+    loads = []
+    for width in (0.01, 0.02):
+        scene = bd.Scene(strip((0.1, width, 0.01), 0.3), mount, physics=physics)
+        equations = assemble_equations(scene, bd.Ritz(5))
+        space = bd.Ritz(5).spaces(scene.modelled_beam).functions(CLAMPED)
+        rigid = equations.blocks["torsion"].start + np.arange(space.size)  # of the first function across
+        loads.append(np.abs(equations.steady().f2[rigid]).max())
+    assert loads[0] < 1e-12 * loads[1]  # rounding

@@ -21,8 +21,8 @@ the unit vector a adds
 where T is the tension of the beam per width, and a1, a2 are the components of a in the directions of bending
 and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y pulls the
 width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also twists the
-strip, by the load omega^2 a1 a2 rho t y per area.  In a tapered strip d/dx at constant y is
-d/dx - eta (b'/b) d/d eta.
+strip, by the load omega^2 a1 a2 rho t y per area, less what the inertia of the thickness resists.  In a
+tapered strip d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
 a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and
@@ -45,6 +45,8 @@ from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spa
 from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
+from beamdyn.equations.fields.section_torsion import assemble_section_torsion
+from beamdyn.equations.fields.transverse import axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
@@ -313,7 +315,7 @@ class SectionField(Field):
 
     def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
         scene, names = strip.scene, (rows.field, columns.field)
-        beam, c1, c2 = scene.beam, *_axis(scene)
+        beam, c1, c2 = scene.beam, *axis_in_section(scene)
         mass, (n_a, n_b) = beam.mass_per_length, axial_tension(beam)
         eta, _ = gauss_rule(strip.points)
 
@@ -348,12 +350,6 @@ class SectionField(Field):
     def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
         """Yield the loads; none by what acts on the mean over the width."""
         return iter(())
-
-
-def _axis(scene: Scene) -> tuple[float, float]:
-    """Components of the axis of rotation in the directions of bending and of the width."""
-    (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
-    return cosine * s, cosine * c
 
 
 def _explanations(name: str) -> dict[str, Explanation]:
@@ -397,13 +393,19 @@ class Torsion(SectionField):
         ),
     }
 
+    def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
+        """Assemble torsion of a strip; of another section by its constants."""
+        if scene.beam.section is None:
+            return assemble_section_torsion(scene, spaces)
+        return super().assemble(scene, spaces)
+
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         tip = strip.scene.beam.tip
         if tip is None:
             return
         width = float(strip.section.width(np.ones(1))[0])
         turn = np.kron(own.tip * 2 / width, along.end(0))  # mean twist of the section at the tip
-        turns, (c1, c2) = np.outer(turn, turn), _axis(strip.scene)
+        turns, (c1, c2) = np.outer(turn, turn), axis_in_section(strip.scene)
         yield Term("mass of the tip body in torsion", self.name, self.name, 2, tip.axial_inertia * turns)
         spin = (tip.inertia_about_bending_direction - tip.inertia) * turns
         yield Term(
@@ -411,10 +413,12 @@ class Torsion(SectionField):
         )
 
     def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
-        c1, c2 = _axis(strip.scene)
-        beam = strip.scene.beam
-        of_first = along.load((beam.mass_per_length * strip.section.width).scaled(beam.length / np.sqrt(12)))
+        c1, c2 = axis_in_section(strip.scene)
+        beam, width = strip.scene.beam, strip.section.width
+        of_first = along.load((beam.mass_per_length * width).scaled(beam.length / np.sqrt(12)))
+        of_tilt = along.load((strip.rotary_inertia * _inverse(width)).scaled(2 * beam.length))
         vector = np.concatenate([of_first, np.zeros(along.size * (len(own.tip) - 1))])
+        vector = vector - np.kron(own.tip, of_tilt)  # as the thickness turns
         yield Load("twisting by rotation", self.name, vector, "speed_squared", -c1 * c2)
 
 

@@ -259,6 +259,12 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
     return (c, -s), (s, c)
 
 
+def axis_in_section(scene: Scene) -> tuple[float, float]:
+    """Components of the axis of rotation in the direction of bending at the root, and in that across."""
+    (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
+    return cosine * s, cosine * c
+
+
 def _terms(pair: Pair) -> Iterator[Term]:
     """Yield mass and stiffness: of the sections, of springs, by tension and by rotation."""
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions

@@ -169,7 +169,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
     """A target of the error, or the least that finite elements, or the functions of a plate, aim at."""
     if not isinstance(discretization, str):
         return target
-    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.physics.has_width)
+    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width)
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
@@ -219,7 +219,7 @@ def _refine(model: Model) -> Model | None:
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have their own limit
         segments = _count_segments(model.scene) if finer.on_each_segment else 1
-        across = 1 + finer.functions if model.scene.physics.has_width else 1
+        across = 1 + finer.functions if model.scene.models_width else 1
         finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
     if finer is None:
         return None
@@ -238,7 +238,7 @@ def _first_ritz(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    if scene.physics.has_width:  # as many functions across as on each segment
+    if scene.models_width:  # as many functions across as on each segment
         return Ritz(max(5, int(np.ceil(2 + modes - 0.6 * np.log10(target)))))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")

@@ -228,7 +228,7 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
     """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
     if not discretization.converges_regularly:
         return _IRREGULAR
-    if scene.physics.has_width:
+    if scene.models_width:
         across = discretization.spaces(scene.modelled_beam).across
         return BASES_OF_PLATES.factor * max(1.0, across / _ACROSS_MEASURED), _OTHERS_OF_PLATES, np.inf
     return REGULAR if len(scene.modelled_beam.breakpoints) == 2 else _ON_SEGMENTS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -18,6 +18,7 @@ from beamdyn.scene.validity import list_speeds
 
 LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
 _NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
+_LARGE = 1000.0  # frequency [Hz] from which it is said in whole numbers
 _MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and all digits, say little
 
 
@@ -42,12 +43,18 @@ class UnlistedMode:
     frequency: np.ndarray
     assumed: str = ""
 
-    def sentence(self) -> str:
-        """Kind and frequency, to three digits."""
+    def span(self) -> str:
+        """Its frequency to three digits; over several speeds from the least to the largest."""
         known = self.frequency[np.isfinite(self.frequency)]
-        span = " to ".join(dict.fromkeys(f"{at:.3g}" for at in (known.min(), known.max())))
-        note = f" ({self.assumed})" if self.assumed else ""
-        return f"{self.kind} {span} Hz{note}"
+        both = (f"{at:.3g}" if at < _LARGE else f"{at:.0f}" for at in (known.min(), known.max()))
+        return " to ".join(dict.fromkeys(both))
+
+
+def say_unlisted(modes: Sequence[UnlistedMode]) -> str:
+    """Name modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
+    kinds = {mode.kind: mode.assumed for mode in modes}
+    spans = {kind: ", ".join(mode.span() for mode in modes if mode.kind == kind) for kind in kinds}
+    return ", ".join(f"{k} {spans[k]} Hz{assumed and f' ({assumed})'}" for k, assumed in kinds.items())
 
 
 @dataclass(frozen=True)
@@ -131,7 +138,7 @@ class LeftOutEffects:
             said = (Words(f"{', '.join(names)} (", why, ")") for why, names in reasons.items())
             parts.append(Words("not known: ", joined(", ", said)))
         if self.unlisted:
-            parts.append(f"modes not listed: {', '.join(mode.sentence() for mode in self.unlisted)}")
+            parts.append(f"modes not listed: {say_unlisted(self.unlisted)}")
         if self.not_modelled:
             parts.append(f"not modelled: {', '.join(self.not_modelled)}")
         begin = ("left out ", where) if where else ("left out",)

@@ -64,7 +64,7 @@ class BaseEquations:
                 break
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
-        has_width = model.scene.physics.has_width  # then the other effects need no breakpoints but its own
+        has_width = model.scene.models_width  # then the other effects need no breakpoints but its own
         spaces = discretization.spaces(model.scene.modelled_beam if has_width else model.scene.beam)
         if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
             return cls(model.scene, spaces, model.equations)

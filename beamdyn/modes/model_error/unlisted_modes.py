@@ -73,7 +73,7 @@ def _refined(scene: Scene) -> Scene:
 
 def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
     """Function spaces for modes of a scene with what a model lacks."""
-    if scene.physics.has_width:
+    if scene.models_width:
         return clamp_spaces(scene, modes)
     return model.discretization.spaces(scene.beam)
 
