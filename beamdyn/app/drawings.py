@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def bent_beam(
     shapes: list[DrawnShape] = [
         Outline([(0, 0), (length, 0)], "axis", 0.9, (5.0, 3.0)),
         *(Outline(np.column_stack([x, other]), "ghost", 1.4) for other in envelope),
-        *_wall(length),
+        *wall((0.0, 0.0), (0.0, 0.09 * length), (-0.03 * length, -0.02 * length)),
         Outline(edge, "beam", 1.2, closed=True, filled=True),
         Symbol("dot", (length, deflection[-1]), "mark", 5.0),
     ]
@@ -82,15 +82,6 @@ def bent_beam(
     labels = [Label(label, tip, "mark", (1.0, 0.4))] if label else []
     words = "A bent beam, drawn along its own axis, clamped at the left"
     return Drawing(shapes, labels, title, words, room=corners, scale=scale)
-
-
-def _wall(length: float) -> Iterator[DrawnShape]:
-    """Yield the clamp of a beam of a length, at its root."""
-    wall = np.array([[0.0, -0.09 * length], [0.0, 0.09 * length]])
-    back = np.array([-0.03 * length, -0.02 * length])
-    ticks = wall[0] + np.linspace(0, 1, 7)[:, None] * (wall[1] - wall[0])
-    yield from (Outline([tick, tick + back], "ground", 0.9) for tick in ticks)
-    yield Outline(wall, "ground", 2.4)
 
 
 def bent_strip(

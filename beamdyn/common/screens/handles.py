@@ -37,42 +37,28 @@ class Viewport:
 
     Parameters
     ----------
-    limits : ndarray, shape (2, 2)
-        Lower left and upper right corner of the drawing, in its own coordinates.
-    corners : ndarray, shape (2, 2)
-        The same corners in the picture: part of its width from the left, of its height from the top.
     paper : Paper
         Paper of all drawings of the picture.
     layout : Layout
         Layout of the first drawing.
     """
 
-    limits: np.ndarray
-    corners: np.ndarray
     paper: Paper
     layout: Layout
 
-    @classmethod
-    def of_layout(cls, layout: Layout, paper: Paper) -> Viewport:
-        """The viewport of the first drawing, by its layout."""
-        left, top, right, bottom = layout.frame
-        places = np.array([(left, bottom), (right, top)])
-        corners = places / (paper.width, paper.height)
-        return cls(layout.fit.from_paper(places), corners, paper=paper, layout=layout)
-
     def place(self, point: Place) -> Place:
-        """The place in the picture of a point of the drawing."""
-        return _mapped(point, self.limits, self.corners)
+        """The place of a point of the drawing, in parts of the picture, from its top left corner."""
+        x, y = self.layout.fit.to_paper(point) / self._size
+        return float(x), float(y)
 
     def point(self, place: Place) -> Place:
         """The point of the drawing at a place of the picture."""
-        return _mapped(place, self.corners, self.limits)
+        x, y = self.layout.fit.from_paper(np.multiply(place, self._size))
+        return float(x), float(y)
 
-
-def _mapped(given: Place, source: np.ndarray, target: np.ndarray) -> Place:
-    """A point of one rectangle in another one; each is given by two of its corners (2, 2)."""
-    x, y = target[0] + (np.array(given) - source[0]) / (source[1] - source[0]) * (target[1] - target[0])
-    return float(x), float(y)
+    @property
+    def _size(self) -> tuple[float, float]:
+        return self.paper.width, self.paper.height
 
 
 @dataclass(frozen=True)
@@ -162,7 +148,7 @@ def draw_sheet(
             held = view if view is not None and len(view.paper.heights) == len(rows) else None
             paper = Paper.of(rows, _NARROW if narrow else WIDTH) if held is None else held.paper
             layouts = lay_out(rows, paper, None if held is None else held.layout)
-            shown = Viewport.of_layout(layouts[0], paper)
+            shown = Viewport(paper, layouts[0])
             return Sheet("", handles, shown, paper.width / paper.height, element(layouts, paper))
     except (ValueError, ArithmeticError) as error:
         return Sheet(f"There is no drawing: {reason_of(error)}")
