@@ -50,7 +50,7 @@ ROUNDING_OF_TWO = ErrorMargin(
     "stated_frequency_errors",
 )
 BASES_OF_PLATES = ErrorMargin(
-    3.0,
+    1.5,
     "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
     "stresses in the corners of the clamp make convergence algebraic: the error is up to 1.6 distances",
     "stated_plate_errors",

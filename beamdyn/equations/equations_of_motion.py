@@ -173,6 +173,15 @@ class Equations:
             )
         return values
 
+    @property
+    def corner(self) -> np.ndarray:
+        """Deflection per coordinate at the corner of the tip in the direction across, shape (n,)."""
+        values = self.tip.copy()
+        for name, functions in self.sections:
+            of_field = self.shapes[name]
+            values[self.blocks[of_field.block]] += of_field.matrix.T @ functions.corner
+        return values
+
     @cached_property
     def tip(self) -> np.ndarray:
         """Tip deflection per coordinate in the direction of bending, shape (n,)."""

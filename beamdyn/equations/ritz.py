@@ -89,7 +89,7 @@ class Ritz:
             return MomentSpaces(beam, self.functions, self.fewer)
         # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
-        points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 1, _MOST_ACROSS)
+        points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 2, _MOST_ACROSS)
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:

@@ -322,8 +322,7 @@ def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | N
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
     if kinds is not None:
-        corner = equations.surface(np.ones(1), np.ones(1))[:, 0, 0] @ vectors
-        larger = np.where(kinds == BENDING, larger, corner)
+        larger = np.where(kinds == BENDING, larger, equations.corner @ vectors)
     larger[larger == 0] = 1.0
     return vectors / (larger / np.abs(larger))
 

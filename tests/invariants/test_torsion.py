@@ -129,3 +129,12 @@ def test_modes_that_a_beam_lacks_are_named_by_its_constants():
     first = next(mode for mode in unlisted if mode.kind == "torsion")
     assert first.number == 1 and not first.assumed
     assert float(first.frequency) == pytest.approx(math.sqrt(G / RHO) / 2, rel=1e-3)  # of few functions
+
+
+def test_modes_are_positive_at_the_corner_of_the_tip_and_have_no_surface():
+    modes = bd.natural_modes(bd.Scene(tube(), physics=TORSION), modes=5)
+    equations = modes.model.equations
+    twist = np.real(equations.corner - equations.tip) @ modes.vectors.real
+    assert twist[modes.kind == "torsion"] > 0
+    with pytest.raises(ValueError, match="width of the sections is not known"):
+        modes.surface([0.1], [0.0])

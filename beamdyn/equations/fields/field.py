@@ -89,6 +89,11 @@ class Deflection:
 class SectionFunctions(Protocol):
     """Functions of a field that deform the sections of a strip: deflections that vary over its width."""
 
+    @property
+    def corner(self) -> np.ndarray:
+        """Deflection at the corner of the tip in the direction across (n,), to any scale."""
+        ...
+
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Evaluate the functions at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
         ...

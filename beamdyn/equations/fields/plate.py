@@ -263,6 +263,11 @@ class StackedSpace:
         """Number of coordinates; those of the first function across come first."""
         return self.along.size * len(self.numbers)
 
+    @property
+    def corner(self) -> np.ndarray:
+        """Deflection at the corner eta = 1 of the tip (n,)."""
+        return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
+
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Evaluate the deflections at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
         numbers = np.array(self.numbers)
@@ -306,9 +311,7 @@ class SectionField(Field):
             return FieldEquations(space, (), ())
         own = strip.functions(self, numbers, CLAMPED)
         terms = [*self._terms(strip, own, own), *self._of_body(strip, own, space.along)]
-        bending = Bending()
-        mean = strip.functions(bending, (0,), bending.conditions(scene.mount))
-        coupling = [t for t in self._terms(strip, mean, own) if t.matrix.any()]
+        coupling = [t for t in self._coupling(strip, own) if t.matrix.any()]
         mirrored = [replace(t, rows=t.columns, columns=t.rows, matrix=t.matrix.T) for t in coupling]
         loads = (*self._loads(strip, own, space.along),)
         return FieldEquations(space, (*terms, *coupling, *mirrored), loads, sections=space)
@@ -326,22 +329,24 @@ class SectionField(Field):
 
         inertia = strip.integrate(mass, (rows, "w"), (columns, "w"))
         yield Term(f"mass of {self.name}", *names, 2, inertia)
-        if self.first == 1:
-            tilt = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y"))
-            yield Term(f"rotary inertia of {self.name}", *names, 2, tilt)
-            yield stiffness("spin of sections", tilt, "speed_squared", c2**2 - c1**2)
-        warping = strip.section.warping_factor if self.first == 1 else ONE
-        yield stiffness("stiffness", strip.stiffness(rows, columns, warping))
+        yield stiffness("stiffness", strip.stiffness(rows, columns, self.warping(strip.section)))
         slopes = (rows, "w_x"), (columns, "w_x")
         cosine, _ = exact_cos_sin(scene.mount.precone)
         yield stiffness("centrifugal stiffening", strip.integrate(n_b, *slopes), "speed_squared", cosine**2)
         yield stiffness("tension by root acceleration", strip.integrate(n_a, *slopes), "root_axial", -1.0)
-        width = strip.section.width
-        pull = strip.integrate(
-            (mass * width * width).scaled(1 / 8), (rows, "w_y"), (columns, "w_y"), 1 - eta**2
-        )
-        yield stiffness("pull across", pull, "speed_squared", 1 - c2**2)
         yield stiffness("spin softening", inertia, "speed_squared", -(1 - c1**2))
+        if c2**2 != 1:
+            pull, slopes = mass * strip.section.width * strip.section.width, ((rows, "w_y"), (columns, "w_y"))
+            matrix = strip.integrate(pull.scaled(1 / 8), *slopes, 1 - eta**2)
+            yield stiffness("pull across", matrix, "speed_squared", 1 - c2**2)
+
+    def warping(self, section: Rectangle) -> Profile:
+        """Factor of the stiffness of the plate along the beam."""
+        return ONE
+
+    def _coupling(self, strip: Strip, own: WidthFunctions) -> Iterator[Term]:
+        """Yield the terms with bending in the equations of bending; none of deflections odd across."""
+        return iter(())
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         """Yield what a body at the tip adds; none where the mean over the width does not twist."""
@@ -399,6 +404,17 @@ class Torsion(SectionField):
             return assemble_section_torsion(scene, spaces)
         return super().assemble(scene, spaces)
 
+    def warping(self, section: Rectangle) -> Profile:
+        """Warping constant of the section over that of a thin one."""
+        return section.warping_factor
+
+    def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
+        yield from super()._terms(strip, rows, columns)
+        c1, c2 = axis_in_section(strip.scene)
+        tilt, names = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y")), (self.name,) * 2
+        yield Term("rotary inertia of torsion", *names, 2, tilt)
+        yield Term("spin of sections of torsion", *names, 0, tilt, "speed_squared", c2**2 - c1**2)
+
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         tip = strip.scene.beam.tip
         if tip is None:
@@ -414,6 +430,8 @@ class Torsion(SectionField):
 
     def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
         c1, c2 = axis_in_section(strip.scene)
+        if not c1 * c2:
+            return
         beam, width = strip.scene.beam, strip.section.width
         of_first = along.load((beam.mass_per_length * width).scaled(beam.length / np.sqrt(12)))
         of_tilt = along.load((strip.rotary_inertia * _inverse(width)).scaled(2 * beam.length))
@@ -430,3 +448,8 @@ class Camber(SectionField):
     damping_name = "damping of camber"
     first = 2
     explanations: ClassVar[Mapping[str, Explanation]] = _explanations("camber")
+
+    def _coupling(self, strip: Strip, own: WidthFunctions) -> Iterator[Term]:
+        bending = Bending()
+        mean = strip.functions(bending, (0,), bending.conditions(strip.scene.mount))
+        return super()._terms(strip, mean, own)

@@ -17,9 +17,11 @@ at the tip turns with it.  A root without warping holds theta', where a stiffnes
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from beamdyn.equations.discretization import CLAMPED, FIXED, Spaces
+from beamdyn.equations.discretization import CLAMPED, FIXED, Space, Spaces
 from beamdyn.equations.fields.field import FieldEquations, Load, Term
 from beamdyn.equations.fields.transverse import axis_in_section
 from beamdyn.equations.mass import axial_tension
@@ -32,6 +34,28 @@ from beamdyn.scene.scene import Scene
 _NAME = "torsion"
 _TURNED = FIXED._replace(stiffness="torsion_stiffness")  # at the root
 _WARPED = CLAMPED._replace(stiffness="warping_stiffness")
+
+
+@dataclass(frozen=True)
+class TurnedSections:
+    """Deflection of sections of unknown width that turn by the functions along the beam.
+
+    Parameters
+    ----------
+    along : Space
+        Functions along the beam.
+    """
+
+    along: Space
+
+    @property
+    def corner(self) -> np.ndarray:
+        """Twist at the tip (n,), as which a corner deflects."""
+        return self.along.end(0)
+
+    def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Refuse a surface: a ValueError, as the width is not known."""
+        raise ValueError("the width of the sections is not known, but that of beams by Beam.rectangular")
 
 
 def assemble_section_torsion(scene: Scene, spaces: Spaces) -> FieldEquations:
@@ -64,7 +88,7 @@ def assemble_section_torsion(scene: Scene, spaces: Spaces) -> FieldEquations:
         _term("spin of the tip body in torsion", body, "speed_squared", a1**2 - a2**2),
     ]
     load = Load("twisting by rotation", _NAME, L * space.load(broad), "speed_squared", -a1 * a2)
-    return FieldEquations(space, (*terms,), (load,))
+    return FieldEquations(space, (*terms,), (load,), sections=TurnedSections(space))
 
 
 def _term(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0) -> Term:

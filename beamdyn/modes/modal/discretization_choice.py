@@ -238,8 +238,8 @@ def _first_ritz(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
-    if scene.models_width:  # as many functions across as on each segment
-        return Ritz(max(5, int(np.ceil(2 + modes - 0.6 * np.log10(target)))))
+    if scene.models_width:
+        return Ritz(max(5, int(np.ceil(2 + modes - np.log10(target)))))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
