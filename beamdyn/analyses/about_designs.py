@@ -37,7 +37,8 @@ from beamdyn.common.edge.varying import (
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue, check_used
 from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
-from beamdyn.common.results.statements import InputValue, Words
+from beamdyn.common.results.statements import InputValue
+from beamdyn.common.words import Words
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
 from beamdyn.studies.answers import NO_ANSWERS

@@ -75,7 +75,7 @@ class AsText:
 
     def shown(self, option: inspect.Parameter) -> inspect.Parameter:
         """The option as the command line has it: a text."""
-        notes = Parameter(allow_leading_hyphen=True), *_notes(option.annotation)
+        notes = Parameter(allow_leading_hyphen=True), *_extras(option.annotation)
         if self.default is None and self.absent is not None:
             return option.replace(annotation=Annotated[str | None, *notes], default=None)
         default = inspect.Parameter.empty if self.default is None else self.default
@@ -164,7 +164,7 @@ class Analysis:
         return {
             name: note
             for name, each in self.options.items()
-            for note in _notes(each.annotation)
+            for note in _extras(each.annotation)
             if isinstance(note, AsText)
         }
 
@@ -183,7 +183,7 @@ class Analysis:
         """Explanation of an option: that of this analysis if it has one, else that of the option's type."""
         from docstring_parser import parse
 
-        notes = [note.help for note in _notes(self.options[name].annotation) if isinstance(note, Parameter)]
+        notes = [note.help for note in _extras(self.options[name].annotation) if isinstance(note, Parameter)]
         own = [
             each.description for each in parse(self.function.__doc__ or "").params if each.arg_name == name
         ]
@@ -210,7 +210,7 @@ class Analysis:
         written, read, asked = self._sort(given)
         outputs.check(file, *read, **written)
         for name, each in self.options.items():
-            if DRAWN in _notes(each.annotation) and given[name] is not None and not outputs.draws:
+            if DRAWN in _extras(each.annotation) and given[name] is not None and not outputs.draws:
                 remedy = "give --plot or --report, or leave it out"
                 raise ValueError(f"{_option(name)} = {given[name]}: it is what a picture shows; {remedy}")
         scene = load_scene(file)
@@ -263,7 +263,7 @@ class Analysis:
                 options |= {each: (of_group[each], hints[each]) for each in of_group}
             else:
                 options[name] = value, self.options[name].annotation
-        written = {name for name, (_, annotation) in options.items() if WRITTEN in _notes(annotation)}
+        written = {name for name, (_, annotation) in options.items() if WRITTEN in _extras(annotation)}
         asked: dict[str, object] = {name: each for name, (each, _) in options.items() if name not in written}
         read = [value for value in asked.values() if isinstance(value, Path)]
         return {_option(name)[2:]: options[name][0] for name in written}, read, asked
@@ -311,6 +311,6 @@ def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty)
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
-def _notes(annotation: Any) -> tuple[Any, ...]:
+def _extras(annotation: Any) -> tuple[Any, ...]:
     """Return what an annotation carries beside its type."""
     return get_args(annotation)[1:] if get_origin(annotation) is Annotated else ()

@@ -17,7 +17,7 @@ from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
 from beamdyn.app.inputs import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.inputs import Section, parts_of
 from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.edge.tables import table
@@ -27,6 +27,7 @@ from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
+from beamdyn.common.results.statements import joined
 from beamdyn.common.screens.screens import FoldedPart, Screen
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError, say_change
 
@@ -118,10 +119,10 @@ def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
             sizes[name] = float(known[np.abs(known).argmax()])
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
-        how = "; ".join(filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))
-        rows.append((name, say_change(sizes[name]), bar(sizes[name]), as_in_files(how)))
+        how = joined("; ", filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))
+        rows.append((name, say_change(sizes[name]), bar(sizes[name]), in_files(how)))
     unknown = ((name, why) for name, why in effects.not_known.items() if name not in sizes)
-    rows += [(name, "not known", "", as_in_files(why)) for name, why in unknown]
+    rows += [(name, "not known", "", in_files(why)) for name, why in unknown]
     rows += [(name, "not modelled", "", "no model here has it") for name in effects.not_modelled]
     heads = "left out", "largest change", "size, logarithmic", "how to include it"
     return table(f"What the physics leaves out, and by how much it changes the {of}", heads, rows, (0, 2, 3))

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.words import Setting, Words
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.physics import Physics
@@ -60,8 +61,12 @@ class Effect:
 
     def reason(self, scene: Scene) -> str:
         """Say what the model of a scene assumes in place of the effect, and how to include that."""
-        assumed = self.assumed.format(across=name_directions(scene)[1][0])
-        return f"{assumed}; {self._how_to_include(scene)}" if self.switch else assumed
+        assumed = self.assumption(scene)
+        return Words(assumed, "; ", self._how_to_include(scene)) if self.switch else assumed
+
+    def assumption(self, scene: Scene) -> str:
+        """Say what the model of a scene assumes in place of the effect."""
+        return self.assumed.format(across=name_directions(scene)[1][0])
 
     def _how_to_include(self, scene: Scene) -> str:
         if scene.physics.large_deflection and not self.bends:
@@ -70,7 +75,7 @@ class Effect:
         data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
         others = [e.taken_out for e in EFFECTS if e.taken_out and e.is_in(scene)]
         without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
-        return f"Physics({self.switch}={self.value}) includes it{data}{without}"
+        return Words(Setting("physics", **{self.switch: self.value}), f" includes it{data}{without}")
 
 
 def _lacks(beam: Beam, name: str) -> bool:
@@ -176,7 +181,7 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     for effect in effects_left_out(modelled):
         reason = effect.reason(modelled)
         if scene.chooses_physics and effect.switch:
-            reason = f"{reason.partition(';')[0]}; {_CHOSEN}"
+            reason = f"{effect.assumption(modelled)}; {_CHOSEN}"
         yield OmittedEffect(effect.name, reason, effect.switch)
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
-from beamdyn.common.results.statements import Speeds, Words
+from beamdyn.common.results.statements import Speeds
+from beamdyn.common.words import Named, Words
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
@@ -27,6 +28,7 @@ from beamdyn.scene.validity import check_speeds
 
 _MODES = 5  # modes by which physics and functions are chosen, where all functions are kept
 _STRAIGHT = "linear models are those about the straight beam"
+_OR_ALL = Named("or None, which keeps all functions", "or auto")
 
 
 def check_linear(scene: Scene, speed: float, modes: int | None) -> tuple[Scene, float]:
@@ -41,7 +43,7 @@ def check_linear(scene: Scene, speed: float, modes: int | None) -> tuple[Scene, 
     speed = real("speed", speed, "rad/s")
     check_speeds(speed, "speed")
     if modes is not None:
-        count("modes", modes, remedy="or None, which keeps all functions")
+        count("modes", modes, remedy=_OR_ALL)
     scene = choose_physics(scene, [speed], modes or _MODES, straight=_STRAIGHT)
     if scene.physics.large_deflection:
         remedy = "leave large_deflection out"
@@ -157,7 +159,7 @@ def evaluate_accurately(
         model = model_at_speed(scene, speed, None, discretization)
         return _with_error(model, evaluate(model), None, evaluate)
     if not (isinstance(modes, str) and modes == "auto"):
-        size = count("modes", modes, remedy='or "auto", or None, which keeps all functions')
+        size = count("modes", modes, remedy=Words('or "auto", ', _OR_ALL))
         model = model_at_speed(scene, speed, size, discretization)
         larger = _all_of(model, most) or _larger(model, discretization)
         return _with_error(model, evaluate(model), larger, evaluate)

@@ -8,11 +8,13 @@ from typing import Any, ClassVar, Literal, TypeAlias, get_args
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, not_negative, one_of, positive, refuse, set_fields
+from beamdyn.common.words import Named, Words
 from beamdyn.equations.root_moment import strain_per_moment
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
+from beamdyn.scene.names_elsewhere import GIVE_IT
 from beamdyn.scene.points import ACROSS, ALONG_BENDING, Direction, direction_of
 from beamdyn.scene.scene import Scene
 
@@ -165,7 +167,8 @@ def as_excitation(name: str, given: Any) -> Excitation:
         return _EXCITATIONS[given]
     if not isinstance(given, BaseMotion | PointForce):
         words = ", ".join(map(repr, _EXCITATIONS))
-        raise InvalidValue(name, given, f"give {words}, a BaseMotion(direction) or a PointForce(position)")
+        objects = Named(", a BaseMotion(direction) or a PointForce(position)", ' or "force@20 mm"')
+        raise InvalidValue(name, given, Words(f"give {words}", objects))
     return given
 
 
@@ -179,7 +182,8 @@ def fraction_of(position: float | None, beam: Beam) -> float:
     """Fraction x/L of a position; an InvalidValue beyond the tip."""
     if position is None:
         return 1.0
-    bound, remedy = "it must be at most {limit}, the length", "the tip is where no position is given"
+    bound = "it must be at most {limit}, the length"
+    remedy = Named("the tip is where no position is given", "@tip is the tip")
     beyond = position > beam.length * (1 + 1e-12)
     refuse(beyond, "position", position, "m", bound, remedy, limit=beam.length)
     return min(position / beam.length, 1.0)
@@ -290,8 +294,7 @@ class StrainAtRoot:
     def per_moment(scene: Scene) -> float:
         """Strain per bending moment [1/(N m)]; a ValueError where the beam has no outer fibre."""
         if scene.beam.outer_fibre is None:
-            bound, remedy = "the strain needs beam.outer_fibre", "give it to Beam.from_stiffness"
-            raise InvalidValue("output", "root strain", bound, remedy)
+            raise InvalidValue("output", "root strain", "the strain needs beam.outer_fibre", GIVE_IT)
         return strain_per_moment(scene)
 
 
@@ -318,6 +321,7 @@ def as_observation(name: str, given: Any) -> Observation:
         return _OBSERVATIONS[given]
     if not isinstance(given, DeflectionAt | MomentAtRoot | StrainAtRoot):
         words = ", ".join(map(repr, _OBSERVATIONS))
-        objects = "a DeflectionAt(position) or an AccelerationAt(position)"
-        raise InvalidValue(name, given, f"give {words}, {objects}")
+        python = ", a DeflectionAt(position) or an AccelerationAt(position)"
+        objects = Named(python, ' or "deflection@20 mm"')
+        raise InvalidValue(name, given, Words(f"give {words}", objects))
     return given

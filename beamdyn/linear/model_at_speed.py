@@ -18,6 +18,7 @@ from scipy.optimize import linear_sum_assignment
 from beamdyn.accuracy.margins import LINEAR_MESHES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.words import Setting, Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
@@ -180,7 +181,8 @@ class ModelAtSpeed(FieldsOnly):
         return pencil.K0 + self.speed**2 * pencil.K2
 
     def _check_direction(self, name: str, direction: int) -> None:
-        bound, remedy = "in the direction across, a beam of one plane is rigid", "give physics.planes = 2"
+        bound = "in the direction across, a beam of one plane is rigid"
+        remedy = Words("give ", Setting("physics", planes=2))
         if direction >= self.equations.planes:
             raise InvalidValue(name, "across", bound, remedy)
 

@@ -29,9 +29,11 @@ from beamdyn.common.inputs.checks import (
     set_fields,
 )
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.words import Words
 from beamdyn.linear.inputs_outputs import BaseMotion, Excitation, as_excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.scene import Scene
 
 BetweenPoints = Literal["linear", "log"]
@@ -201,9 +203,10 @@ class RoadRoughness:
             set_fields(self, **{name: positive(f"road.{name}", getattr(self, name), unit)})
         if not isinstance(self.roughness, str):
             set_fields(self, roughness=positive("road.roughness", self.roughness, "m3"))
-        bound = "it must be below road.highest = {limit}"
+        bound = "it must be below {other} = {limit}"
         bad = self.lowest >= self.highest
-        refuse(bad, "road.lowest", self.lowest, "1/m", bound, "swap the two?", limit=self.highest)
+        highest = {"limit": self.highest, "other": "road.highest"}
+        refuse(bad, "road.lowest", self.lowest, "1/m", bound, "raise {other}", **highest)
 
     @property
     def density(self) -> float:
@@ -242,7 +245,7 @@ def random_input(
             raise InvalidValue("input", given, "a road moves the wheel along n2", "leave the input out")
         wheel = scene.motion
         if not isinstance(wheel, RollingWheel):
-            bound, remedy = "a road needs the rolling radius of a wheel", "give a RollingWheel(radius, speed)"
+            bound, remedy = "a road needs the rolling radius of a wheel", Words("give ", ROLLING_WHEEL)
             raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
         refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
         return BaseMotion("n2"), psd.acceleration(wheel.rolling_radius * speed)

@@ -207,7 +207,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
         limit = half[:, side].min()  # nan is no limit
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
         bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
-        remedy = "leave points out: the outermost of each"
+        remedy = "leave {field} out: the outermost of each"
         refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
     return array
 

@@ -17,6 +17,7 @@ from beamdyn.common.results.announced import announce
 from beamdyn.common.results.one_line import error_at_most
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, NO_ANSWER, OUTSIDE, TOLERANCE, Speeds, Statement, kind_of
+from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import bound_critical_speed
@@ -46,9 +47,10 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_STRAIN, warn_of_left_out
 
-_BENT = (
-    "rotation bends the beam from rest on, so that it does not buckle; equilibrium_branches finds where its "
-    "equilibrium turns back"
+_BENT = Words(
+    "rotation bends the beam from rest on, so that it does not buckle; ",
+    Named("equilibrium_branches", "beamdyn branches"),
+    " finds where its equilibrium turns back",
 )
 _FUNCTIONS = 5  # functions of a model of which only the loads are read
 

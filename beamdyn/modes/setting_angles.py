@@ -16,6 +16,7 @@ from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
+from beamdyn.common.words import Named, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
@@ -113,7 +114,8 @@ def setting_angle_limits(
     check_scene(scene)
     if scene.physics.large_deflection:
         bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
-        remedy = "leave it out, or ask frequency_locus for the locus at a setting angle"
+        locus = Named("frequency_locus", "beamdyn locus")
+        remedy = Words("leave it out, or ask ", locus, " for the locus at a setting angle")
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
     for name in ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]:
         if getattr(scene.mount, name) == 0:

@@ -14,6 +14,7 @@ from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
+from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
@@ -99,10 +100,9 @@ class Beam(FieldsOnly, OneLine):
             if name != "twist":
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
-            remedy = "give it to Beam.from_stiffness; Beam.rectangular computes it"
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
-            where = " at the tip"
-            raise InvalidValue("twist", self.tip_twist, bound, remedy, "rad", other=other, where=where)
+            said = {"other": other, "where": " at the tip"}
+            raise InvalidValue("twist", self.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:

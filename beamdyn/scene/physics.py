@@ -12,7 +12,8 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Result, plain
 from beamdyn.common.results.snapshots import ADDED_LATER
-from beamdyn.common.results.statements import TOLERANCE, Statement
+from beamdyn.common.results.statements import TOLERANCE, Statement, joined
+from beamdyn.common.words import Words
 
 
 @dataclass(frozen=True)
@@ -221,25 +222,26 @@ class PhysicsChoice:
     def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
-        why = "; ".join(f"{e.name}, left out, is worth {_say_size(e.size)}: {e.reason}" for e in large)
+        each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
             beyond = (
                 f"; short thick sections, and strain by rotation, may change the answer by "
                 f"{_say_size(self.beyond_models)} more"
             )
-            more = beyond if self.beyond_models > _WORTH_SAYING * self.tolerance else ""
             yield Statement(
                 f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "
-                f"{_say_size(self.model_error)}{why and f': {why}'}{more}",
+                f"{_say_size(self.model_error)}",
+                *([": ", joined("; ", each)] if large else []),
+                beyond if self.beyond_models > _WORTH_SAYING * self.tolerance else "",
                 kind=TOLERANCE,
                 quantity="model error",
                 value=self.model_error + self.beyond_models,
                 limit=self.tolerance,
             )
         if self.not_known:
-            each = "; ".join(f"{name} ({why})" for name, why in self.not_known.items())
-            said = f"physics = auto: left out, as not known: {each}"
-            yield Statement(said, kind=TOLERANCE, quantity="model error", limit=self.tolerance)
+            each = (Words(f"{name} (", why, ")") for name, why in self.not_known.items())
+            said = "physics = auto: left out, as not known: ", joined("; ", each)
+            yield Statement(*said, kind=TOLERANCE, quantity="model error", limit=self.tolerance)
 
 
 def _say_included(effect: JudgedEffect) -> str:

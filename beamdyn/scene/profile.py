@@ -25,6 +25,7 @@ from beamdyn.common.legendre import (
     multiply_series,
 )
 from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.words import Named, Words
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # length in x/L below which breakpoints differ by rounding only
@@ -268,7 +269,8 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     # Validate inner breakpoints and add the ends 0 and 1.
     inner = real_array("breakpoints", breakpoints)
     if inner.size and not (inner.min() > 0 and inner.max() < 1):
-        raise InvalidValue("breakpoints", breakpoints, "give fractions x/L between 0 and 1, ends excluded")
+        bound = Words("give fractions x/L between 0 and 1, ends excluded", _OR_LENGTHS)
+        raise InvalidValue("breakpoints", breakpoints, bound)
     ends = merge_breakpoints(np.concatenate([[0.0], inner, [1.0]]))
     if isinstance(value, Profile):
         profile = value
@@ -291,6 +293,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     return profile.split(ends)
 
 
+_OR_LENGTHS = Named("", ", or lengths with their unit")  # which files may give in place of fractions
 _SIZES = f"give sizes from {1 / MOST:g} to {{limit}} in SI units"
 
 
@@ -338,7 +341,7 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
     """Refuse stations that do not ascend from 0 to 1, one for each value; two at one place are a jump."""
 
     def refuse_station(k: int, bound: str) -> None:
-        raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, "give fractions x/L")
+        raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, Words("give fractions x/L", _OR_LENGTHS))
 
     if len(x) != values or len(x) < 2:
         bound = f"{len(x)} stations and {values} values: give as many of each, at least two"
@@ -348,7 +351,8 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
     if (falls := np.flatnonzero(x[1:] < x[:-1]) + 1).size:
         refuse_station(falls[0], f"it follows {x[falls[0] - 1]:g}; stations must ascend")
     if x[-1] != 1:
-        refuse_station(len(x) - 1, "the last station must be 1, the tip")
+        tip = Named("1, the tip", "the tip, at 1 or the beam's length")
+        refuse_station(len(x) - 1, Words("the last station must be ", tip))
     if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
         bound = "a station given twice is a jump and stands between others"
         raise InvalidValue(name, x.tolist(), bound, "give none three times, nor twice at an end")

@@ -11,6 +11,8 @@ from scipy.special import zeta
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.legendre import gauss_rule
+from beamdyn.common.words import Words
+from beamdyn.scene.names_elsewhere import FROM_STIFFNESS
 from beamdyn.scene.profile import Profile, as_profile, combine
 
 # How much less a clamp stiffens thick sections than a plate, fitted to CalculiX's solids of random
@@ -126,7 +128,7 @@ class Rectangle:
         bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
         refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
         bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
-        advice = "swap the two, or use Beam.from_stiffness for a section that is meant so"
+        advice = Words("swap the two, or use ", FROM_STIFFNESS, " for a section that is meant so")
         k = int((h > b).argmax())
         refuse(h[k] > b[k], "thickness", h[k], "m", bound, advice, limit=b[k])
 

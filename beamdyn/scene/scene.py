@@ -13,10 +13,12 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
+from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, aligned_cos_sin
+from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.profile import Profile, mean
@@ -249,7 +251,8 @@ def _check_point_springs(scene: Scene) -> None:
         name = f"point_springs[{k}].stiffness"
         refuse(spring.stiffness > stiffest, name, spring.stiffness, "N/m", bound, "soften it", limit=stiffest)
         if spring.direction == ACROSS and scene.physics.planes == 1:
-            bound, remedy = "a beam of one plane is rigid in this direction", "give physics.planes = 2"
+            bound = "a beam of one plane is rigid in this direction"
+            remedy = Words("give ", Setting("physics", planes=2))
             raise InvalidValue(f"point_springs[{k}].direction", ACROSS, bound, remedy)
 
 
@@ -266,11 +269,11 @@ _BENDING = "bending_stiffness"
 # Properties of the beam for each effect, of bending in either direction.
 _NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}
 _REMEDIES = {
-    "second_bending_stiffness": "give it to Beam.from_stiffness; Beam.rectangular computes it",
-    "shear_stiffness": "give it to Beam.from_stiffness, or poissons_ratio to Beam.rectangular",
-    "rotary_inertia": "give it to Beam.from_stiffness; Beam.rectangular computes it",
-    "axial_stiffness": "give it to Beam.from_stiffness; Beam.rectangular computes it",
-    "torsion_stiffness": "give it to Beam.from_stiffness, or poissons_ratio to Beam.rectangular",
+    "second_bending_stiffness": GIVE_OR_COMPUTE,
+    "shear_stiffness": GIVE_OR_RATIO,
+    "rotary_inertia": GIVE_OR_COMPUTE,
+    "axial_stiffness": GIVE_OR_COMPUTE,
+    "torsion_stiffness": GIVE_OR_RATIO,
 }
 
 
@@ -311,7 +314,8 @@ def _check_width(beam: Beam, physics: Physics) -> None:
     section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
     if (section is None and physics.camber) or (section is not None and section.poissons_ratio is None):
         lacking = "the sides of a rectangular section" if section is None else "poissons_ratio"
-        remedy = "Beam.rectangular(..., poissons_ratio=0.3) makes one of steel"
+        given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
+        remedy = Words(RECTANGULAR, given, " makes one of steel")
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.twist is not None:
         bound, remedy = f"with {name} the beam must not be twisted", "leave one of the two out"

@@ -15,9 +15,9 @@ from beamdyn.common.results.statements import (
     OUTSIDE,
     Speeds,
     Statement,
-    Words,
     joined,
 )
+from beamdyn.common.words import Setting, Words
 from beamdyn.scene.scene import Scene
 
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
@@ -40,20 +40,18 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
         return
     if scene.physics.branch != "straight" and not scene.physics.large_deflection:
         branch = scene.physics.branch
-        remedy = f"Physics(large_deflection=True, branch='{branch}') bends it"
-        said = (
-            f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; {remedy}"
-        )
-        yield Statement(said, kind=INPUT, quantity="physics.branch", remedy=remedy)
+        remedy = Words(Setting("physics", large_deflection=True, branch=branch), " bends it")
+        said = f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; "
+        yield Statement(said, remedy, kind=INPUT, quantity="physics.branch", remedy=remedy)
     given = {
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
     }
     for name, is_given in given.items():
         if is_given and scene.physics.planes == 1:
-            remedy = "Physics(planes=2) models it"
-            said = f"{name} is given, but physics.planes is 1: it is left out; {remedy}"
-            yield Statement(said, kind=INPUT, quantity=name, remedy=remedy)
+            remedy = Words(Setting("physics", planes=2), " models it")
+            said = f"{name} is given, but physics.planes is 1: it is left out; "
+            yield Statement(said, remedy, kind=INPUT, quantity=name, remedy=remedy)
 
 
 def warn_of_strain(strain: float) -> Iterator[Statement]:

@@ -12,7 +12,8 @@ import numpy as np
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import Speeds, Words
+from beamdyn.common.results.statements import Speeds
+from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known

@@ -14,8 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.common.words import Words
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
+from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 
 Pair = tuple[int, int]  # a harmonic (j, k)
 
@@ -242,10 +244,9 @@ def check_steady_state(motion: Motion | None) -> Motion:
     motion = SteadyRotation(0.0) if motion is None else motion
     missing = [n for n in _STEADY_STATE if not hasattr(motion, n)]
     if missing:
-        raise ValueError(
-            f"motion: {type(motion).__name__} has no {', '.join(missing)}, so that its steady state is not "
-            "known; simulate it, or use RollingWheel or SteadyRotation"
-        )
+        lacking = f"{type(motion).__name__} has no {', '.join(missing)}"
+        said = f"motion: {lacking}, so that its steady state is not known"
+        raise ValueError(Words(said, "; simulate it, or use ", ROLLING_WHEEL, " or SteadyRotation"))
     return motion
 
 

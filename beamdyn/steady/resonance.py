@@ -23,6 +23,7 @@ from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.modal.uncoupled import UncoupledSolver
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.motion import Line
+from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
 from beamdyn.steady.crossings import KINDS, Crossing, Crossings
@@ -203,9 +204,8 @@ def _warnings(
     names = ", ".join(dict.fromkeys(line.name for kind in lines for line in kind))
     if not names:
         motion = "has no motion" if scene.motion is None else f"has a {type(scene.motion).__name__}"
-        remedy = "a RollingWheel with a road, or gravity, excites the beam"
         said = f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
-        yield Statement(said, remedy, kind=EXCITATION, remedy=remedy)
+        yield Statement(said, WITH_WHEEL, kind=EXCITATION, remedy=WITH_WHEEL)
     elif not crossings:
         begin, end = f"no mode meets a line of order {order} up to ", f"; lines: {names}"
         yield Statement(begin, Speeds(min(top, critical)), end, kind=NO_ANSWER)

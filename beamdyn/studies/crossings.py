@@ -16,6 +16,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.many_designs import speeds_of_meeting
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Line
+from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
@@ -108,8 +109,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
             found.setdefault(line_key(kind, line), (kind, line))
     if not found:
         bound = "nothing varies in time at steady speed in any design, so that none resonates"
-        remedy = "a RollingWheel with a road, or gravity, excites the beam"
-        raise InvalidValue("scene.motion", scene.motion and type(scene.motion).__name__, bound, remedy)
+        raise InvalidValue("scene.motion", scene.motion and type(scene.motion).__name__, bound, WITH_WHEEL)
     each = (found[key] for key in sorted(found))
     return tuple(PossibleCrossing(kind, line, mode) for kind, line in each for mode in range(1, modes + 1))
 

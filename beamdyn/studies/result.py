@@ -13,7 +13,8 @@ from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.plots.curves import plot_over_input
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import InputValue, Statement, Words, joined
+from beamdyn.common.results.statements import InputValue, Statement, joined
+from beamdyn.common.words import Words
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene

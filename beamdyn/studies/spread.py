@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
@@ -302,19 +301,17 @@ def _in_si(name: str, text: str, unit: str) -> Convert:
     def convert(number: str, written: str) -> float:
         if written not in ("", unit):
             bound = f"a text has percentages, or numbers in {unit or 'SI'}"
-            raise InvalidValue(name, text, bound, _without_unit(text, written, unit))
+            raise InvalidValue(name, text, bound, _without_unit(written, unit))
         return float(number)
 
     return convert
 
 
-def _without_unit(text: str, written: str, unit: str) -> str:
+def _without_unit(written: str, unit: str) -> str:
     """The remedy for a tolerance whose numbers have another unit than that of the input."""
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
-    if factor is None:
-        return f"give numbers alone{f', in {unit}' if unit else ''}"
-    pattern = rf"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*{re.escape(written)}(?!\w)|(?![\d.]|\s*%))"
-    return f'give "{re.sub(pattern, lambda found: f"{float(found[1]) * factor:g}", text)}"'
+    said = f"give numbers alone{f', in {unit}' if unit else ''}"
+    return said if factor is None else f"{said}: {factor:g} for 1 {written}"
 
 
 def check_reach(scene: Scene, given: SpreadInput) -> None:

@@ -31,7 +31,9 @@ from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, check_discretization
+from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.numbers import SPEED, check_path, is_of_motion, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
@@ -215,7 +217,8 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     check_speeds(at, SPEED)
     kind = KINDS[what]
     if kind.needs_motion and scene.motion is None:
-        raise InvalidValue("scene.motion", None, f"a study of {what} needs a motion", "such as RollingWheel")
+        remedy = Words("such as ", ROLLING_WHEEL)
+        raise InvalidValue("scene.motion", None, f"a study of {what} needs a motion", remedy)
     if what == "crossings":
         positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
     if varied and not kind.has_speed:

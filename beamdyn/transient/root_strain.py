@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.words import Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment, strain_per_moment
+from beamdyn.scene.names_elsewhere import GIVE_IT
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.system import ModalSystem
@@ -44,7 +46,7 @@ class RootStrain:
             remedy = "leave large_deflection out where the deflection is small"
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
         if scene.beam.outer_fibre is None:
-            raise ValueError("root_strain needs outer_fibre: give it to Beam.from_stiffness")
+            raise ValueError(Words("root_strain needs outer_fibre: ", GIVE_IT))
         if scene.damping.stiffness_factor:
             bound = "the strain of a material that damps is not a function of the moment alone"
             remedy = "give damping.ratios, or ask frequency_response"

@@ -1,6 +1,7 @@
 """The beam's screens as pure functions: what they show is what the package's functions find."""
 
 import json
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,11 +16,13 @@ from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient import TRANSIENT
 from beamdyn.common.drawing.shapes import Outline
+from beamdyn.common.edge.file_words import in_files, on_form
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.screens.chart_options import options_of, thinned
-from beamdyn.common.screens.form_entries import as_on_form, tables_of
+from beamdyn.common.screens.form_entries import heading_of, tables_of
 from beamdyn.common.screens.handles import draw_sheet
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.words import Setting, Words
 
 pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
 SHORT = {"run.end": "2 s", "motion.rotation.duration": "1 s"}
@@ -373,8 +376,9 @@ def test_a_deflection_past_linear_theory_does_not_stand_first_without_saying_so(
 
 
 def test_warnings_name_inputs_as_the_form_does():
-    said = "shear deformation, left out, matters; [physics] shear_stiffness = true includes it"
-    given = OpenDocument(SCENE).inputs, SCENE.headings
-    assert as_on_form(said, *given).endswith("; Physics: shear stiffness = true includes it")
-    assert as_on_form("[model] gravity = 0", *given) == "Gravity and damping ratio: gravity = 0"
-    assert as_on_form("speed [Hz] of = 2", *given) == "speed [Hz] of = 2"
+    said = Words("shear, left out, matters; ", Setting("physics", rotary_inertia=True), " includes it")
+    damped = Setting("model", damping_ratio=0)
+    with on_form(partial(heading_of, headings=SCENE.headings)):
+        assert in_files(said).endswith("; Physics: rotary inertia = true includes it")
+        assert in_files(damped) == "Gravity and damping ratio: damping ratio = 0"
+    assert in_files(damped) == "[model] damping_ratio = 0"

@@ -185,9 +185,9 @@ def compared():
 
 def test_inputs_that_differ_are_listed_with_defaults(compared):
     found = [*input_differences(compared.entries, compared.other.entries, compared.inputs)]
-    assert found == [
-        Difference("speed, V", "20 km/h", "30 km/h"),
-        Difference("gravity, g", "(9.806 m/s2)", "9.81 m/s2"),
+    assert [(d.words, d.here, d.there, d.change) for d in found] == [
+        ("speed, V", "20 km/h", "30 km/h", "-33.3 %"),
+        ("gravity, g", "(9.806 m/s2)", "9.81 m/s2", "-0.0408 %"),
     ]
 
 
@@ -229,23 +229,29 @@ def test_rows_that_have_the_same_words_are_compared_at_the_same_place(here, ther
 
 
 @pytest.mark.parametrize(
-    "here, there, change",
+    "path, here, there, change",
     [
-        ("15.458", "13.425", "+15.1 %"),
-        ("1000 kg", "3500 kg", "-71.4 %"),
-        ("-1.5", "-3", "+50 %"),
-        ("(9.806 m/s2)", "9.81 m/s2", "-0.0408 %"),
-        ("20 %", "0.3019 rad", ""),
-        ("5", "0", ""),
-        ("stops", "never", ""),
-        ("0.149 ± 0.006", "0.15", ""),
-        ('["1 mm", "2 mm"]', '["1 mm", "3 mm"]', ""),
+        ("truck.empty_mass", "1000 kg", "3500 kg", "-71.4 %"),
+        ("stop.slope", "20 %", "0.3 rad", "-34.2 %"),
+        ("stop.friction", "0.6", "0.4", "+50 %"),
+        ("stop.friction", "", "0.5", ""),
+        ("stop.friction", "much", "0.5", ""),
     ],
 )
-def test_the_change_stands_beside_two_numbers_of_one_unit(here, there, change):
-    made = Difference("x", here, there)
+def test_the_change_stands_beside_two_numbers(path, here, there, change):
+    inputs = VEHICLE.inputs({})
+    (made,) = input_differences({path: here}, {path: there}, inputs)
     assert made.change == change
     assert f'<td class="number">{change}</td></tr>' in differences_html([made], "results", "other")
+
+
+@pytest.mark.parametrize(
+    "here, there, change",
+    [("15.458", "13.425", "+15.1 %"), ("-1.5", "-3", "+50 %"), ("5", "0", ""), ("stops", "never", "")],
+)
+def test_the_change_stands_beside_two_results(here, there, change):
+    tables = ([table("Stop", ("", "value"), [("distance", value)])] for value in (here, there))
+    assert [d.change for d in result_differences(*tables)] == [change]
 
 
 def test_other_design_is_solved_once_and_again_for_another(compared):
@@ -284,7 +290,7 @@ def test_ghost_of_a_bent_beam_says_its_scale_and_has_no_lines_that_are_not_drawn
 
 def test_markup_in_names_and_values_stays_text():
     script = "<script>alert(1)</script>"
-    made = differences_html([Difference(script, script, script)], script, script)
+    made = differences_html([Difference(script, script, script, (None, None))], script, script)
     made += headline_html([(script, script)], [(script, "1")], script)
     assert "<script" not in made
 

@@ -121,7 +121,7 @@ def test_a_second_file_is_one_word_too_many(refused):
     ("options", "words"),
     [
         (("--tolerance", "abc"), '--tolerance: "abc" is not a number.'),
-        (("--force=maybe",), '--force: "maybe" is no value of a switch.'),
+        (("--force=maybe",), '--force: "maybe" is not a value of a switch.'),
         (("--pl", "x"), "Did you mean --plot?"),
     ],
 )
@@ -151,7 +151,7 @@ def test_a_key_that_is_given_twice_is_said_to_be(refused, tmp_path):
     file = tmp_path / "twice.toml"
     file.write_text('[beam]\nlength = "50 mm"\nlength = "60 mm"\n')
     said = refused("modes", file)
-    assert "(at line 3" in said and said.rstrip().endswith("give each key and each [table] once")
+    assert "(at line 3" in said and "give each key and each [table] once" in said
 
 
 def test_a_folder_without_a_name_is_no_place_for_pictures(refused, tmp_path, monkeypatch):

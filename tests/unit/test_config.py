@@ -228,7 +228,7 @@ def test_stations_beside_other_keys():
         ((2, 1), math.nan, "[2][1] = nan: give a finite number, in kg/m"),
         ((2, 1), -1, "[2][1] = -1: it must be greater than 0 kg/m"),
         ((2, 0), "a", '[2][0] = "a": give a finite number'),
-        ((4, 0), 0.9, "[4][0] = 0.9: the last station must be 1, the tip; give fractions x/L"),
+        ((4, 0), 0.9, "[4][0] = 0.9: the last station must be the tip, at 1 or the beam's length; give"),
         ((3, 0), 0.2, "[3][0] = 0.2: it follows 0.25; stations must ascend"),
         ((3, 0), 0, "[3][0] = 0: it follows 0.25; stations must ascend"),
         ((2, 1), 1e60, " = 1e+60: give sizes from 1e-50 to 1e+50 in SI units"),

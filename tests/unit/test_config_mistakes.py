@@ -60,7 +60,7 @@ from tests.unit.toml_scenes import (
         (
             "beam.thickness",
             {"stations": [0, 0.5], "values": ["1 mm"] * 2},
-            "beam.thickness.stations[1] = 0.5: the last station must be 1, the tip",
+            "beam.thickness.stations[1] = 0.5: the last station must be the tip, at 1 or the",
         ),
         (
             "beam.thickness",
@@ -155,7 +155,7 @@ from tests.unit.toml_scenes import (
         (
             "beam.thickness",
             {"stations": ["0 mm", "25 mm"], "values": ["1 mm"] * 2},
-            'beam.thickness.stations[1] = "25 mm": the last station must be 1, the tip',
+            'beam.thickness.stations[1] = "25 mm": the last station must be the tip, at 1 or',
         ),
         (
             "beam.thickness",

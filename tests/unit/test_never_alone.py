@@ -2,6 +2,7 @@
 
 import csv
 import io
+import pickle
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -13,9 +14,12 @@ import pytest
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import critical_label, labels_of, notes_of, warnings_of
 from beamdyn.app.frequencies import FREQUENCIES
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.file_words import in_files, say
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.edge.views import rows_of
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.snapshots import decode, encode
+from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.validity import warn_of_static_deflection
 from beamdyn.studies.tradeoffs.measurements import Diagram
 from beamdyn.studies.tradeoffs.tradeoff import tradeoff
@@ -104,8 +108,13 @@ def test_picture_names_and_rows_state_the_model_error():
 
 
 def test_python_terms_become_keys_of_files():
-    said = as_in_files("Physics(shear=True, branch='bent') bends; equilibrium_branches finds")
-    assert said == '[physics] shear = true, branch = "bent" bends; beamdyn branches finds'
+    shear, locus = Setting("physics", shear=True, branch="bent"), Named("locus()", "beamdyn locus")
+    said = Words(shear, "; ", locus, " finds")
+    assert said == "Physics(shear=True, branch='bent'); locus() finds"
+    assert in_files(said) == '[physics] shear = true, branch = "bent"; beamdyn locus finds'
+    refused = InvalidValue("beam", 1.0, "it is stiff", Words("try ", shear))
+    assert say(refused) == 'beam = 1: it is stiff; try [physics] shear = true, branch = "bent"'
+    assert pickle.loads(pickle.dumps(said)).parts == decode(encode(said)).parts == said.parts
 
 
 def test_critical_speed_of_a_bent_beam_is_called_what_it_is():

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.option_words import as_typed
 from beamdyn.common.edge.program import DONE
+from beamdyn.common.edge.refusal_words import as_typed
+from beamdyn.common.inputs.checks import InvalidValue
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ROLLING, TYRE = str(EXAMPLES / "rolling_harvester.toml"), str(EXAMPLES / "tyre_harvester.toml")
@@ -26,7 +27,7 @@ MESSAGES = [
     (("random", ROLLING, "--road", "A"), "[model] damping_ratio = 0"),
     (("random", ROAD, "--road", "A", "--highest", "1e-9 1/m"), "it must be below --highest = 1e-09 1/m"),
     (("random", ROAD, "--road", "A", "--input", "force@tip"), '--input = "force@tip"'),
-    (("random", ROAD, "--road", "A", "--input", "force@2 mm across"), '--input = "force@0.002 m across"'),
+    (("random", ROAD, "--road", "A", "--input", "force@2 mm across"), '--input = "force@2 mm across"'),
     (("random", ROAD, "--road", "A", "--output", "deflection@1 m"), "position after @ = 1 m"),
     (("loads", TYRE, "--points", "0:90 mm"), "leave --points out"),
     (("campbell", TYRE, "--top-speed", "9 rad/s", "--operating", "5:50 rad/s"), "--operating = 50 rad/s"),
@@ -60,5 +61,5 @@ def test_a_refusal_names_options(run, tmp_path, monkeypatch, command, said):
 
 def test_a_name_that_is_no_option_of_the_command_stays(run):
     run("locus", ROLLING, "--speeds", "x")  # the last command typed, which has --speeds and no --speed
-    assert as_typed("speed = 5: too fast") == "speed = 5: too fast"
-    assert as_typed("speeds = 5: too fast") == "--speeds = 5: too fast"
+    assert as_typed(InvalidValue("speed", 5.0, "too fast")) == "speed = 5: too fast"
+    assert as_typed(InvalidValue("speeds", 5.0, "too fast")) == "--speeds = 5: too fast"

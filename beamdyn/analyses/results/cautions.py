@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.file_words import word as in_terms
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, Words, kind_of, of_kind, said_in, worded
+from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, kind_of, of_kind, said_in
+from beamdyn.common.words import Words, worded
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def warnings_of(
     warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
     said = (each for each in warnings if not without or kind_of(each) != without)
     units = result.display_units if isinstance(result, Result) else SI_UNITS
-    return [as_in_files(worded(each, lambda part: word(part) or part.in_units(units))) for each in said]
+    return [worded(each, lambda part: word(part) or in_terms(part, units)) for each in said]
 
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:

@@ -10,12 +10,12 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported, supported_or_range
-from beamdyn.common.results.statements import OUTSIDE, of_kind, said_in
+from beamdyn.common.results.statements import OUTSIDE, of_kind
 from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.kinds import BENDING
 from beamdyn.modes.model_error.left_out_effects import where_worst
@@ -49,7 +49,7 @@ _AXES = "b1", "b2", "b3"  # along the beam at rest, in the direction of bending,
 
 def said_of_model(result: Result, sentence: str) -> str:
     """What stands below a table on its model, in words and units of files."""
-    return as_in_files(said_in(result.display_units, sentence))
+    return in_files(sentence, result.display_units)
 
 
 def said_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> str:
@@ -222,7 +222,7 @@ def critical_answer(result: CriticalPoint) -> Group:
     """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
-        said = Text(f"no critical speed: {as_in_files(result.reason)}")
+        said = Text(f"no critical speed: {in_files(result.reason)}")
     elif math.isinf(result.speed):
         bound = unit.say(result.none_below, 4)
         found = f"no critical speed found; there is certainly none below {bound}"
@@ -350,7 +350,7 @@ def terms_table(result: Terms) -> Group:
     """All terms, which of them are there and why, and what the model leaves out."""
     heads = "", "term", "symbol", "largest", "reason"
     shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
-    left_out = [as_in_files(f"Left out: {effect.name}: {effect.reason}.") for effect in result.left_out]
+    left_out = (f"Left out: {effect.name}: {in_files(effect.reason)}." for effect in result.left_out)
     return Group(shown, *map(Text, (result.excited(), *left_out)))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.common.edge.file_words import as_in_files
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import (
@@ -64,7 +64,7 @@ def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None
     if judged := len(result.left_out_places):
         where = f"at the worst of {judged} design{'s' * (judged > 1)}"
         what = "number" * (len(result.labels) > 1)
-        notes.append(as_in_files(result.left_out_effects.sentence(what, where)))
+        notes.append(in_files(result.left_out_effects.sentence(what, where)))
     else:
         notes.append("What the model leaves out is not computed: no design has an answer.")
     made = Columns(

@@ -6,7 +6,7 @@ import difflib
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -17,11 +17,13 @@ import numpy as np
 from pydantic import BaseModel, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
+from beamdyn.common.edge.file_words import say
 from beamdyn.common.edge.inputs import Section, describe
 from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
 from beamdyn.common.edge.wording import in_millimetres
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.files import as_path
+from beamdyn.common.words import Words, worded
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -61,8 +63,9 @@ class ConfigError(ValueError):
 class MissingValue(InvalidValue):
     """A value that must be given and is not: only `field` and `bound` are said."""
 
-    def __str__(self) -> str:
-        return f"{self.field}: missing; {self.bound}"
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The message, as a medium words it."""
+        return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
 class CoreSection(Section):
@@ -116,9 +119,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
             source, ["its lists or tables are nested too deeply; give a file of tables"]
         ) from None
     except tomllib.TOMLDecodeError as error:
-        remedy = 'a quantity stands in quotes: length = "50 mm"'
-        if re.match("Cannot (overwrite|declare|mutate)", f"{error}"):
-            remedy = "give each key and each [table] once"
+        remedy = 'give each key and each [table] once, and a quantity in quotes: length = "50 mm"'
         raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
     except ValueError:
         raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None
@@ -192,11 +193,11 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
     """The refusal of a number or a core object, in terms of the file's keys and as the file writes it."""
     if isinstance(reason, InvalidInput) and not reason.field:
-        return str(replace(reason, field=place)), path
+        return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
         return said_of(reason, f"{place}.{inner}".lstrip("."), _found(given, inner)), key
-    said = in_millimetres(reason) if isinstance(reason, InvalidValue) else reason
+    said = say(in_millimetres(reason) if isinstance(reason, InvalidValue) else reason)
     return f"{place or 'model'}: {said}", path
 
 
@@ -246,7 +247,7 @@ def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
     """The message of a refusal by the core, with the place in a file and the value as the file has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
-    return str(_as_written(kind(**said), given))
+    return say(_as_written(kind(**said), given))
 
 
 def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:

@@ -1,31 +1,50 @@
-"""Sentences of the core in the terms of files and commands; a module without slow imports."""
+"""Sentences of the core in the terms of files, commands and forms; a module without slow imports."""
 
 from __future__ import annotations
 
-import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING
 
-_COMMANDS = {"equilibrium_branches": "beamdyn branches", "frequency_locus": "beamdyn locus"}
-_BEAM = {
-    "Beam.from_stiffness": "mass_per_length and bending_stiffness in [beam]",
-    "Beam.rectangular": "width and thickness in [beam]",
-    "the last station must be 1, the tip": "the last station must be the tip, at 1 or the beam's length",
-}
-_FRACTIONS = re.compile(r"give fractions x/L( between 0 and 1, ends excluded)?")
-_PHYSICS = re.compile(r"Physics\((.*?)\)")
+from beamdyn.common.words import Named, Setting, Words, worded
+
+if TYPE_CHECKING:
+    from beamdyn.common.words import Units
+
+_HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", default=None)
 
 
-def as_in_files(sentence: str) -> str:
-    """A sentence of the core, written in Python's terms, in the terms of files and commands.
+def in_files(text: str, units: Units | None = None) -> str:
+    """A text in the terms of files and commands, and with its speeds in a display unit, if units are given.
 
-    "Physics(shear=True)" becomes "[physics] shear = true", a function the command that does the same, and
-    what makes a beam the keys that do.
+    `Physics(shear=True)` becomes "[physics] shear = true", on a form "Physics: shear = true".
     """
-    for function, command in (_COMMANDS | _BEAM).items():
-        sentence = sentence.replace(function, command)
-    sentence = _FRACTIONS.sub(r"give fractions x/L\1, or lengths with their unit", sentence)
-    return _PHYSICS.sub(lambda call: f"[physics] {_as_keys(call[1])}", sentence)
+    return worded(text, lambda part: word(part, units))
 
 
-def _as_keys(arguments: str) -> str:
-    """Keyword arguments as keys of TOML."""
-    return re.sub(r"=(\S)", r" = \1", arguments).replace("True", "true").replace("'", '"')
+def word(part: Words, units: Units | None = None) -> str:
+    """A part of a text in the terms of files, or of the form that asks."""
+    if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
+        return part.on_form(heading(part.table))
+    if isinstance(part, Named):
+        return part.elsewhere
+    return str(part) if units is None else part.in_units(units)
+
+
+def say(error: Exception) -> str:
+    """The message of an error in the terms of files and commands."""
+    composed, (first, *_) = getattr(error, "worded", None), (*error.args, "")
+    if composed is not None:
+        return composed(word)
+    return in_files(first) if isinstance(first, Words) else str(error)
+
+
+@contextmanager
+def on_form(heading: Callable[[str], str]) -> Iterator[None]:
+    """Within it, settings are called as a form does that has them under these headings of tables."""
+    before = _HEADING.set(heading)
+    try:
+        yield
+    finally:
+        _HEADING.reset(before)

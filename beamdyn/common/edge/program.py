@@ -13,7 +13,8 @@ from typing import Any, Literal
 
 from cyclopts import App, CycloptsError
 
-from beamdyn.common.edge.option_words import TYPED, as_given, as_typed, check_names, say_mistake
+from beamdyn.common.edge.file_words import in_files
+from beamdyn.common.edge.option_words import TYPED, check_names, say_mistake
 from beamdyn.common.edge.progress import at_work, quiet
 from beamdyn.common.edge.tables import Terminal, spell_output
 from beamdyn.common.results.announced import OutsideLinearTheory
@@ -96,10 +97,6 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
                 spell_output(sys.stdout)
             how: dict[str, Any] = {"exit_on_error": False, "print_error": False}
             app(given, console=Terminal(), result_action="return_value", **how)
-    except (NoAnswer, ArithmeticError) as error:
-        from beamdyn.common.inputs.checks import reason_of
-
-        return _complain(name, f"no answer: {as_typed(reason_of(error))}", NO_ANSWER)
     except MemoryError as error:
         return _complain(
             name, f"not enough memory: {error}; ask for a shorter run or for fewer modes", BAD_INPUT
@@ -108,16 +105,12 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
         return _complain(name, f"interrupted: {error}".removesuffix(": "), INTERRUPTED)
     except CycloptsError as error:
         return _complain(name, say_mistake(app, error, given), BAD_INPUT)
-    except (ValueError, OSError) as error:  # bad input, or no answer, as where a linear system is singular
-        from numpy.linalg import LinAlgError  # here, with numpy, which help does without
+    except (NoAnswer, ArithmeticError, ValueError, OSError) as error:
+        from beamdyn.common.edge.refusal_words import as_typed, is_no_answer  # with numpy, which help lacks
 
-        from beamdyn.common.inputs.checks import NoModelAnswer
-
-        if isinstance(error, NoModelAnswer):
-            return _complain(name, f"no answer: {as_typed(as_given(error))}", NO_ANSWER)
-        if isinstance(error, LinAlgError):
-            return _complain(name, f"no answer: {error}; check the size of each value", NO_ANSWER)
-        return _complain(name, as_typed(as_given(error)), BAD_INPUT)
+        if isinstance(error, NoAnswer) or is_no_answer(error):
+            return _complain(name, f"no answer: {as_typed(error)}", NO_ANSWER)
+        return _complain(name, as_typed(error), BAD_INPUT)
     return DONE
 
 
@@ -167,4 +160,4 @@ def _complain(name: str, sentence: str, code: int) -> int:
 def warn(name: str, sentences: Iterable[str]) -> None:
     """Print a program's warnings on standard error."""
     for warning in sentences:
-        _complain(name, f"warning: {as_typed(warning)}", DONE)
+        _complain(name, f"warning: {in_files(warning)}", DONE)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import NoneType, UnionType
 from typing import Any, get_args
 
 import numpy as np
+
+from beamdyn.common.words import Named, Words, worded
 
 MOST = 1e50  # largest size in SI units: products of six are still far from overflow
 _LONGEST = 60  # characters of a value that a message shows
@@ -44,8 +46,8 @@ class InvalidValue(ValueError):
     value : object
         The refused value; a number is in `unit`.
     bound : str
-        What is wrong, or what to give.  In it and in `remedy`, ``{unit}``, ``{limit}`` and ``{other}``
-        stand for the attributes of these names.
+        What is wrong, or what to give.  In it and in `remedy`, ``{unit}``, ``{limit}``, ``{field}`` and
+        ``{other}`` stand for the attributes of these names.
     remedy : str
         What to do, beyond keeping the bound.
     unit : str
@@ -71,8 +73,17 @@ class InvalidValue(ValueError):
     cases: RefusedCases | None = None
 
     def __str__(self) -> str:
-        name, remedy = self.field and f"{self.field} = ", self.remedy and f"; {self.remedy}"
-        return f"{name}{self.shown}{self.where}: {self._filled(self.bound + remedy)}"
+        return self.worded(str)
+
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The message, with what a medium calls differently as it words that."""
+        name = self.field and f"{self.field} = "
+        return f"{name}{self.shown}{self.where}: {self.advice(word)}"
+
+    def advice(self, word: Callable[[Words], str]) -> str:
+        """The bound and the remedy, as a medium words them."""
+        remedy = self.remedy and f"; {worded(self.remedy, word)}"
+        return self._filled(worded(self.bound, word) + remedy)
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
@@ -106,7 +117,8 @@ class InvalidValue(ValueError):
 
     def _filled(self, text: str) -> str:
         limit = "" if self.limit is None else self._with_unit(self.limit)
-        return text.replace("{limit}", limit).replace("{unit}", self.unit).replace("{other}", self.other)
+        named = text.replace("{field}", self.field).replace("{other}", self.other)
+        return named.replace("{limit}", limit).replace("{unit}", self.unit)
 
 
 OUT_OF_RANGE = (
@@ -363,14 +375,17 @@ def _holds_truth(values: Any) -> bool:
     return isinstance(values, list | tuple) and any(isinstance(each, bool | np.bool_) for each in values)
 
 
+_UNIQUE, _IN_ORDER = "pass numpy.unique({field})", "give each once, in ascending order"
+
+
 def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
     """A one-dimensional array of finite floats, each greater than the one before; of one for a number."""
     array = as_floats(values)
     array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:
         raise InvalidValue(name, values, "it is empty; give at least one value")
-    bound, remedy = "it follows {limit}; values must ascend without repeats", "pass numpy.unique({other})"
-    refuse(array[1:] <= array[:-1], name, array[1:], "", bound, remedy, limit=array[:-1], other=name)
+    bound, remedy = "it follows {limit}; values must ascend without repeats", Named(_UNIQUE, _IN_ORDER)
+    refuse(array[1:] <= array[:-1], name, array[1:], "", bound, remedy, limit=array[:-1])
     return array
 
 

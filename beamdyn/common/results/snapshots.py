@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results.statements import Words
+from beamdyn.common.words import Words
 
 _ADDED = "added"
 ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack: its default is what they meant

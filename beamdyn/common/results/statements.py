@@ -7,12 +7,15 @@ into the units in which it shows them.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol, SupportsFloat
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, SupportsFloat
+
+from beamdyn.common.words import Part, Words, worded
 
 if TYPE_CHECKING:
     from typing import Self
+
+    from beamdyn.common.words import Units
 
 # Kinds of statements that programs ask for.
 OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
@@ -26,63 +29,7 @@ IN_LINE = "in line"  # loads act exactly in line, where any offset changes the a
 LIMITS = "limits"  # limits of other validity: large strain, few vibrations
 
 
-class _Unit(Protocol):
-    """A unit in which speeds are shown; see `beamdyn.common.results.display_units.ShownUnit`."""
-
-    @property
-    def name(self) -> str: ...
-    def of(self, values: Any) -> Any: ...
-    def say(self, value: float, digits: int = 6) -> str: ...
-
-
-class _Units(Protocol):
-    """Units in which a medium shows quantities; see `beamdyn.common.results.display_units.DisplayUnits`."""
-
-    def speed_unit(self) -> _Unit: ...
-
-
-class Words(str):
-    """A text made of parts, some of which each medium words in its own way: `Speeds` and `InputValue`.
-
-    Parameters
-    ----------
-    *parts : str
-        The parts, one after the other; those that are `Words` keep what they know.
-    """
-
-    parts: tuple[str, ...]
-
-    def __new__(cls, *parts: str) -> Self:  # noqa: D102
-        made = super().__new__(cls, "".join(parts))
-        made.parts = parts
-        return made
-
-    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Arguments by position and by name that make an equal object, for pickles and files."""
-        return self.parts, {}
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        given, named = self.arguments()
-        return partial(type(self), *given, **named), ()
-
-    def worded(self, word: Callable[[Words], str]) -> str:
-        """The text with each speed and input as a medium words it."""
-        return "".join(worded(part, word) for part in self.parts)
-
-    def in_units(self, units: _Units) -> str:
-        """The text with its speeds in a display unit."""
-        return self.worded(lambda part: part.in_units(units))
-
-
-class _Number(Words):
-    """A part that is a number with its unit."""
-
-    def worded(self, word: Callable[[Words], str]) -> str:
-        """The part as a medium words it."""
-        return word(self)
-
-
-class Speeds(_Number):
+class Speeds(Part):
     """Speeds in a text: "20 rad/s", or from where to where they go, "20 to 35 rad/s".
 
     Parameters
@@ -106,13 +53,13 @@ class Speeds(_Number):
         """The speeds, and the digits by name."""
         return self.values, {"digits": self.digits}
 
-    def in_units(self, units: _Units) -> str:
+    def in_units(self, units: Units) -> str:
         """The speeds in a display unit."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
 
-class InputValue(_Number):
+class InputValue(Part):
     """An input and its value in a text: "beam.thickness = 0.0002 m".
 
     Parameters
@@ -141,7 +88,7 @@ class InputValue(_Number):
         """Name, value and unit, and the digits by name."""
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
-    def in_units(self, units: _Units) -> str:
+    def in_units(self, units: Units) -> str:
         """The input with its value in a display unit, if it is a speed."""
         return f"{self.name} = {units.speed_unit().say(self.value)}" if self.unit == "rad/s" else str(self)
 
@@ -221,11 +168,6 @@ def joined(separator: str, texts: Iterable[str]) -> Words:
     return Words(*parts[1:])
 
 
-def worded(text: str, word: Callable[[Words], str]) -> str:
-    """A text with each speed and input that it knows as a medium words it."""
-    return text.worded(word) if isinstance(text, Words) else text
-
-
-def said_in(units: _Units, text: str) -> str:
+def said_in(units: Units, text: str) -> str:
     """A text with the speeds that it knows in a display unit."""
     return worded(text, lambda part: part.in_units(units))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from html import escape
@@ -22,23 +22,24 @@ if TYPE_CHECKING:
 
 _MOST = 60  # differences of results that are listed
 _DASH = (4.0, 2.5)
-_NUMBER = re.compile(r"\(?([-+]?\d+\.?\d*(?:e[-+]?\d+)?)\s*([^\d\s)][^)]*)?\)?", re.ASCII)  # and its unit
 
 
 class Difference(NamedTuple):
-    """An input or result that differs: its name, its value here, and that of the other design."""
+    """An input or result that differs: its name, its value here and that of the other design, as shown.
+
+    Both as numbers, too; None for what is no number.
+    """
 
     words: str
     here: str
     there: str
+    numbers: tuple[float | None, float | None]
 
     @property
     def change(self) -> str:
-        """Relative difference of the value here from the other; "" unless both are numbers of one unit."""
-        here, there = (_NUMBER.fullmatch(text) for text in (self.here, self.there))
-        if here is None or there is None or here[2] != there[2] or not float(there[1]):
-            return ""
-        return f"{100 * (float(here[1]) - float(there[1])) / abs(float(there[1])):+.3g} %"
+        """Relative difference of the value here from the other; "" unless both are numbers."""
+        here, there = self.numbers
+        return f"{100 * (here - there) / abs(there):+.3g} %" if here is not None and there else ""
 
 
 def input_differences(
@@ -49,10 +50,21 @@ def input_differences(
     known = {entry.path: entry for entry in inputs}
     for path in (*known, *sorted(differ - {*known})):
         if path in differ:
-            default = default_words(known[path]) if path in known else NOT_GIVEN
+            entry = known.get(path)
+            default = NOT_GIVEN if entry is None else default_words(entry)
             usual = default if default == NOT_GIVEN else f"({default})"
-            values = (entries.get(path, "").strip() or usual for entries in (here, there))
-            yield Difference(label(known[path]) if path in known else path, *values)
+            one, other = (entries.get(path, "").strip() for entries in (here, there))
+            numbers = _value(one or default, entry), _value(other or default, entry)
+            yield Difference(path if entry is None else label(entry), one or usual, other or usual, numbers)
+
+
+def _value(text: str, entry: Input | None = None) -> float | None:
+    """The number in a text, for an input with a unit that in SI; None if it is none."""
+    try:
+        number = float(text) if entry is None or not entry.quantity.unit else entry.quantity.convert(text)
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None
 
 
 def result_differences(
@@ -67,8 +79,9 @@ def result_differences(
         theirs = {name_of(row): row.numbers for row in others}
         for row in ours:
             name, numbers = name_of(row) + row.unit, theirs.get(name_of(row), row.numbers)
-            each = ((h, a, numbers[h]) for h, a in row.numbers.items() if a != numbers[h])
-            yield from (Difference(name + head, a, b) for head, a, b in each)
+            for head, a in row.numbers.items():
+                if a != (b := numbers[head]):
+                    yield Difference(name + head, a, b, (_value(a), _value(b)))
 
 
 def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:

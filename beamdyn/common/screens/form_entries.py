@@ -14,6 +14,7 @@ from typing import Any, get_args, get_origin
 
 from beamdyn.common.drawing.symbols import symbol_html
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
+from beamdyn.common.edge.file_words import say
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of
 from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
@@ -161,7 +162,7 @@ def by_field(
         path = path_of(error, paths)
         if isinstance(error, InvalidValue) and path in entries:
             return {path: [said_of(error, path, entries[path])]}
-        return {path: [reason_of(error)]}
+        return {path: [reason_of(error) if isinstance(error, ArithmeticError) else say(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
         around = [path for path in paths if f"{place}.".startswith(f"{path}.")]  # it may lie within an input
@@ -264,7 +265,6 @@ def usual_unit(unit: str) -> str:
 
 
 NOT_GIVEN = "not given"
-_KEY = re.compile(r"\[(\w+)\] (\w+) = ")
 
 
 def label(entry: Input) -> str:
@@ -297,18 +297,6 @@ def table_of(path: str) -> str:
 def heading_of(section: str, headings: Mapping[str, str]) -> str:
     """Heading of a table of the form."""
     return headings.get(section, section.replace("_", " ").capitalize() or "General")
-
-
-def as_on_form(sentence: str, inputs: Sequence[Input], headings: Mapping[str, str]) -> str:
-    """A sentence with tables and keys of a file, "[physics] shear = true", as the form calls them."""
-    tables = {table_of(entry.path) for entry in inputs}
-
-    def named(found: re.Match[str]) -> str:
-        if found[1] not in tables:
-            return found[0]
-        return f"{heading_of(found[1], headings)}: {found[2].replace('_', ' ')} = "
-
-    return _KEY.sub(named, sentence)
 
 
 def options_of(entry: Input) -> tuple[str, ...]:

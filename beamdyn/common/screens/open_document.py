@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from beamdyn.common.edge.file_words import on_form
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
-from beamdyn.common.screens.form_entries import Entries, by_field, tables_of, toml_of
+from beamdyn.common.screens.form_entries import Entries, by_field, heading_of, tables_of, toml_of
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import Document, Screen
 
@@ -249,17 +251,22 @@ class OpenDocument:
             takes time, such as the model error.
         """
         entries, inputs = self.needed(screen), self.inputs
-        try:
-            tables = tables_of(entries, inputs, screen.needs)
-            if for_drawing:
-                answer = screen.solve(screen.coarser(tables))
-                headline = (screen.quick_headline or screen.headline)(answer)
-                return ShownAnswer(answer, (), (), entries, [*headline])
-            answer = screen.solve(tables)
-            shown, notes = [*screen.tables(answer)], [*screen.notes(answer)]
-            return ShownAnswer(answer, shown, notes, entries, [*screen.headline(answer)])
-        except (ValueError, ArithmeticError, NoAnswer) as error:
-            return by_field(error, inputs, entries)
+        with on_form(partial(heading_of, headings=self.document.headings)):
+            try:
+                return self._answer(screen, for_drawing)
+            except (ValueError, ArithmeticError, NoAnswer) as error:
+                return by_field(error, inputs, entries)
+
+    def _answer(self, screen: Screen, for_drawing: bool) -> ShownAnswer:
+        entries = self.needed(screen)
+        tables = tables_of(entries, self.inputs, screen.needs)
+        if for_drawing:
+            answer = screen.solve(screen.coarser(tables))
+            headline = (screen.quick_headline or screen.headline)(answer)
+            return ShownAnswer(answer, (), (), entries, [*headline])
+        answer = screen.solve(tables)
+        shown, notes = [*screen.tables(answer)], [*screen.notes(answer)]
+        return ShownAnswer(answer, shown, notes, entries, [*screen.headline(answer)])
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
         """Keep an answer; or keep the last one and say in `mistakes` why there is no other."""

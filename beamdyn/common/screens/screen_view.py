@@ -22,7 +22,7 @@ from beamdyn.common.screens.computations import LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
 from beamdyn.common.screens.form import Form
-from beamdyn.common.screens.form_entries import Entries, as_on_form, options_of
+from beamdyn.common.screens.form_entries import Entries, options_of
 from beamdyn.common.screens.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
 from beamdyn.common.screens.list_editor import ListEditor
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
@@ -292,11 +292,8 @@ class ScreenView:
         self._said.clear()
         with self._said:
             for said, kind in dict.fromkeys(sentences):
-                words = f"Warning: {self._as_on_form(said)}" if kind == "warning" else said
+                words = f"Warning: {said}" if kind == "warning" else said
                 ui.label(words).classes(kind)
-
-    def _as_on_form(self, said: str) -> str:
-        return as_on_form(said, self.work.inputs, self.work.document.headings)
 
     # What is shown ------------------------------------------------------------------------------------
 
@@ -321,7 +318,7 @@ class ScreenView:
         self._draw()
         toggle(self._tables, "waits", held)
         if not held:  # while a point is moved, its drawing alone follows
-            self._tables.set_content(self._as_on_form(html(answered.tables)))
+            self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
             for more in self._more:
                 more.show(answered.answer)

@@ -15,6 +15,7 @@ import numpy as np
 
 from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.common.words import Setting, Words
 from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model, bends
@@ -40,7 +41,8 @@ _REFUSED = {
 }
 EXCLUDED = _TWO_PLANES, _HINGED, *_REFUSED.values()
 _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
-_BUCKLED = "the straight beam is unstable: Physics(large_deflection=True, branch='bent') bends it"
+_BENT = Setting("physics", large_deflection=True, branch="bent")
+_BUCKLED = Words("the straight beam is unstable: ", _BENT, " bends it")
 _NOT_FOUND = "the equilibrium was not found"
 _LOST = "it turns a mode into others"
 _UNSTABLE = "it is judged on the straight beam, which is unstable"

@@ -12,7 +12,8 @@ import numpy as np
 
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import plain
-from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, Words, joined
+from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, joined
+from beamdyn.common.words import Words
 from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
@@ -194,9 +195,9 @@ class LeftOutEffects:
             size = f"{'at least ' if partial else ''}{say_size(at_least)}, exceeds {say_size(limit)}"
             largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
             change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
-            said = f"{largest}, left out, changes the answer by {change}{how and f'; {how}'}"
-            said = *begin, f", {size}: {said}"
-            yield Statement(*said, kind=MODEL_ERROR, quantity="model error", value=at_least, limit=limit)
+            said = f", {size}: {largest}, left out, changes the answer by {change}"
+            data = {"quantity": "model error", "value": at_least, "limit": limit}
+            yield Statement(*begin, said, *(("; ", how) if how else ()), kind=MODEL_ERROR, **data)
             return
         unknown: dict[tuple[str, str], list[str]] = {}
         for name, why in self.not_known.items():

@@ -11,8 +11,10 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, InvalidValue, one_of, real, real_array, refuse, set_fields
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.words import Words
 from beamdyn.scene.motion.base import Motion, MotionSample, check_times
 from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
+from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 
 if TYPE_CHECKING:  # scipy.interpolate is slow to import
     from scipy.interpolate import CubicSpline
@@ -135,7 +137,8 @@ class SampledTranslation(Motion):
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
         """Raise a ValueError: a record has no steady state."""
-        raise ValueError("a SampledTranslation has no steady state; simulate it, or use RollingWheel")
+        said = "a SampledTranslation has no steady state; simulate it, or use "
+        raise ValueError(Words(said, ROLLING_WHEEL))
 
 
 def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.words import Named, Words
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -248,7 +249,8 @@ def _linear(model: Model) -> Model:
     """The model, unless its deflections may be large."""
     if model.scene.physics.large_deflection:
         bound = "sensitivities are those of the linear equations"
-        raise InvalidValue("physics.large_deflection", True, bound, "leave it out, or use bd.study")
+        remedy = Words("leave it out, or use ", Named("bd.study", "beamdyn study"))
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
     return model
 
 

@@ -1,0 +1,88 @@
+"""Refusals of the core in the words of the command that was typed."""
+
+from __future__ import annotations
+
+from dataclasses import is_dataclass, replace
+from itertools import chain, pairwise
+
+from cyclopts import CycloptsError
+from numpy.linalg import LinAlgError
+
+from beamdyn.common.edge.file_words import say, word
+from beamdyn.common.edge.option_words import TYPED
+from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.wording import in_unit_of
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
+
+# What commands call arguments of the core, beyond options of the same name.
+_ELSEWHERE = {
+    "combine": "--together",
+    "psd.values": "--psd, values",
+    "psd.frequencies": "--psd, frequencies",
+    "scene.motion": "[motion]",
+    "damping_ratio": "[model] damping_ratio",
+    "road.lowest": "lowest spatial frequency of a road",
+    "road.highest": "--highest",
+    "operating[0]": "--operating",
+    "operating[1]": "--operating",
+    "position": "position after @",
+}
+_PHYSICS = "physics."
+
+
+def is_no_answer(error: Exception) -> bool:
+    """Whether the model has no answer to what was asked, as where a linear system is singular."""
+    return isinstance(error, ArithmeticError | NoModelAnswer | LinAlgError)
+
+
+def as_typed(error: Exception) -> str:
+    """The message of a refusal with the options and keys that were typed, its number in their unit.
+
+    "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." where the command has that option.
+    """
+    if isinstance(error, LinAlgError):
+        return f"{error}; check the size of each value"
+    if not isinstance(error, InvalidValue):
+        return reason_of(error) if isinstance(error, ArithmeticError) else say(error)
+    option = f"--{error.field.replace('_', '-')}"
+    text, name = _text_of(option), _name(error.field)
+    named = replace(error, field=name, other=_name(error.other))
+    if error.field == "combine" or (error.field == "scene.motion" and error.value):
+        return f"{name}: {named.advice(word)}"  # what was typed has no value of its own
+    if error.field == "scene.motion":
+        return f"{name}: missing: {named.advice(word)}"
+    if isinstance(error.value, float):
+        return say(in_unit_of(named, text) if text and error.unit else named)
+    if not name.startswith("-") or (not isinstance(error.value, str) and not is_dataclass(error.value)):
+        return say(named)
+    given = text if is_dataclass(error.value) else error.value
+    return say(InvalidInput(**vars(named) | {"value": given}))
+
+
+def _name(field: str) -> str:
+    """What the command that is run calls an argument of the core."""
+    option = f"--{field.replace('_', '-')}"
+    if field.startswith(_PHYSICS):
+        return f"[physics] {field.removeprefix(_PHYSICS)}"
+    return _ELSEWHERE.get(field) or (option if option in _options() else field)
+
+
+def _text_of(option: str) -> str:
+    """The text that was typed for an option; empty if there is none."""
+    typed = TYPED.get()
+    arguments = [] if typed is None else [str(each) for each in typed[1]]
+    after = (text for name, text in pairwise(arguments) if name == option)
+    joined = (each.partition("=")[2] for each in arguments if each.startswith(f"{option}="))
+    return next(chain(after, joined), "")
+
+
+def _options() -> set[str]:
+    """The options of the command that is run; none outside one."""
+    if (typed := TYPED.get()) is None:
+        return set()
+    app, arguments = typed
+    try:
+        _, apps, _ = app.parse_commands(arguments)
+        return {name for each in apps[-1].assemble_argument_collection() for name in each.names}
+    except (CycloptsError, ValueError):
+        return set()

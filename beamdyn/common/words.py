@@ -1,0 +1,129 @@
+"""Texts made of parts that each medium words in its own way: Python, files and commands, forms."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from typing import Protocol, Self
+
+    class Unit(Protocol):
+        """A unit in which speeds are shown; see `beamdyn.common.results.display_units.ShownUnit`."""
+
+        @property
+        def name(self) -> str: ...  # noqa: D102
+        def of(self, values: Any) -> Any: ...  # noqa: D102
+        def say(self, value: float, digits: int = 6) -> str: ...  # noqa: D102
+
+    class Units(Protocol):
+        """Units in which a medium shows quantities: `beamdyn.common.results.display_units.DisplayUnits`."""
+
+        def speed_unit(self) -> Unit: ...  # noqa: D102
+
+
+class Words(str):
+    """A text made of parts, some of which each medium words in its own way.
+
+    Parameters
+    ----------
+    *parts : str
+        The parts, one after the other; those that are `Words` keep what they know.
+    """
+
+    parts: tuple[str, ...]
+
+    def __new__(cls, *parts: str) -> Self:  # noqa: D102
+        made = super().__new__(cls, "".join(parts))
+        made.parts = parts
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Arguments by position and by name that make an equal object, for pickles and files."""
+        return self.parts, {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given, named = self.arguments()
+        return partial(type(self), *given, **named), ()
+
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The text with each part as a medium words it."""
+        return "".join(worded(part, word) for part in self.parts)
+
+    def in_units(self, units: Units) -> str:
+        """The text with its speeds in a display unit."""
+        return self.worded(lambda part: part.in_units(units))
+
+
+class Part(Words):
+    """A part that a medium words in its own way."""
+
+    def worded(self, word: Callable[[Words], str]) -> str:
+        """The part as a medium words it."""
+        return word(self)
+
+
+class Named(Part):
+    """What Python calls one thing, and files and commands another: "a RollingWheel".
+
+    Parameters
+    ----------
+    in_python, elsewhere : str
+        The words for it.
+    """
+
+    elsewhere: str
+
+    def __new__(cls, in_python: str, elsewhere: str) -> Self:  # noqa: D102
+        made = super().__new__(cls, in_python)
+        made.elsewhere = elsewhere
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """Both words."""
+        return (str(self), self.elsewhere), {}
+
+    def in_units(self, units: Units) -> str:
+        """The words of Python, which have no units."""
+        return str(self)
+
+
+class Setting(Named):
+    """Keys of a table of a scene's file, and their values: "[physics] shear = true", `Physics(shear=True)`.
+
+    Parameters
+    ----------
+    table : str
+        Name of the table.
+    **keys : bool, int or str
+        Values by their keys.
+    """
+
+    table: str
+    keys: dict[str, Any]
+
+    def __new__(cls, table: str, **keys: Any) -> Self:  # noqa: D102
+        python = ", ".join(f"{key}={value!r}" for key, value in keys.items())
+        made = super().__new__(cls, f"{table.capitalize()}({python})", f"[{table}] {_as_toml(keys)}")
+        made.table, made.keys = table, keys
+        return made
+
+    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """The table, and the keys by name."""
+        return (self.table,), self.keys
+
+    def on_form(self, heading: str) -> str:
+        """The setting as a form calls it, under the heading of its table."""
+        return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
+
+
+def _as_toml(keys: Mapping[str, Any]) -> str:
+    """Keys and values as a file has them."""
+    return ", ".join(f"{key} = {json.dumps(value)}" for key, value in keys.items())
+
+
+def worded(text: str, word: Callable[[Words], str]) -> str:
+    """A text with each part that it knows as a medium words it."""
+    return text.worded(word) if isinstance(text, Words) else text

@@ -1,0 +1,14 @@
+"""What refusals call things of a scene that files and commands call differently than Python."""
+
+from __future__ import annotations
+
+from beamdyn.common.words import Named, Words
+
+FROM_STIFFNESS = Named("Beam.from_stiffness", "mass_per_length and bending_stiffness in [beam]")
+RECTANGULAR = Named("Beam.rectangular", "width and thickness in [beam]")
+ROLLING_WHEEL = Named("a RollingWheel", 'a table [motion] with kind = "rolling"')
+
+GIVE_IT = Words("give it to ", FROM_STIFFNESS)
+GIVE_OR_COMPUTE = Words(GIVE_IT, "; ", RECTANGULAR, " computes it")
+GIVE_OR_RATIO = Words(GIVE_IT, ", or poissons_ratio to ", RECTANGULAR)
+WITH_WHEEL = Words(ROLLING_WHEEL, " with a road, or gravity, excites the beam")
