@@ -5,6 +5,7 @@ The public face; names load their modules when first used, so that importing the
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -26,106 +27,7 @@ SHOWN_BY.update(
     for room in rooms
 )
 
-# The public names by their module.
-_NAMES = {
-    "studies.campbell.crossings": ("LineCrossing", "Margin"),
-    "studies.campbell.diagram": ("Campbell", "campbell"),
-    "common.results.announced": ("OutsideLinearTheory",),
-    "common.results.result": ("load",),
-    "scene.rotor": ("RotorDrawing", "draw"),
-    "common.results.display_units": ("DisplayUnits",),
-    "common.edge.config": ("ConfigError",),
-    "files.scenes": ("load_scene",),
-    "files.decks.audit": ("DeckAudit", "ModePolynomial", "PropertyStep", "ShapeCheck"),
-    "files.decks.blade": ("IgnoredProperty",),
-    "files.decks.deck": ("Deck", "read_deck"),
-    "equations.discretization": ("Discretization",),
-    "equations.fem": ("Fem",),
-    "equations.ritz": ("Ritz",),
-    "equations.effects": ("OmittedEffect",),
-    "equations.terms": ("Terms", "terms"),
-    "scene.beam": ("Beam",),
-    "scene.points": ("PointMass", "PointSpring", "TipMass"),
-    "scene.damping": ("Damping",),
-    "loads.cycles": ("LoadCycles", "count_cycles"),
-    "loads.load_statistics": ("RandomStatistics",),
-    "loads.random_loads": ("RandomLoads", "random_loads"),
-    "loads.span_loads": ("LargestLoad", "SpanLoads"),
-    "loads.static_loads": ("StaticLoads", "static_loads"),
-    "loads.steady_loads": ("SteadyLoads", "steady_loads"),
-    "loads.transient_loads": ("TransientLoads", "transient_loads"),
-    "scene.motion": (
-        "Line",
-        "Motion",
-        "MotionSample",
-        "RoadWave",
-        "RollingWheel",
-        "Rotation",
-        "RotationFunction",
-        "SampledRotation",
-        "SampledTranslation",
-        "SpinUp",
-        "SteadyRotation",
-        "UserMotion",
-    ),
-    "linear.inputs_outputs": (
-        "AccelerationAt",
-        "BaseMotion",
-        "DeflectionAt",
-        "MomentAtRoot",
-        "PointForce",
-        "StrainAtRoot",
-    ),
-    "linear.frequency_response": ("FrequencyResponse", "frequency_response"),
-    "linear.matrices": ("Matrices", "matrices", "state_space"),
-    "linear.mean_square": ("ParametricTerm",),
-    "linear.random_response": ("RandomResponse", "random_response"),
-    "linear.spectra": ("PowerSpectrum", "RoadRoughness"),
-    "modes.modal.equilibrium": ("NoEquilibrium",),
-    "scene.mount": ("Mount",),
-    "scene.physics": ("JudgedEffect", "Physics", "PhysicsChoice"),
-    "scene.profile": ("Polynomial", "Profile", "Table"),
-    "scene.scene": ("Scene",),
-    "modes.backbone": ("Backbone", "backbone"),
-    "modes.bounds": ("FrequencyBounds", "frequency_bounds"),
-    "modes.critical": ("CriticalPoint", "critical_point", "critical_speed"),
-    "modes.equilibria": (
-        "Equilibrium",
-        "EquilibriumBranch",
-        "EquilibriumBranches",
-        "equilibrium",
-        "equilibrium_branches",
-    ),
-    "studies.sensitivities.result": ("SceneNumber", "Sensitivities"),
-    "studies.sensitivities.sensitivities": (
-        "critical_speed_sensitivities",
-        "crossing_sensitivities",
-        "frequency_sensitivities",
-    ),
-    "modes.locus": ("Locus", "frequency_locus"),
-    "modes.modes": ("Modes", "natural_modes"),
-    "modes.setting_angles": ("SettingAngleLimits", "setting_angle_limits"),
-    "steady.resonance": ("Crossing", "Crossings", "resonance_speeds"),
-    "steady.response": ("SteadyResponse", "steady_response"),
-    "common.inputs.designs": ("VariedInput",),
-    "common.parallel.tasks": ("StudyInterrupted",),
-    "common.spreading.first_order": ("FirstOrderRange",),
-    "common.spreading.result": ("Spread",),
-    "common.spreading.statistics": ("Scatter", "SobolIndices"),
-    "common.spreading.tolerances": ("Normal", "SpreadInput", "Uniform"),
-    "common.spreading.worst_case": ("WorstCases",),
-    "studies.spread": ("spread",),
-    "studies.result": ("Study",),
-    "studies.study": ("study",),
-    "studies.tradeoffs.tradeoff": ("Tradeoff", "tradeoff"),
-    "transient.scipy_integrators": ("GaussCollocation",),
-    "transient.simulate": ("simulate",),
-    "transient.sweep": ("Sweep", "SweepInterrupted", "sweep"),
-    "transient.transient": ("Transient",),
-}
-_MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
-__all__ = sorted(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll]
-
+# The public names; `__getattr__` loads each from its module here.
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
@@ -226,12 +128,26 @@ if TYPE_CHECKING:
     from beamdyn.transient.transient import Transient
 
 
+@cache
+def _modules() -> dict[str, str]:
+    """Modules of the public names: those that stand above for type checkers, read from this file."""
+    import ast  # here, as it takes a fifth of the time of importing this package
+
+    with open(__file__, encoding="utf-8") as file:
+        tree = ast.parse(file.read())
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    imports = (node for node in block.body if isinstance(node, ast.ImportFrom))
+    return {name.name: str(each.module) for each in imports for name in each.names}
+
+
 def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
-    if name not in _MODULE_OF:
+    if name == "__all__":
+        return sorted(_modules())
+    if name not in _modules():
         raise AttributeError(f"module 'beamdyn' has no attribute {name!r}")
-    return getattr(import_module(f"beamdyn.{_MODULE_OF[name]}"), name)
+    return getattr(import_module(_modules()[name]), name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *_modules()})
