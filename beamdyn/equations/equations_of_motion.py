@@ -173,6 +173,14 @@ class Equations:
             )
         return values
 
+    def curvature_across(self, xi: np.ndarray) -> np.ndarray:
+        """Second derivative by eta = 2 y/b per coordinate, as a mean over the width, at xi (k,): (n, k)."""
+        values = np.zeros((self.size, len(xi)))
+        for name, functions in self.sections:
+            of_field = self.shapes[name]
+            values[self.blocks[of_field.block]] += of_field.matrix.T @ functions.curvature_across(xi)
+        return values
+
     @property
     def corner(self) -> np.ndarray:
         """Deflection per coordinate at the corner of the tip in the direction across, shape (n,)."""

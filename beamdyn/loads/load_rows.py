@@ -38,6 +38,7 @@ from beamdyn.scene.sections import weight_degree
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
 
 _FIELD_OF_DIRECTION = "bending", "second bending"
+_WITHOUT_RESULTANT = "torsion", "camber"  # fields that move no section as a whole along or across the beam
 _DAMPING = {field.damping_name for field in FIELDS}
 
 
@@ -145,6 +146,7 @@ def span_rows(
         With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the
         shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
         they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
+        Where sections camber, the last is their mean curvature across [1/m].
     """
     _refuse_uncovered(scene)
     beam = scene.modelled_beam
@@ -153,7 +155,8 @@ def span_rows(
     without = "" if scene.physics.stretch else "axial_stiffness"
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
     stretched = Stretch().complete(scene.undamped)  # its equation has the axial force
-    assembled = {f.name: f.assemble(stretched, spaces) for f in FIELDS if f.is_modelled(stretched)}
+    modelled = (f for f in FIELDS if f.is_modelled(stretched) and f.name not in _WITHOUT_RESULTANT)
+    assembled = {f.name: f.assemble(stretched, spaces) for f in modelled}
     directions = _FIELD_OF_DIRECTION[: equations.planes]
     moves = [(field, False) for field in (Stretch.name, *directions)]  # along the beam, and across it
     parts = []
@@ -162,8 +165,17 @@ def span_rows(
         assert isinstance(space, CutSpace)
         first = space.trials if turns else space.size - cuts
         parts.append(_rows_of(assembled, equations, field, slice(first, first + cuts)))
+    if scene.physics.camber:
+        parts.append(_camber(scene, equations, stations))
     rows = LoadRows(*map(_stack, zip(*(part.parts for part in parts), strict=True)))
     return _across_deflected_axis(rows, equations, stations, beam.length)
+
+
+def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadRows:
+    """Mean curvature across [1/m] at S stations: rows without K."""
+    assert scene.beam.section is not None
+    width = scene.beam.section.width(stations.beside)
+    return LoadRows({}, {"unity": (equations.curvature_across(stations.beside) * (2 / width) ** 2).T}, {}, {})
 
 
 def _rows_of(
@@ -213,9 +225,9 @@ def _across_deflected_axis(
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
     bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
-    for name in ("camber", "torsion"):
-        if getattr(scene.physics, name):
-            raise InvalidValue(f"physics.{name}", True, bound, remedy)
+    if scene.physics.camber and scene.beam.section is not None and scene.beam.section.width.degree:
+        of_width = "loads along the span are known with it where the width is constant"
+        raise InvalidValue("physics.camber", True, of_width, remedy)
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):

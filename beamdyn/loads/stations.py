@@ -17,6 +17,7 @@ from beamdyn.common.inputs.checks import InvalidValue, as_floats, positive, real
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
+from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
@@ -105,7 +106,8 @@ class StationOutputs:
     Parameters
     ----------
     matrix : ndarray, shape (S, K, 1 + 2 d)
-        K components by the loads: forces, moments, curvatures, strains and stresses, one after the other.
+        K components by the loads: forces, moments, curvatures, strains and stresses, one after the other;
+        where sections camber, also by their mean curvature across, (S, K, 2 + 2 d).
     sizes : tuple of int
         Number of components of each quantity.
     """
@@ -179,6 +181,9 @@ def sections_at(
         signs = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]] if corners else [[-1, 0], [1, 0]])
         at_stations = signs * np.nan_to_num(half)[:, None]
     curvature = _curvature(beam, xi, planes)
+    if scene.physics.camber:
+        assert rectangle is not None, "a scene with camber has a section"
+        curvature = _with_camber(curvature, rectangle, beam.length, xi)
     modulus = np.nan if rectangle is None else rectangle.youngs_modulus
     if youngs_modulus is not None:
         modulus = positive("youngs_modulus", youngs_modulus, "Pa")
@@ -188,7 +193,13 @@ def sections_at(
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
     strain = axial - np.einsum("spi,sik->spk", at_stations[..., :planes], curvature)
     unchanged = np.broadcast_to(np.eye(loads), (len(xi), loads, loads))
-    parts = (unchanged[:, : 1 + planes], unchanged[:, 1 + planes :], curvature, strain, modulus * strain)
+    parts = (
+        unchanged[:, : 1 + planes],
+        unchanged[:, 1 + planes : 1 + 2 * planes],
+        curvature,
+        strain,
+        modulus * strain,
+    )
     outputs = StationOutputs(np.concatenate(parts, axis=1), tuple(part.shape[1] for part in parts))
     lacks_axial = beam.axial_stiffness is None and at_stations.shape[1]
     return Sections(outputs, at_stations, (_WITHOUT_AXIAL,) if lacks_axial else ())
@@ -223,6 +234,19 @@ def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
         for i in range(planes):
             matrix[:, k, 1 + planes + i] = along[i] / EI(xi)
     return matrix
+
+
+def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: np.ndarray) -> np.ndarray:
+    """The mean curvature along the beam by the loads and the mean curvature across (S, d, 2 + 2 d).
+
+    The moment is E I/(1 - nu^2) times the sum of the first and nu times the second, nu being the ratio of
+    the section.
+    """
+    stiffening = section.camber_stiffening, section.stiffening_across(length)
+    held = np.stack([each(xi) for each, _ in zip(stiffening, curvature[0], strict=False)], axis=1)
+    by_camber = np.zeros((*curvature.shape[:2], 1))
+    by_camber[:, 0, 0] = -section.camber_ratio(xi)
+    return np.concatenate([curvature / held[:, :, None], by_camber], axis=2)
 
 
 # Modal truncation error ---------------------------------------------------------------------------

@@ -243,9 +243,44 @@ def test_strain_at_the_root_is_that_of_a_section_that_the_clamp_keeps_flat(thin)
     assert curvature == pytest.approx(by_forces, rel=0.03)  # at the corners it converges slowly
 
 
-def test_loads_along_the_span_refuse_a_plate():
-    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), bd.Mount(0.2), physics=PLATE)
-    with pytest.raises(ValueError, match=r"physics\.camber"):
+LEANING = bd.Mount(0.215, OUT, math.pi / 2, precone=0.3)  # rotation presses on the strip
+
+
+@pytest.mark.parametrize("planes", [1, 2])
+def test_loads_along_the_span_without_poissons_ratio_are_those_of_the_beam(planes):
+    beam = strip((0.05, 0.01, 0.0002), 0.0)
+    asked = {"at": [0.0, 0.015, 0.035], "discretization": bd.Ritz(10)}
+    plain, plate = (
+        bd.static_loads(bd.Scene(beam, LEANING, physics=physics), [20.0], **asked)
+        for physics in (bd.Physics(planes=planes), replace(PLATE, planes=planes))
+    )
+    for name in ("force", "moment", "curvature", "strain"):
+        expected = getattr(plain, name)
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(getattr(plate, name), expected, rtol=0, atol=1e-9 * scale)  # rounding
+
+
+def test_loads_along_the_span_of_a_strip():
+    """The moment is that of the forces, the curvature that of the mean over the width."""
+    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), LEANING, physics=PLATE)
+    stations = np.array([0.0, 0.02, 0.1, 0.3, 0.6])
+    found = bd.static_loads(scene, [20.0], at=0.05 * stations, discretization=bd.Ritz(16))
+    equations = assemble_equations(scene, bd.Ritz(16))
+    pencil = equations.steady()
+    q = np.linalg.solve(pencil.K0 + 400.0 * pencil.K2, 400.0 * pencil.f2)
+    curvature = equations.deflection(stations, 2).T @ q / 0.05**2
+    moment, EI = found.moment[0, :, 0], 200e9 * 0.01 * 0.0002**3 / 12
+    assert found.curvature[0, 1:, 0] == pytest.approx(curvature[1:], rel=2e-3)  # of the displacements
+    assert found.curvature[0, 0, 0] == pytest.approx(moment[0] / EI * (1 - 0.09), rel=6e-3)  # thick by 2 %
+    assert found.curvature[0, 4, 0] == pytest.approx(moment[4] / EI, rel=1e-2)  # (b/(L - x))^2/30 by its slope
+    assert found.strain[0, :, 1] == pytest.approx(-0.0001 * found.curvature[0, :, 0], rel=1e-2)  # pull
+    plain = bd.static_loads(replace(scene, physics=bd.Physics()), [20.0], at=0.05 * stations)
+    assert moment == pytest.approx(plain.moment[0, :, 0], rel=2e-2)  # stiffer by 1.3 %, so that it bends less
+
+
+def test_loads_along_the_span_refuse_a_tapered_width():
+    scene = bd.Scene(strip((0.05, Polynomial([0.01, -0.002]), 0.0002), 0.3), bd.Mount(0.2), physics=PLATE)
+    with pytest.raises(ValueError, match=r"physics\.camber.*where the width is constant"):
         bd.static_loads(scene, [10.0])
 
 

@@ -98,6 +98,10 @@ class SectionFunctions(Protocol):
         """Evaluate the functions at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
         ...
 
+    def curvature_across(self, xi: np.ndarray) -> np.ndarray:
+        """Evaluate the second derivatives by 2 y/b at x/L (k,), as means over the width: shape (n, k)."""
+        ...
+
 
 class Coordinates(Protocol):
     """What the equations of motion ask of the functions of a field; a `Space` has more."""

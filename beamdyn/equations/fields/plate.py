@@ -275,6 +275,15 @@ class StackedSpace:
         values = self.along.evaluate(xi)[:, :, None] * across.T[:, None, None, :]
         return values.reshape(self.size, len(xi), len(eta))
 
+    def curvature_across(self, xi: np.ndarray) -> np.ndarray:
+        """Evaluate the second derivatives by eta at x/L (k,), as means over the width: shape (n, k).
+
+        Those of even Legendre polynomials have the mean k(k + 1)/2, the slope at an edge.
+        """
+        numbers = np.array(self.numbers)
+        means = np.where(numbers % 2, 0, numbers * (numbers + 1) / 2) * np.sqrt(2 * numbers + 1)
+        return np.kron(means[:, None], self.along.evaluate(xi))
+
     @property
     def coarse(self) -> np.ndarray | None:
         """Indices of the coordinates of the coarser discretization; None where it has others."""

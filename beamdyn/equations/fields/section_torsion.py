@@ -53,6 +53,10 @@ class TurnedSections:
         """Twist at the tip (n,), as which a corner deflects."""
         return self.along.end(0)
 
+    def curvature_across(self, xi: np.ndarray) -> np.ndarray:
+        """None: the sections keep their shape."""
+        return np.zeros((self.along.size, len(xi)))
+
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Refuse a surface: a ValueError, as the width is not known."""
         raise ValueError("the width of the sections is not known, but that of beams by Beam.rectangular")
