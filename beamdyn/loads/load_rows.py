@@ -146,7 +146,7 @@ def span_rows(
         With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the
         shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
         they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
-        Where sections camber, the last is their mean curvature across [1/m].
+        Where sections camber, the last is the part of the moment that their curvature across has [N m].
     """
     _refuse_uncovered(scene)
     beam = scene.modelled_beam
@@ -172,10 +172,12 @@ def span_rows(
 
 
 def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadRows:
-    """Mean curvature across [1/m] at S stations: rows without K."""
-    assert scene.beam.section is not None
-    width = scene.beam.section.width(stations.beside)
-    return LoadRows({}, {"unity": (equations.curvature_across(stations.beside) * (2 / width) ** 2).T}, {}, {})
+    """Moment of camber [N m] at S stations, nu E I/(1 - nu^2) times the curvature across: rows without K."""
+    section, at = scene.beam.section, stations.beside
+    assert section is not None
+    held = scene.beam.bending_stiffness * section.camber_stiffening * section.camber_ratio
+    across = equations.curvature_across(at) * (2 / section.width(at)) ** 2
+    return LoadRows({}, {"unity": (held(at) * across).T}, {}, {})
 
 
 def _rows_of(

@@ -156,7 +156,7 @@ class LinearLoads:
         (at, direction), planes = drive.force, self.model.equations.planes
         xi, inboard = self.stations.xi, self.stations.inboard
         outboard = (xi < at) | (inboard & (xi == at))
-        loads = np.zeros((len(xi), 1 + 2 * planes))  # loads by a unit force on the outboard parts alone
+        loads = np.zeros((len(xi), self.outputs.matrix.shape[2]))  # by a unit force on the outboard parts
         loads[:, 1 + direction] = outboard
         loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
         return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)

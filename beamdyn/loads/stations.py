@@ -107,7 +107,7 @@ class StationOutputs:
     ----------
     matrix : ndarray, shape (S, K, 1 + 2 d)
         K components by the loads: forces, moments, curvatures, strains and stresses, one after the other;
-        where sections camber, also by their mean curvature across, (S, K, 2 + 2 d).
+        where sections camber, also by the moment of camber, (S, K, 2 + 2 d).
     sizes : tuple of int
         Number of components of each quantity.
     """
@@ -237,16 +237,16 @@ def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
 
 
 def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: np.ndarray) -> np.ndarray:
-    """The mean curvature along the beam by the loads and the mean curvature across (S, d, 2 + 2 d).
+    """The mean curvature along the beam by the loads and by the moment of camber (S, d, 2 + 2 d).
 
-    The moment is E I/(1 - nu^2) times the sum of the first and nu times the second, nu being the ratio of
-    the section.
+    The moment is E I/(1 - nu^2) times the curvature, and the moment of camber.
     """
     stiffening = section.camber_stiffening, section.stiffening_across(length)
     held = np.stack([each(xi) for each, _ in zip(stiffening, curvature[0], strict=False)], axis=1)
+    curvature = curvature / held[:, :, None]
     by_camber = np.zeros((*curvature.shape[:2], 1))
-    by_camber[:, 0, 0] = -section.camber_ratio(xi)
-    return np.concatenate([curvature / held[:, :, None], by_camber], axis=2)
+    by_camber[:, 0, 0] = -curvature[:, 0, 1 + curvature.shape[1]]
+    return np.concatenate([curvature, by_camber], axis=2)
 
 
 # Modal truncation error ---------------------------------------------------------------------------
@@ -296,12 +296,14 @@ def mode_error(
     modes = np.inf if basis.modes is None else basis.modes  # number of modes of each field
     near = np.abs(stations.xi[:, None] - with_neighbours(stations).xi) <= 1 / (modes + 0.5)
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
-    planes = (distance.shape[-1] - 1) // 2
+    loads = distance.shape[-1]
+    planes = (loads - 1) // 2
+    of_moments = loads - 1 - planes  # with that of camber, where there is one
     factors = MODES_OF_MOMENTS.factor, MODES_OF_FORCES.factor, MODES_OF_MOMENTS.factor
-    margins = np.repeat(factors, [1, planes, planes])
+    margins = np.repeat(factors, [1, planes, of_moments])
     force = along_span[..., : 1 + planes].max(axis=-1, keepdims=True)  # the largest, also on the whole length
     moment = np.maximum(along_span[..., 1 + planes :].max(axis=-1, keepdims=True), length * force)
-    both = [np.repeat(force, 1 + planes, axis=-1), np.repeat(moment, planes, axis=-1)]
+    both = [np.repeat(force, 1 + planes, axis=-1), np.repeat(moment, of_moments, axis=-1)]
     rounding = through(outputs, (_ROUNDING_OF_LOADS * np.concatenate(both, axis=-1))[..., None, :])
     too_large = through(outputs, nearby) > _LIMIT * through(outputs, along_span[..., None, :]) + rounding
     return np.where(too_large, np.inf, through(outputs, margins * nearby) + rounding)
