@@ -12,12 +12,13 @@ from brakes.drum.assembly import (
     DrumBrake,
     brake_torque,
     duplex,
+    shoe_torque,
     simplex,
     stop_energy,
     temperature_rise,
     wheel_cylinder_force,
 )
-from brakes.drum.shoe import Shoe, ShoeResult, shoe_torque
+from brakes.drum.shoe import Shoe, ShoeResult
 
 __all__ = [
     "BrakeResult",

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, numbers, positive, together
 from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
 from beamdyn.common.results.one_line import error_at_most, spanned
-from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, solve_shoe, take_only
+from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, integrals, solve_shoe
 
 
 @dataclass(frozen=True)
@@ -189,13 +189,13 @@ def brake_torque(
     """
     kind("brake", brake, DrumBrake)
     reverse = flag("reverse", reverse)
-    name, value = take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
-    units = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
-    value = positive(name, value, units[name])
+    name, value = _take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
+    value = positive(name, value, {"force": "N", "peak_pressure": "Pa", "torque": "N m"}[name])
     mu = not_negative("friction", friction)
-    together(friction=mu, **{name: value})
+    shapes = {f"shoes[{k}]": integrals(shoe).n for k, shoe in enumerate(brake.shoes)}
+    together(friction=mu, **{name: value}, **shapes)
     sides = [*zip(brake.shoes, (leads is not reverse for leads in brake.leading), strict=True)]
-    at_unit_force = [solve_shoe(shoe, mu, leads, "force", 1.0) for shoe, leads in sides]
+    at_unit_force = [solve_shoe(shoe, mu, leads, 1.0) for shoe, leads in sides]
     if name == "torque":
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
         bound = "a shoe locks: no torque can be demanded of the brake"
@@ -204,7 +204,7 @@ def brake_torque(
         value = value / sum(shoe.torque for shoe in at_unit_force)
     elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
         value = value / _over(np.maximum, [shoe.peak_pressure for shoe in at_unit_force])
-    shoes = tuple(solve_shoe(shoe, mu, leads, "force", value) for shoe, leads in sides)
+    shoes = tuple(solve_shoe(shoe, mu, leads, value) for shoe, leads in sides)
     limit = _over(np.minimum, [shoe.locking_friction for shoe in shoes])
     return BrakeResult(
         brake=brake,
@@ -220,6 +220,72 @@ def brake_torque(
         margin=1 - mu / limit,
         locked=_over(np.logical_or, [shoe.locked for shoe in shoes]),
     )
+
+
+def shoe_torque(
+    shoe: Shoe,
+    *,
+    friction: Numbers,
+    force: Numbers | None = None,
+    peak_pressure: Numbers | None = None,
+    torque: Numbers | None = None,
+    leading: bool = True,
+) -> ShoeResult:
+    """Compute all forces on a shoe from its actuating force, its peak pressure or its torque.
+
+    Parameters
+    ----------
+    shoe : Shoe
+        The shoe.
+    friction : float or ndarray
+        Coefficient of friction mu.
+    force, peak_pressure, torque : float or ndarray, optional
+        Exactly one of: actuating force P [N], largest pressure on the lining [Pa], torque [N m].
+    leading : bool
+        Whether the drum's surface moves towards the pin on this shoe.
+
+    Returns
+    -------
+    ShoeResult
+        Complete result; arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of the three is given, a value is out of bounds, or a torque is demanded
+        with friction 0, or at or past self-locking.
+
+    Notes
+    -----
+    With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
+    sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
+    d = r K - b S - c C; torque = mu A p0 r K.
+
+    References
+    ----------
+    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2: pressure as the sine of the
+    angle from the pin. Vardanyan et al. (2019) count it from another line: `Shoe.pressure_zero`.
+
+    Examples
+    --------
+    >>> lining = np.radians((30, 110))
+    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
+    >>> round(float(drum.shoe_torque(shoe, force=1000.0, friction=0.35, leading=True).torque), 2)  # N m
+    176.73
+    """
+    kind("shoe", shoe, Shoe)
+    brake = DrumBrake((shoe,), (flag("leading", leading),))
+    found = brake_torque(brake, friction=friction, force=force, peak_pressure=peak_pressure, torque=torque)
+    return found.shoes[0]
+
+
+def _take_only(given: dict[str, Any]) -> tuple[str, Any]:
+    """Name and value of the one input that is given; a ValueError unless it is exactly one."""
+    present = {name: value for name, value in given.items() if value is not None}
+    if len(present) != 1:
+        got = " and ".join(present) or "none"
+        raise ValueError(f"give exactly one of {', '.join(given)}; got {got}")
+    return next(iter(present.items()))
 
 
 def _over(function: np.ufunc, values: Sequence[Numbers]) -> Numbers:

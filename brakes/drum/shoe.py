@@ -14,8 +14,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative, positive, together
-from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.one_line import error_at_most, spanned
 from beamdyn.common.results.result import Result
@@ -152,7 +152,7 @@ class _Integrals:
     d_error: Numbers
 
 
-def _integrals(shoe: Shoe) -> _Integrals:
+def integrals(shoe: Shoe) -> _Integrals:
     """Integrals over the lining of a shoe, and the bounds of their rounding."""
     a1, a2 = (np.asarray(end) - shoe.phase for end in shoe.lining)
     m, h = (a1 + a2) / 2, (a2 - a1) / 2
@@ -293,93 +293,21 @@ class ShoeResult(SlidesOrLocks):
         alpha = np.asarray(alpha, dtype=float)
         a1, a2 = self.shoe.lining
         on = (alpha >= a1) & (alpha <= a2)
-        p0 = self.peak_pressure / _integrals(self.shoe).peak
+        p0 = self.peak_pressure / integrals(self.shoe).peak
         return np.where(on, p0 * np.sin(alpha - self.shoe.phase), 0.0)
 
 
-def shoe_torque(
-    shoe: Shoe,
-    *,
-    friction: Numbers,
-    force: Numbers | None = None,
-    peak_pressure: Numbers | None = None,
-    torque: Numbers | None = None,
-    leading: bool = True,
-) -> ShoeResult:
-    """Compute all forces on a shoe from its actuating force, its peak pressure or its torque.
-
-    Parameters
-    ----------
-    shoe : Shoe
-        The shoe.
-    friction : float or ndarray
-        Coefficient of friction mu.
-    force, peak_pressure, torque : float or ndarray, optional
-        Exactly one of: actuating force P [N], largest pressure on the lining [Pa], torque [N m].
-    leading : bool
-        Whether the drum's surface moves towards the pin on this shoe.
-
-    Returns
-    -------
-    ShoeResult
-        Complete result; arrays broadcast over all inputs.
-
-    Raises
-    ------
-    ValueError
-        If not exactly one of the three is given, a value is out of bounds, or a torque is demanded
-        with friction 0, or at or past self-locking.
-
-    Notes
-    -----
-    With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
-    sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
-    d = r K - b S - c C; torque = mu A p0 r K.
-
-    References
-    ----------
-    Budynas and Nisbett, Shigley's Mechanical Engineering Design, section 16-2: pressure as the sine of the
-    angle from the pin. Vardanyan et al. (2019) count it from another line: `Shoe.pressure_zero`.
-
-    Examples
-    --------
-    >>> lining = np.radians((30, 110))
-    >>> shoe = drum.Shoe(0.138, 0.05, lining, pivot=(0.02, -0.11), force_arm=0.115)
-    >>> round(float(drum.shoe_torque(shoe, force=1000.0, friction=0.35, leading=True).torque), 2)  # N m
-    176.73
-    """
-    kind("shoe", shoe, Shoe)
-    leading = flag("leading", leading)
-    mu = not_negative("friction", friction)
-    given = {"force": force, "peak_pressure": peak_pressure, "torque": torque}
-    name, value = take_only(given)
-    value = positive(name, value, {"force": "N", "peak_pressure": "Pa", "torque": "N m"}[name])
-    together(friction=mu, **{name: value}, shoe=_integrals(shoe).n)
-    if name == "torque":
-        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
-    return solve_shoe(shoe, mu, leading, name, value)
-
-
-def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, name: str, value: Numbers) -> ShoeResult:
+def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeResult:
     """Compute the forces as `shoe_torque` does, from checked inputs; a force of nan gives forces of nan."""
-    i, s, r = _integrals(shoe), -1.0 if leading else 1.0, shoe.drum_radius
+    i, s, r = integrals(shoe), -1.0 if leading else 1.0, shoe.drum_radius
     arm, area = shoe.moment_arm, shoe.face_width * np.asarray(r)
-    mu, value, n, d = np.broadcast_arrays(mu, value, i.n, i.d)
+    mu, force, n, d = np.broadcast_arrays(mu, force, i.n, i.d)
     with np.errstate(divide="ignore"):
         limit = np.where(s * d < -i.d_error, n / np.abs(d), np.inf)
     bracket_error = i.n_error + mu * i.d_error + _EPS * (n + mu * np.abs(d))
     locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(_LEAST_MARGIN * n, bracket_error))
-    if name == "torque":
-        remedy = "give a force to see whether the shoe locks, or less friction"
-        refuse(locked, "friction", mu, "", "the shoe locks: no torque can be demanded of it", remedy)
     bracket = np.where(locked, np.nan, n + s * mu * d)
-    if name == "force":
-        load = value * arm / bracket  # A p0
-    elif name == "torque":
-        load = value / (mu * r * i.K)
-    else:
-        load = np.where(locked, np.nan, area * value / i.peak)
-    force = value if name == "force" else load * bracket / arm
+    load = force * arm / bracket  # A p0
     normal = _turn(load[..., None] * _vector(-i.S, i.C), shoe.phase)
     tangential = _turn((s * mu * load)[..., None] * _vector(i.C, i.S), shoe.phase)
     pin = -(normal + tangential)
@@ -423,12 +351,3 @@ def _turn(v: np.ndarray, angle: Numbers) -> np.ndarray:
     """Vectors (..., 2) turned anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return _vector(c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1])
-
-
-def take_only(given: dict[str, Any]) -> tuple[str, Any]:
-    """Name and value of the one input that is given; a ValueError unless it is exactly one."""
-    present = {name: value for name, value in given.items() if value is not None}
-    if len(present) != 1:
-        got = " and ".join(present) or "none"
-        raise ValueError(f"give exactly one of {', '.join(given)}; got {got}")
-    return next(iter(present.items()))

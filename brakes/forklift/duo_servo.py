@@ -19,12 +19,12 @@ from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
-from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
+from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, HasLevers, Levers
 from brakes.forklift.vehicle import ACUTE
 
 
 @dataclass(frozen=True)
-class DuoServo:
+class DuoServo(HasLevers):
     """The right side of a duo-servo brake at rest; any value may be an array, one entry per design.
 
     Parameters
@@ -134,26 +134,6 @@ class DuoServo:
         refuse(np.isnan(psi), "clearance", c, "m", bound, advice)
         return self._assemble_motion(c, turn, psi, tip)
 
-    def find_levers(self, clearance: Numbers | None = None) -> Levers:
-        """Find the lever arms at the end of the shoes' motion.
-
-        Parameters
-        ----------
-        clearance : float or ndarray
-            c_L [m].
-
-        Returns
-        -------
-        Levers
-            For `internal_forces`.
-
-        Raises
-        ------
-        ValueError
-            If the clearance is missing, or as for `move_shoes`.
-        """
-        return self.levers_and_error(clearance)[0]
-
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
         """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
         if clearance is None:
@@ -218,7 +198,7 @@ class DuoServo:
 
 
 @dataclass(frozen=True)
-class ShoeMotion(Result):
+class ShoeMotion(HasLevers, Result):
     """Motion of the shoes from rest to the end of stage 2; arrays have one entry per case.
 
     Attributes
@@ -300,11 +280,7 @@ class ShoeMotion(Result):
         height = brake.face_tilt + np.arctan2(self.right_tip[..., 1], self.right_tip[..., 0])
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
-    def find_levers(self, clearance: None = None) -> Levers:
-        """The lever arms at the end, for `internal_forces`: they belong to one clearance."""
-        return self.levers
-
-    def levers_and_error(self, clearance: None = None) -> tuple[Levers, Numbers]:
+    def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
         """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
         least = np.minimum(self.levers.a1, self.levers.a2)
         return self.levers, self.error * self.geometry.drum_radius / least

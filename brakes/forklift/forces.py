@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -29,19 +29,11 @@ from beamdyn.common.inputs.array_checks import Numbers, positive, together
 from beamdyn.common.inputs.checks import InvalidValue, refuse
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
-from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, Levers
+from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, HasLevers, Levers
 
 _STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
 _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
-
-
-class Geometry(Protocol):
-    """A brake with lever arms at a clearance: a `DuoServo`; `ShoeMotion` and `Levers` take no clearance."""
-
-    def levers_and_error(self, clearance: Any = None) -> tuple[Levers, Numbers]:
-        """Arms and directions at the end of the shoes' motion; bound of their error, over size or in rad."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -152,7 +144,7 @@ _SENTENCES = {
 
 
 def internal_forces(
-    geometry: Geometry,
+    geometry: HasLevers,
     *,
     piston_force: Numbers,
     torque: Numbers | None = None,
@@ -199,7 +191,7 @@ def internal_forces(
     """
     if torque is None and friction is None:
         raise ValueError("give torque, or friction, or both to compare them")
-    if not hasattr(geometry, "levers_and_error"):
+    if not isinstance(geometry, HasLevers):
         raise InvalidValue("geometry", geometry, "give a DuoServo or Levers")
     levers, lever_error = geometry.levers_and_error(clearance)
     P_T = positive("piston_force", piston_force, "N")

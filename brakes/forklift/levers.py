@@ -15,8 +15,37 @@ ROUNDING = np.finfo(float).eps
 LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 
 
+class HasLevers:
+    """Base of what has lever arms, some of it at one clearance alone: for `internal_forces`."""
+
+    def find_levers(self, clearance: Numbers | None = None) -> Levers:
+        """Find the lever arms at the end of the shoes' motion.
+
+        Parameters
+        ----------
+        clearance : float or ndarray, optional
+            c_L [m]; a `DuoServo` needs it.
+
+        Returns
+        -------
+        Levers
+            For `internal_forces`.
+
+        Raises
+        ------
+        ValueError
+            If the clearance is missing where it is needed, is given where the arms belong to one position, or
+            as for `DuoServo.move_shoes`.
+        """
+        return self.levers_and_error(clearance)[0]
+
+    def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
+        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class Levers:
+class Levers(HasLevers):
     """Lever arms about the drum's centre and directions of the forces, as in the paper's Fig. 6.
 
     Every value may be an array, one entry per case.
@@ -93,18 +122,8 @@ class Levers:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
 
-    def find_levers(self, clearance: None = None) -> Levers:
-        """These levers: they belong to one position of the brake.
-
-        Raises
-        ------
-        ValueError
-            If a clearance is given.
-        """
+    def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
+        """These levers, and the error of their arms and angles: none, as they are given."""
         if clearance is not None:
             raise ValueError("clearance: lever arms belong to one position; give it with a DuoServo geometry")
-        return self
-
-    def levers_and_error(self, clearance: None = None) -> tuple[Levers, float]:
-        """These levers, and the error of their arms and angles: none, as they are given."""
-        return self.find_levers(clearance), 0.0
+        return self, 0.0
