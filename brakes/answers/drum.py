@@ -15,40 +15,24 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
-from brakes.drum import BrakeResult
+from brakes.drum import BrakeResult, ShoeResult
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MM, _MPA = 1e-3, 1e6
-
-_WHOLE = (
-    take("torque", "torque of the brake", "N m"),
-    take("c_star", "brake factor C* = torque / (force radius)"),
-    take("c_star_slope", "dC*/dmu"),
-    take("force", "force on each shoe", "N"),
-    take("peak_pressure", "largest pressure on a lining", "MPa", _MPA),
-    take("locking_friction", "friction at self-locking"),
-    take("margin", "margin to self-locking, 1 - mu / locking mu"),
-)
+_WHOLE = take_fields(BrakeResult, "torque c_star c_star_slope force peak_pressure locking_friction margin")
 _SHOE = (
-    take("torque", "torque", "N m"),
-    take("c_star", "shoe factor C*"),
-    take("c_star_slope", "dC*/dmu"),
-    take("peak_pressure", "largest pressure", "MPa", _MPA),
+    *take_fields(ShoeResult, "torque c_star c_star_slope peak_pressure"),
     Output("normal", "resultant of the pressure N", lambda s: resultant(s.normal), "N"),
     Output("tangential", "resultant of the friction T", lambda s: resultant(s.tangential), "N"),
     Output("pin", "pin reaction R", lambda s: resultant(s.pin_reaction), "N"),
     Output("pin_x", "pin reaction, towards the shoe's side", lambda s: s.pin_reaction[..., 0], "N"),
     Output("pin_y", "pin reaction, upward", lambda s: s.pin_reaction[..., 1], "N"),
-    take("effective_arm", "effective arm of the friction", "mm", _MM),
-    take("locking_friction", "friction at self-locking"),
-    take("closure", "residual moment / (P (a + c))"),
-    take("error", "bound of the relative error"),
+    *take_fields(ShoeResult, "effective_arm locking_friction closure error"),
 )
 
 

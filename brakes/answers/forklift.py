@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +19,15 @@ from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
-from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take, take_from
+from brakes.answers.tables import (
+    list_outputs,
+    outputs_csv,
+    outputs_table,
+    resultant,
+    take,
+    take_fields,
+    take_from,
+)
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
@@ -30,67 +37,35 @@ from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MM, _KN, _DEG = 1e-3, 1e3, pi / 180
-
-_VEHICLE = (
-    take("distance", "stopping distance, from the driver's reaction", "m"),
-    take("time", "time to rest", "s"),
-    take("acceleration", "acceleration, wheels locked", "m/s2"),
-    take("torque_per_brake", "torque of one brake", "N m"),
-    take("reaction_distance", "distance in the reaction time", "m"),
-    take("rise_distance", "distance while the force rises", "m"),
-    take("braking_distance", "distance with the full force", "m"),
-    take("speed_lost_in_rise", "speed lost while the force rises", "m/s"),
-    take("speed_gained_coasting", "speed a coasting truck would gain in reaction, not counted", "m/s"),
-    take("front_load", "front axle's load, sliding", "kN", _KN),
-    take("rear_load", "rear axle's load, sliding", "kN", _KN),
-    take("standing_front_load", "front axle's load, at rest", "kN", _KN),
-    take("standing_rear_load", "rear axle's load, at rest", "kN", _KN),
+_VEHICLE = take_fields(
+    Stop,
+    "distance time acceleration torque_per_brake reaction_distance rise_distance braking_distance "
+    "speed_lost_in_rise speed_gained_coasting front_load rear_load standing_front_load standing_rear_load",
 )
-
-_MOTION = (
-    take("seating_turn", "stage 1: turn of each shoe", "deg", _DEG),
-    take("seating_travel", "stage 1: travel of each piston", "mm", _MM),
-    take("drum_turn", "stage 2: turn of drum and shoes", "deg", _DEG),
-    take("right_travel", "right piston at the end, outward", "mm", _MM),
-    take("left_travel", "left piston at the end, outward", "mm", _MM),
-    take("tip_gap", "least gap of the shoe's tip to the drum", "mm", _MM),
-    take("lining_penetration", "a concentric lining enters the drum by", "mm", _MM),
-    take("penetration_angle", "... at, up from the horizontal", "deg", _DEG),
+_MOTION = take_fields(
+    ShoeMotion,
+    "seating_turn seating_travel drum_turn right_travel left_travel tip_gap lining_penetration "
+    "penetration_angle",
 )
-
 _ARMS = (
-    take("a1", "arm of P_L", "mm", _MM),
-    take("a2", "arm of P_T", "mm", _MM),
-    Output("b", "arm of Q", lambda v: v.b1, "mm", _MM),
-    take("alpha1", "angle of P_L", "deg", _DEG),
-    take("alpha2", "angle of P_T", "deg", _DEG),
-    take("gamma", "angle of Q", "deg", _DEG),
+    take("a1", "arm of P_L", "mm"),
+    take("a2", "arm of P_T", "mm"),
+    take("b1", "arm of Q", "mm"),
+    take("alpha1", "angle of P_L", "deg"),
+    take("alpha2", "angle of P_T", "deg"),
+    take("gamma", "angle of Q", "deg"),
 )
-
+_BOLTS = "cylinder bolts"
 _FORCES = (
-    take("torque", "torque of the brake T", "N m"),
-    take("piston_force", "piston on the trailing shoe P_T", "N"),
-    take("A", "leading shoe: drum's normal force A", "N"),
-    take("B", "leading shoe: friction force B", "N"),
-    take("C", "trailing shoe: drum's normal force C", "N"),
-    take("D", "trailing shoe: friction force D", "N"),
-    take("Q", "adjuster Q", "N"),
-    take("P_L", "leading shoe on its piston P_L", "N"),
-    take("lining_friction", "friction of the lining, B/A = D/C"),
-    take("locking_friction", "friction at self-locking"),
-    take("margin", "margin to self-locking"),
-    take("c_star", "brake factor C* = T / (P_T r)"),
-    take("c_star_slope", "dC*/dmu"),
-    take("leading_share", "share of the leading shoe in the torque"),
-    take("trailing_share", "share of the trailing shoe"),
-    Output(
-        "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
+    *take_fields(
+        InternalForces,
+        "torque piston_force A B C D Q P_L lining_friction locking_friction margin c_star c_star_slope "
+        "leading_share trailing_share",
     ),
-    Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
-    Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
-    take("residual", "residual of the equations, over T/r"),
-    take("error", "bound of the relative error"),
+    Output("bolt_x", f"{_BOLTS}, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"),
+    Output("bolt_y", f"{_BOLTS}, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
+    Output("bolts", f"{_BOLTS}, resultant", lambda f: resultant(f.bolt_force), "N"),
+    *take_fields(InternalForces, "residual error"),
 )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +30,7 @@ from brakes.answers.planar import (
     units_of,
     unknown_loads,
 )
+from brakes.answers.tables import SCALES
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
 from brakes.drawings.mechanism import (
@@ -47,7 +47,6 @@ from brakes.planar.system import join_names
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_SCALES = {"mm": 1e-3, "deg": pi / 180}
 WITHOUT = "without friction"
 
 
@@ -67,7 +66,7 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
                 moved,
                 lambda a, n=load.name: a.motion.travel[n][-1] if a.motion else np.nan,
                 travel,
-                _SCALES[travel],
+                SCALES[travel],
             ),
         ]
         rubbing += [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from math import inf
+from math import inf, pi
 from operator import attrgetter
 from typing import Any
 
@@ -12,13 +12,23 @@ from rich.console import Group
 
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
 from beamdyn.common.edge.tables import table
+from beamdyn.common.results.meanings import meanings
 
 _SHOWN = 24  # rows of a sweep
+SCALES = {"mm": 1e-3, "deg": pi / 180, "kN": 1e3, "MPa": 1e6}  # sizes in SI of units that people see
 
 
-def take(name: str, words: str, unit: str = "", scale: float = 1.0) -> Output:
-    """The output that is the attribute of its name."""
-    return Output(name, words, attrgetter(name), unit, scale)
+def take(name: str, words: str, unit: str = "") -> Output:
+    """The output that is the attribute of its name, in a unit in which it is shown."""
+    return Output(name, words, attrgetter(name), unit, SCALES.get(unit, 1.0))
+
+
+def take_fields(kind: type, names: str) -> tuple[Output, ...]:
+    """Outputs that are fields of a result, by their names with spaces between; each says what it means."""
+    known = meanings(kind)
+    return tuple(
+        take(name, known[name].words, known[name].shown or known[name].unit) for name in names.split()
+    )
 
 
 def resultant(vector: np.ndarray) -> np.ndarray:

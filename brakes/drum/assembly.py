@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, numbers, positive, together
 from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
+from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, integrals, solve_shoe
 
@@ -115,19 +116,17 @@ class BrakeResult(SlidesOrLocks):
     (True, False)
     """
 
-    field_units: ClassVar[dict[str, str]] = {"N": "force", "N m": "torque", "Pa": "peak_pressure"}
-
     brake: DrumBrake
     reverse: bool
     shoes: tuple[ShoeResult, ...]
     friction: Numbers
-    force: Numbers
-    torque: Numbers
-    peak_pressure: Numbers
-    c_star: Numbers
-    c_star_slope: Numbers
-    locking_friction: Numbers
-    margin: Numbers
+    force: Annotated[Numbers, Meaning("N", "force on each shoe")]
+    torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
+    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
+    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
+    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
+    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
+    margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]
     locked: Numbers
 
     def headline(self) -> Iterator[str]:

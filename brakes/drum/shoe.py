@@ -17,6 +17,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from beamdyn.common.results.result import Result
 
@@ -256,28 +257,23 @@ class ShoeResult(SlidesOrLocks):
     (False, 0.999)
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "N": "force normal tangential pin_reaction",
-        "N m": "torque",
-        "Pa": "peak_pressure",
-        "m": "effective_arm",
-    }
+    field_units: ClassVar[dict[str, str]] = {"N": "force normal tangential pin_reaction"}
 
     shoe: Shoe
     leading: bool
     friction: Numbers
     force: Numbers
-    torque: Numbers
-    peak_pressure: Numbers
+    torque: Annotated[Numbers, Meaning("N m", "torque")]
+    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure", "MPa")]
     normal: np.ndarray
     tangential: np.ndarray
     pin_reaction: np.ndarray
-    effective_arm: Numbers
-    closure: Numbers
-    error: Numbers
-    c_star: Numbers
-    c_star_slope: Numbers
-    locking_friction: Numbers
+    effective_arm: Annotated[Numbers, Meaning("m", "effective arm of the friction", "mm")]
+    closure: Annotated[Numbers, Meaning("", "residual moment / (P (a + c))")]
+    error: Annotated[Numbers, Meaning("", "bound of the relative error")]
+    c_star: Annotated[Numbers, Meaning("", "shoe factor C*")]
+    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
+    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
     margin: Numbers
     locked: Numbers
 

@@ -17,6 +17,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, together
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, HasLevers, Levers
@@ -232,24 +233,20 @@ class ShoeMotion(HasLevers, Result):
     5.23
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "m": "clearance seating_travel right_travel left_travel right_tip left_tip tip_gap "
-        "lining_penetration",
-        "rad": "seating_turn drum_turn penetration_angle",
-    }
+    field_units: ClassVar[dict[str, str]] = {"m": "clearance right_tip left_tip"}
 
     geometry: DuoServo
     clearance: Numbers
-    seating_turn: Numbers
-    drum_turn: Numbers
-    seating_travel: Numbers
-    right_travel: Numbers
-    left_travel: Numbers
+    seating_turn: Annotated[Numbers, Meaning("rad", "stage 1: turn of each shoe", "deg")]
+    drum_turn: Annotated[Numbers, Meaning("rad", "stage 2: turn of drum and shoes", "deg")]
+    seating_travel: Annotated[Numbers, Meaning("m", "stage 1: travel of each piston", "mm")]
+    right_travel: Annotated[Numbers, Meaning("m", "right piston at the end, outward", "mm")]
+    left_travel: Annotated[Numbers, Meaning("m", "left piston at the end, outward", "mm")]
     right_tip: np.ndarray
     left_tip: np.ndarray
-    tip_gap: Numbers
-    lining_penetration: Numbers
-    penetration_angle: Numbers
+    tip_gap: Annotated[Numbers, Meaning("m", "least gap of the shoe's tip to the drum", "mm")]
+    lining_penetration: Annotated[Numbers, Meaning("m", "a concentric lining enters the drum by", "mm")]
+    penetration_angle: Annotated[Numbers, Meaning("rad", "... at, up from the horizontal", "deg")]
     levers: Levers
 
     def headline(self) -> Iterator[str]:

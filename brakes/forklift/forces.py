@@ -21,12 +21,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, positive, together
 from beamdyn.common.inputs.checks import InvalidValue, refuse
+from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, HasLevers, Levers
@@ -82,34 +83,31 @@ class InternalForces(Result):
     1.0
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "N m": "torque",
-        "N": "piston_force A B C D Q P_L A_vector B_vector C_vector D_vector bolt_force",
-    }
+    field_units: ClassVar[dict[str, str]] = {"N": "A_vector B_vector C_vector D_vector bolt_force"}
 
     levers: Levers
-    torque: Numbers
-    piston_force: Numbers
-    A: Numbers
-    B: Numbers
-    C: Numbers
-    D: Numbers
-    Q: Numbers
-    P_L: Numbers
+    torque: Annotated[Numbers, Meaning("N m", "torque of the brake T")]
+    piston_force: Annotated[Numbers, Meaning("N", "piston on the trailing shoe P_T")]
+    A: Annotated[Numbers, Meaning("N", "leading shoe: drum's normal force A")]
+    B: Annotated[Numbers, Meaning("N", "leading shoe: friction force B")]
+    C: Annotated[Numbers, Meaning("N", "trailing shoe: drum's normal force C")]
+    D: Annotated[Numbers, Meaning("N", "trailing shoe: friction force D")]
+    Q: Annotated[Numbers, Meaning("N", "adjuster Q")]
+    P_L: Annotated[Numbers, Meaning("N", "leading shoe on its piston P_L")]
     A_vector: np.ndarray
     B_vector: np.ndarray
     C_vector: np.ndarray
     D_vector: np.ndarray
     bolt_force: np.ndarray
-    lining_friction: Numbers
-    locking_friction: Numbers
-    margin: Numbers
-    c_star: Numbers
-    c_star_slope: Numbers
-    leading_share: Numbers
-    trailing_share: Numbers
-    residual: Numbers
-    error: Numbers
+    lining_friction: Annotated[Numbers, Meaning("", "friction of the lining, B/A = D/C")]
+    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
+    margin: Annotated[Numbers, Meaning("", "margin to self-locking")]
+    c_star: Annotated[Numbers, Meaning("", "brake factor C* = T / (P_T r)")]
+    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
+    leading_share: Annotated[Numbers, Meaning("", "share of the leading shoe in the torque")]
+    trailing_share: Annotated[Numbers, Meaning("", "share of the trailing shoe")]
+    residual: Annotated[Numbers, Meaning("", "residual of the equations, over T/r")]
+    error: Annotated[Numbers, Meaning("", "bound of the relative error")]
     status: Any
     warnings: tuple[str, ...]
 

@@ -21,13 +21,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.forklift.levers import LEAST_MARGIN, ROUNDING
@@ -246,32 +247,25 @@ class Stop(Result):
     False
     """
 
-    field_units: ClassVar[dict[str, str]] = {
-        "m/s2": "acceleration",
-        "m": "distance reaction_distance rise_distance braking_distance",
-        "s": "time",
-        "m/s": "speed_lost_in_rise speed_gained_coasting",
-        "N m": "torque_per_brake",
-        "N": "front_load rear_load standing_front_load standing_rear_load",
-    }
-
     truck: Truck
     conditions: StopConditions
     stops: Any
     status: Any
-    acceleration: Numbers
-    distance: Numbers
-    time: Numbers
-    reaction_distance: Numbers
-    rise_distance: Numbers
-    braking_distance: Numbers
-    speed_lost_in_rise: Numbers
-    speed_gained_coasting: Numbers
-    torque_per_brake: Numbers
-    front_load: Numbers
-    rear_load: Numbers
-    standing_front_load: Numbers
-    standing_rear_load: Numbers
+    acceleration: Annotated[Numbers, Meaning("m/s2", "acceleration, wheels locked")]
+    distance: Annotated[Numbers, Meaning("m", "stopping distance, from the driver's reaction")]
+    time: Annotated[Numbers, Meaning("s", "time to rest")]
+    reaction_distance: Annotated[Numbers, Meaning("m", "distance in the reaction time")]
+    rise_distance: Annotated[Numbers, Meaning("m", "distance while the force rises")]
+    braking_distance: Annotated[Numbers, Meaning("m", "distance with the full force")]
+    speed_lost_in_rise: Annotated[Numbers, Meaning("m/s", "speed lost while the force rises")]
+    speed_gained_coasting: Annotated[
+        Numbers, Meaning("m/s", "speed a coasting truck would gain in reaction, not counted")
+    ]
+    torque_per_brake: Annotated[Numbers, Meaning("N m", "torque of one brake")]
+    front_load: Annotated[Numbers, Meaning("N", "front axle's load, sliding", "kN")]
+    rear_load: Annotated[Numbers, Meaning("N", "rear axle's load, sliding", "kN")]
+    standing_front_load: Annotated[Numbers, Meaning("N", "front axle's load, at rest", "kN")]
+    standing_rear_load: Annotated[Numbers, Meaning("N", "rear axle's load, at rest", "kN")]
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""

@@ -19,6 +19,7 @@ from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Columns
+from beamdyn.common.results.meanings import meanings
 from beamdyn.common.results.one_line import brief, spanned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result, plain
@@ -201,6 +202,7 @@ def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]
     """
     stated = (vars(base).get("field_units", {}) for base in reversed(type(result).__mro__))
     units = {name: unit for each in stated for unit, names in each.items() for name in names.split()}
+    units |= {name: stated.unit for name, stated in meanings(type(result)).items()}
     for each in dataclasses.fields(result):
         if each.repr and each.name not in _NOT_SHOWN:
             for name, value in _parts(each.name, getattr(result, each.name)):
