@@ -55,16 +55,17 @@ _ARMS = (
     take("alpha2", "angle of P_T", "deg"),
     take("gamma", "angle of Q", "deg"),
 )
-_BOLTS = "cylinder bolts"
 _FORCES = (
     *take_fields(
         InternalForces,
         "torque piston_force A B C D Q P_L lining_friction locking_friction margin c_star c_star_slope "
         "leading_share trailing_share",
     ),
-    Output("bolt_x", f"{_BOLTS}, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"),
-    Output("bolt_y", f"{_BOLTS}, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
-    Output("bolts", f"{_BOLTS}, resultant", lambda f: resultant(f.bolt_force), "N"),
+    Output(
+        "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
+    ),
+    Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
+    Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
     *take_fields(InternalForces, "residual error"),
 )
 

@@ -25,10 +25,8 @@ def take(name: str, words: str, unit: str = "") -> Output:
 
 def take_fields(kind: type, names: str) -> tuple[Output, ...]:
     """Outputs that are fields of a result, by their names with spaces between; each says what it means."""
-    known = meanings(kind)
-    return tuple(
-        take(name, known[name].words, known[name].shown or known[name].unit) for name in names.split()
-    )
+    each = ((name, meanings(kind)[name]) for name in names.split())
+    return tuple(take(name, stated.words, stated.shown or stated.unit) for name, stated in each)
 
 
 def resultant(vector: np.ndarray) -> np.ndarray:
