@@ -114,6 +114,7 @@ class Stance:
 
 _RTOL, _ATOL = 1e-12, 1e-12  # tolerances of the integration; the latter [m]
 _NO_LIMITS = Stance()  # neither grip nor pitching over is known
+_WHEEL_INERTIA = Described("kg m2", "J", "moment of inertia of all wheels", least=0)
 _MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
 
@@ -179,13 +180,13 @@ class StoppingDistance(Result):
 
 
 def stop(
-    mass: float,
-    speed: float,
+    mass: Annotated[float, Described("kg", "M", "mass, wheels included", above=0)],
+    speed: Annotated[float, Described("m/s", "v", "speed", least=0)],
     pad_force: float | Callable[[float], float],
-    friction: float,
-    wheel_inertia: float = 0.0,
-    tyre_radius: float | None = None,
-    rim_radius: float | None = None,
+    friction: Annotated[float, Described("", "mu", "friction of pads and rim", above=0, most=2)],
+    wheel_inertia: Annotated[float, _WHEEL_INERTIA] = 0.0,
+    tyre_radius: Annotated[float, Described("m", "R", "rolling radius", above=0)] | None = None,
+    rim_radius: Annotated[float, Described("m", "r", "radius at the pads", above=0)] | None = None,
     stance: Stance = _NO_LIMITS,
 ) -> StoppingDistance:
     """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
@@ -283,12 +284,6 @@ def _unchecked(grip: float, pitch: float) -> Iterator[str]:
         yield "grip is not checked: give tyre_friction, wheelbase, cg_height and cg_behind_front"
     if math.isnan(pitch):
         yield "pitching over is not checked: give cg_height and cg_behind_front"
-
-
-def check_wheels(inertia: float, tyre_radius: float | None, rim_radius: float | None) -> None:
-    """Refuse an inertia [kg m2] or a rim [m] without the tyre's radius [m], and a rim beyond the tyre."""
-    _equivalent_mass(inertia, tyre_radius)
-    _radius_ratio(rim_radius, tyre_radius)
 
 
 def _equivalent_mass(inertia: float, tyre_radius: float | None) -> float:

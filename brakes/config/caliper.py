@@ -14,7 +14,6 @@ from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
-from brakes.calipers.stopping import check_wheels
 from brakes.planar.part import DescribedDirection, DescribedPoint
 from brakes.planar.rows import Point as Coordinates
 
@@ -99,33 +98,27 @@ class RunInput(Section):
 
 
 class _StopInput(CoreSection):
-    """[stop]: the vehicle that this brake alone stops; `Stance` adds its balance and grip."""
-
-    mass: Annotated[float, Quantity("kg", "M", "mass, wheels included", above=0)]
-    speed: Annotated[float, Quantity("m/s", "v", "speed", least=0)]
-    friction: Annotated[float, Quantity("", "mu", "friction of pads and rim", above=0, most=2)]
-    wheel_inertia: Annotated[float, Quantity("kg m2", "J", "moment of inertia of all wheels", least=0)] = 0.0
-    tyre_radius: Annotated[float | None, Quantity("m", "R", "rolling radius", above=0)] = None
-    rim_radius: Annotated[float | None, Quantity("m", "r", "radius at the pads", above=0)] = None
+    """[stop]: the vehicle that this brake alone stops, by what `stop` and `Stance` describe."""
 
     @cached_property
-    def core(self) -> Stance:
-        """Balance and grip."""
-        check_wheels(self.wheel_inertia, self.tyre_radius, self.rim_radius)
-        return Stance(**{key: getattr(self, key) for key in _STANCE})
+    def core(self) -> StoppingDistance:
+        """The stop without any force."""
+        return self.with_force(0.0)
 
     def with_force(self, pad_force: float) -> StoppingDistance:
         """The stopping distance with a force on each pad [N]."""
-        rest = {key: getattr(self, key) for key in _StopInput.model_fields}
-        return stop(pad_force=pad_force, stance=self.core, **rest)
+        stance = Stance(**{key: getattr(self, key) for key in _STANCE})
+        return stop(pad_force=pad_force, stance=stance, **{key: getattr(self, key) for key in _STOP})
 
 
-_STANCE = fields_of(Stance)
+_STOP, _STANCE = fields_of(stop, leave_out=("pad_force", "stance")), fields_of(Stance)
 
 if TYPE_CHECKING:
     CaliperStopInput = _StopInput
 else:
-    CaliperStopInput = create_model("CaliperStopInput", __base__=_StopInput, __module__=__name__, **_STANCE)
+    CaliperStopInput = create_model(
+        "CaliperStopInput", __base__=_StopInput, __module__=__name__, **_STOP, **_STANCE
+    )
 
 
 # A named caliper ----------------------------------------------------------------------------------
