@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from beamdyn._version import __version__
 from beamdyn.common.edge import program
 from beamdyn.common.edge.outputs import Outputs, write
 from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.progress import at_work
+from beamdyn.common.edge.tables import show
 from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from beamdyn.common.edge.html_report import Question, Report
     from brakes.answers.base import Answer, BrakeType
 
 
@@ -87,8 +87,8 @@ def run_command(
     ValueError
         For bad input.
     """
-    from beamdyn.common.edge.html_report import Question
-    from beamdyn.common.edge.tables import show
+    from beamdyn.common.edge.html_report import Question, Report
+    from beamdyn.common.edge.views import picture_of, rows_of, tables_of
 
     written = {option: path for option, (path, _) in (further or {}).items()}
     outputs.check(file, **written)
@@ -102,77 +102,56 @@ def run_command(
             raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
     if not spreading.spread:
         varying.check()
-    if many:
-        _answer_many(brake, tables, question, file, varying, spreading, what, outputs)
-        return
-    if what is not None:
+    if not many and what is not None:
         raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
-    answer = brake.answer(tables, file)
-    shown = answer.tables()
-    report = None if outputs.report is None else _report(brake, question, answer, shown)
-    write(answer, outputs, answer.rows(), answer.figure, report)
+    if many:
+        made, warnings, none = _answer_many(brake, tables, file, varying, spreading, what)
+        said, more = warnings, ()
+    else:
+        made = brake.answer(tables, file)
+        warnings, none = made.warnings, "; ".join(made.refusals)
+        said, more = [*made.refusals, *warnings], _folded(brake, made) if outputs.report else ()
+    shown = [tables_of(made)]
+    write(made, outputs, rows_of(made), picture_of(made), Report(question, shown, said, more))
     for path, save in (further or {}).values():
         if path is not None:
-            save(answer, path)
+            save(made, path)
     show(shown)
-    program.warn("brakes", answer.warnings)
-    if answer.refusals:
-        raise NoAnswer("; ".join(answer.refusals))
+    program.warn("brakes", warnings)
+    if none:
+        raise NoAnswer(none)
 
 
-def _report(
-    brake: BrakeType[Any], question: Question, answer: Answer, shown: Sequence[RenderableType]
-) -> Report:
-    """The HTML report of an answer with its tables; its further drawings need the screens."""
-    from beamdyn.common.edge.html_report import Report
+def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
+    """Titles of the further drawings of an answer, and what makes them for a report."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())
-    more = [(part.title, partial(part.in_report, answer)) for part in folded]
-    return Report(question, shown, [*answer.refusals, *answer.warnings], more)
+    return [(part.title, partial(part.in_report, answer)) for part in folded]
 
 
 def _answer_many(
     brake: BrakeType[Any],
     tables: Mapping[str, Any],
-    question: Question,
     file: str,
     varying: VaryOptions,
     spreading: SpreadOptions,
     what: str | None,
-    outputs: Outputs,
-) -> None:
-    """Answer the designs of a sweep, or of inputs with tolerances; write the files, and print the answer."""
+) -> tuple[Any, Sequence[str], str]:
+    """A sweep, or a spread over tolerances of inputs; warnings, and that none has an answer if so."""
     import numpy as np
 
-    from beamdyn._version import __version__
-    from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.edge.progress import at_work
-    from beamdyn.common.edge.tables import show
+    from brakes.answers.spread import spread_of_brake
 
     with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)
         if spreading.spread:
-            from beamdyn.common.edge.spread_tables import spread_csv, spread_table
-            from beamdyn.common.spreading.result import spread_figure
-            from brakes.answers.spread import spread_of_brake
-
             how = spreading.samples, spreading.seed, run
             made = spread_of_brake(brake, tables, file, spreading.spread, what, *how)
-            shown, rows, figure = spread_table(made), spread_csv(made), partial(spread_figure, made)
-            warnings, answered = made.warnings, not (made.scatter.no_answer == 1).all()
+            answered, warnings = not (made.scatter.no_answer == 1).all(), made.warnings
             none = f"none of {made.designs} random designs has an answer"
         else:
-            from beamdyn.common.edge.input_sweep import sweep_csv
-            from beamdyn.common.plots.curves import sweep_figure
-            from brakes.answers.tables import sweep_table
-
             made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
-            shown, rows, figure = sweep_table(made), sweep_csv(made), partial(sweep_figure, made)
             answered = any(np.isfinite(values).any() for values in made.found)
             none = f"at none of {made.designs.count} values is there an answer"
-    write(made, outputs, rows, figure, Report(question, [shown], warnings))
-    show([shown])
-    program.warn("brakes", warnings)
-    if not answered:
-        raise NoAnswer(none)
+    return made, warnings, "" if answered else none
