@@ -15,7 +15,7 @@ import numpy as np
 
 from beamdyn.common.inputs.described import Described
 from brakes.planar.part import (
-    Body,
+    BetweenPoints,
     Coefficient,
     DescribedPoint,
     Direction,
@@ -23,7 +23,7 @@ from brakes.planar.part import (
     Joint,
     Length,
     OneWay,
-    Other,
+    OnTwoBodies,
     Shape,
 )
 from brakes.planar.rows import (
@@ -47,7 +47,7 @@ SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or re
 
 
 @dataclass(frozen=True)
-class Pin(Joint):
+class Pin(OnTwoBodies, Joint):
     """A pin: a point of a body stays on a point of another.
 
     Parameters
@@ -75,8 +75,6 @@ class Pin(Joint):
     label = "pins"
     is_hinge = True
 
-    body: Body
-    other: Other
     at: DrawnPoint
     at_other: DrawnPoint | None = None
     radius: Annotated[
@@ -113,7 +111,7 @@ class Pin(Joint):
 
 
 @dataclass(frozen=True)
-class Bar(Joint):
+class Bar(BetweenPoints, Joint):
     """A two-force link of constant length between points of two bodies.
 
     Parameters
@@ -134,30 +132,22 @@ class Bar(Joint):
 
     label = "bars"
     signs = ("tension", "compression")
+    remedy = "move one of its ends, or join the bodies by a pin"
+    style = "bar"
 
-    body: Body
-    other: Other
-    at: DrawnPoint
-    to: DrawnPoint
     length: Length | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_distinct(self.title, (self.at, self.to), "move one of its ends, or join the bodies by a pin")
 
     def rows(self) -> tuple[Row, ...]:
         """One row, positive in tension."""
-        length = math.dist(self.at, self.to) if self.length is None else self.length
-        return (Path((self.body, self.other), (self.at, self.to), length),)
+        return (self.path(self.length),)
 
     def shapes(self) -> tuple[Shape, ...]:
         """A bar with pins at its ends."""
-        ends = self.rows()[0].ends
-        return (Shape("bar", ends), *(Shape("pin", (end,)) for end in ends))
+        return (*super().shapes(), *(Shape("pin", (end,)) for end in self.path().ends))
 
 
 @dataclass(frozen=True)
-class Slot(Joint):
+class Slot(OnTwoBodies, Joint):
     """A point of a body slides along a straight slot of another; it holds both ways.
 
     Parameters
@@ -186,8 +176,6 @@ class Slot(Joint):
 
     label = "slots"
 
-    body: Body
-    other: Other
     at: DrawnPoint
     along: Direction
     on: DrawnPoint | None = None
@@ -208,7 +196,7 @@ class Slot(Joint):
 
 
 @dataclass(frozen=True)
-class Contact(Joint):
+class Contact(OnTwoBodies, Joint):
     """A point of a body pushes on a straight or round face of another.
 
     Parameters
@@ -246,8 +234,6 @@ class Contact(Joint):
         "contact", "pull", "contact opens", "it is open, or its normal is reversed; remove or turn it"
     )
 
-    body: Body
-    other: Other
     at: DrawnPoint
     normal: Direction | None = None
     on: DrawnPoint | None = None
@@ -323,7 +309,7 @@ class Contact(Joint):
 
 
 @dataclass(frozen=True)
-class RotationLock(Joint):
+class RotationLock(OnTwoBodies, Joint):
     """The angle of a body is `ratio` times that of another (1: no relative rotation; -1: mirrored arms).
 
     Parameters
@@ -341,8 +327,6 @@ class RotationLock(Joint):
 
     label = "bodies that turn together"
 
-    body: Body
-    other: Other
     ratio: Annotated[float, Described(meaning="ratio of the angles")] = 1.0
 
     def rows(self) -> tuple[Row, ...]:

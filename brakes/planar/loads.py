@@ -16,6 +16,7 @@ from beamdyn.common.inputs.described import Described
 from brakes.planar.joints import SLACK
 from brakes.planar.part import (
     AppliedLoad,
+    BetweenPoints,
     Body,
     Direction,
     DrawnPoint,
@@ -25,9 +26,7 @@ from brakes.planar.part import (
     Other,
     Shape,
 )
-from brakes.planar.rows import GROUND, Line, Path, Point, Row, Turn, check_distinct, path_length, unit_vector
-
-_NO_DIRECTION = "it has no direction; move one of its ends"
+from brakes.planar.rows import GROUND, Line, Point, Row, Turn, unit_vector
 
 
 @dataclass(frozen=True)
@@ -116,7 +115,7 @@ class Moment(AppliedLoad):
 
 
 @dataclass(frozen=True)
-class CablePair(AppliedLoad):
+class CablePair(BetweenPoints, AppliedLoad):
     """A cable and its housing: equal and opposite forces that pull points of two bodies together.
 
     Parameters
@@ -137,29 +136,17 @@ class CablePair(AppliedLoad):
 
     label = "cables with their housing"
     one_way = SLACK
+    style = "cable"
 
-    body: Body
-    other: Other
-    at: DrawnPoint
-    to: DrawnPoint
     magnitude: Newtons | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
 
     def row(self) -> Row:
         """Shortening of the distance between the points [m]."""
-        ends = self.at, self.to
-        return Path((self.body, self.other), ends, path_length(ends))
-
-    def shapes(self) -> tuple[Shape, ...]:
-        """A cable between the points."""
-        return (Shape("cable", self.row().ends),)
+        return self.path()
 
 
 @dataclass(frozen=True)
-class Spring(Load):
+class Spring(BetweenPoints, Load):
     """A linear spring between points of two bodies, which pulls with stiffness * (length - free).
 
     Parameters
@@ -183,29 +170,18 @@ class Spring(Load):
     """
 
     label = "springs"
+    style = "spring"
 
-    body: Body
-    other: Other
-    at: DrawnPoint
-    to: DrawnPoint
     stiffness: Annotated[float, Described("N/m", "k", "stiffness", least=0)]
     free_length: Annotated[float, Described("m", meaning="length without force", least=0)]
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_distinct(self.title, (self.at, self.to), _NO_DIRECTION)
-
     def row(self) -> Row:
         """Shortening below the free length [m]."""
-        return Path((self.body, self.other), (self.at, self.to), self.free_length)
+        return self.path(self.free_length)
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray:
         """Minus stiffness times shortening: its tension, which is negative where it pushes [N]."""
         return -self.stiffness * coordinate
-
-    def shapes(self) -> tuple[Shape, ...]:
-        """A spring."""
-        return (Shape("spring", self.row().ends),)
 
 
 @dataclass(frozen=True)

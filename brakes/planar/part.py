@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -12,7 +13,17 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import flag, kind, set_fields, several
 from beamdyn.common.inputs.described import Described, described_hints, descriptions, kinds_of
-from brakes.planar.rows import GROUND, End, FrictionLaw, Point, Row, check_point, unit_vector
+from brakes.planar.rows import (
+    GROUND,
+    End,
+    FrictionLaw,
+    Path,
+    Point,
+    Row,
+    check_distinct,
+    check_point,
+    unit_vector,
+)
 
 # Types of the inputs of joints and loads, described for checks, files and forms --------------------------
 
@@ -116,6 +127,9 @@ Newtons = Annotated[float, _NEWTONS]
 NewtonMetres = Annotated[float, replace(_NEWTONS, unit="N m")]
 
 
+Style = Literal["bar", "cable", "spring", "pin", "face", "force"]
+
+
 class Shape(NamedTuple):
     """A part of the drawing of a joint or load.
 
@@ -138,7 +152,7 @@ class Shape(NamedTuple):
     ['pin']
     """
 
-    style: Literal["bar", "cable", "spring", "pin", "face", "force"]
+    style: Style
     ends: tuple[End, ...]
     frame: str = GROUND
     along: Point = (1.0, 0.0)
@@ -225,6 +239,38 @@ class Part:
     def unit(self) -> str:
         """Unit of its size."""
         return "N m" if self.is_couple else "N"
+
+
+@dataclass(frozen=True)
+class OnTwoBodies(Part):
+    """Base of joints and loads on a body and another one."""
+
+    body: Body
+    other: Other
+
+
+@dataclass(frozen=True)
+class BetweenPoints(OnTwoBodies):
+    """Base of joints and loads along the line between a point of a body and one of another."""
+
+    remedy: ClassVar[str] = "it has no direction; move one of its ends"
+    style: ClassVar[Style]
+
+    at: DrawnPoint
+    to: DrawnPoint
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_distinct(self.title, (self.at, self.to), self.remedy)
+
+    def path(self, length: float | None = None) -> Path:
+        """The line between the points; its length is the drawing's if not given [m]."""
+        drawn = math.dist(self.at, self.to)
+        return Path((self.body, self.other), (self.at, self.to), drawn if length is None else length)
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """A line between the points."""
+        return (Shape(self.style, self.path().ends),)
 
 
 class Joint(Part):

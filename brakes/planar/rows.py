@@ -112,6 +112,7 @@ class Place(Protocol):
         ...
 
 
+@dataclass(frozen=True)
 class _AtPoint(ABC):
     """A row whose force acts at a point of a body, and back on another body that has a line or a circle."""
 
@@ -150,10 +151,6 @@ class Line(_AtPoint):
     A unit row pushes the body along +n.  The normal turns with the body `frame`.
     """
 
-    body: str
-    at: Point
-    other: str
-    on: Point
     frame: str
     normal: Point
 
@@ -207,10 +204,6 @@ class Round(_AtPoint):
         1: away from the centre; -1: towards it; 1j: along the circle, anticlockwise.
     """
 
-    body: str
-    at: Point
-    other: str
-    on: Point
     radius: float
     direction: complex
 
