@@ -12,15 +12,21 @@ from typing import Any
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.inputs.described import described_hints, description
 from beamdyn.common.screens.form_entries import Entries, entries_of, tables_of, toml_value
 from beamdyn.common.screens.lists import Cell, Item, ListGroup, Lists
 from brakes.config.mechanism import SECTIONS, inputs_of_tables, mechanism_from_dict
 from brakes.planar import GROUND, JOINTS, LOADS, Mechanism, Part
+from brakes.planar.part import DescribedBody, DescribedDirection, DescribedPoint, is_list
 
 _PARTS: dict[str, type[Part]] = {part.key(): part for part in (*JOINTS, *LOADS)}
 _INPUTS = {key: describe(SECTIONS[key]) for key in _PARTS}
-_POINTS = ("at", "to", "on", "at_other", "points")  # keys whose values are points
-_BODIES = ("body", "other", "bodies")
+_HINTS_OF_KEYS = {key: hint for part in _PARTS.values() for key, hint in described_hints(part).items()}
+_BODIES, _POINTS, _DIRECTIONS = (
+    [key for key, hint in _HINTS_OF_KEYS.items() if isinstance(description(hint), kind)]
+    for kind in (DescribedBody, DescribedPoint, DescribedDirection)
+)
+_LISTED = [key for key, hint in _HINTS_OF_KEYS.items() if is_list(hint)]
 _ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are joints and loads
 _UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # units in which a bare number is taken
 _FIRST = {  # first entries of what is added
@@ -146,9 +152,9 @@ def _cell(entry: Input, value: Any, tables: Mapping[str, Any]) -> Cell:
     else:
         text = "" if value is None else value if isinstance(value, str) else toml_value(value)
     known: tuple[str, ...] = ()
-    if key in _POINTS and not isinstance(value, list) and key != "points":
+    if key in _POINTS and key not in _LISTED and not isinstance(value, list):
         known = tuple(_table_at(tables, "points"))
-    elif key in ("body", "other"):
+    elif key in _BODIES and key not in _LISTED:
         known = (*_bodies(tables), GROUND)
     elif entry.kind is bool:
         known = ("true", "false")
@@ -199,13 +205,13 @@ def put(entries: Mapping[str, str], item: Item, key: str, text: str) -> Entries:
 
 def _value(entry: Input, text: str) -> Any:
     """The value that a text stands for, a bare number with the unit that the form shows."""
-    if entry.path in ("bodies", "points"):
+    if entry.path in _LISTED:
         return [part.strip() for part in text.split(",")]
     if entry.kind is bool:
         return text == "true"
     if entry.path in ("name", *_BODIES) or (entry.path in _POINTS and not text.startswith("[")):
         return text
-    if entry.path in ("direction", "along", "normal") and not text.startswith("["):
+    if entry.path in _DIRECTIONS and not text.startswith("["):
         return _with_unit(text, "deg")
     unit = _UNITS.get(entry.quantity.unit, entry.quantity.unit)
     if unit and not text.startswith("["):
@@ -271,11 +277,9 @@ def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
     points, body = [*_table_at(tables, "points")], next(reversed(_bodies(tables)), "")
     if key == "name":
         return _fresh(_PARTS[kind].kind(), [str(part.get("name")) for _, _, part in _parts(tables)])
-    if key == "body":
-        return body
-    if key == "bodies":
-        return [body, GROUND]
-    if key == "points":
+    if key in _BODIES:
+        return [body, GROUND] if key in _LISTED else body
+    if key in _POINTS and key in _LISTED:
         return points[-2:]
     if key in _POINTS:
         alone = key == "to" or kind in ("pin", "force")

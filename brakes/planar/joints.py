@@ -17,6 +17,7 @@ from beamdyn.common.inputs.described import Described
 from brakes.planar.part import (
     BetweenPoints,
     Coefficient,
+    DescribedBody,
     DescribedPoint,
     Direction,
     DrawnPoint,
@@ -359,7 +360,7 @@ class Cable(Joint):
     label = "cables of fixed length"
     one_way = SLACK
 
-    bodies: Annotated[tuple[str, ...], Described(meaning="body of each point")]
+    bodies: Annotated[tuple[str, ...], DescribedBody(meaning="body of each point")]
     points: tuple[Annotated[Point, DescribedPoint("m", meaning="points in the drawing")], ...]
     length: Length | None = None
 

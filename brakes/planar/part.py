@@ -38,6 +38,11 @@ class DescribedPoint(Described):
 
 
 @dataclass(frozen=True)
+class DescribedBody(Described):
+    """Description of the name of a body, or of a list of them."""
+
+
+@dataclass(frozen=True)
 class DescribedDirection(Described):
     """Description of a direction."""
 
@@ -104,8 +109,8 @@ def is_list(hint: Any) -> bool:
     return Ellipsis in get_args(kinds_of(hint)[0])
 
 
-Body = Annotated[str, Described(meaning="body")]
-Other = Annotated[str, Described(meaning="other body; the ground if not given", default=GROUND)]
+Body = Annotated[str, DescribedBody(meaning="body")]
+Other = Annotated[str, DescribedBody(meaning="other body; the ground if not given", default=GROUND)]
 DrawnPoint = Annotated[Point, DescribedPoint("m", meaning="point in the drawing")]
 Direction = Annotated[Point, DescribedDirection(meaning="direction, as a vector or an angle")]
 Length = Annotated[float, Described("m", meaning="length, if not the drawing's", above=0)]

@@ -15,6 +15,7 @@ from brakes.app.program import BRAKES, MECHANISM
 SCREEN = MECHANISM.screens[0]
 CLAMP = (Path(__file__).parents[2] / "examples" / "calipers" / "toggle-clamp.toml").read_text("utf-8")
 
+BLOCK = (Path(__file__).parents[2] / "examples" / "block_brake.toml").read_text("utf-8")
 OWN = (Path(__file__).parents[2] / "examples" / "calipers" / "own-caliper.toml").read_text("utf-8")
 
 
@@ -141,6 +142,15 @@ def test_what_names_a_thing_follows_when_it_is_renamed(old, new):
     before = solved(entries).over.amplitudes["work"]
     np.testing.assert_allclose(solved(renamed).over.amplitudes["work"], before, rtol=1e-14)
     assert f'"{old.removeprefix("force ")}"' not in str(renamed.values()).replace("'", "")
+
+
+def test_the_centre_of_a_round_face_is_one_of_the_points():
+    entries = MECHANISM.opened(BLOCK, "block")
+    axle = item(entries, "axle")
+    assert tables(put(entries, axle, "name", "hub"))["contact"][0]["centre"] == "hub"
+    assert "contact block" in gone_with(axle, groups(entries), groups(remove(entries, axle)))
+    (centre,) = (cell for cell in item(entries, "contact block").cells if cell.key == "centre")
+    assert "axle" in centre.options
 
 
 def test_what_drives_the_stroke_no_longer_does_when_it_is_removed():
