@@ -365,7 +365,12 @@ def warn_of_modes(
             limit=0.0,
         )
     yield from warn_of_strain(strain.max(initial=0))
-    if not scene.physics.large_deflection:
+    if scene.physics.large_deflection:
+        # It is imported here for the time that it takes to import.
+        from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
+
+        yield from warn_of_suppressed_camber(model, speeds)
+    else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
         yield from warn_of_straight(deflection, speeds, model)
     if tolerance is not None:

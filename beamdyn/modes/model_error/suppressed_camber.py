@@ -1,0 +1,72 @@
+"""Suppressed camber: a strip that is bent far cannot camber, and is as stiff as a plate that is held flat.
+
+A strip of width b and thickness t under the curvature kappa cambers while b^2 kappa/t (Searle's parameter) is
+small.  Beyond 1 its middle stays flat, as camber would stretch it: with theta = (3 (1 - nu^2))^(1/4) b
+(kappa/t)^(1/2) the moment is
+
+    M = E I kappa (1 - nu^2 f)/(1 - nu^2),    f = 2 (cosh theta - cos theta)/(theta (sinh theta + sin theta)),
+
+and the stiffness of small vibrations dM/dkappa.
+
+References
+----------
+Searle (1908), Experimental Elasticity; Ashwell (1950), Journal of the Royal Aeronautical Society 54, 708.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
+
+_FLAT = 1.0  # Searle's parameter from which camber is suppressed
+_WIDEST = 50.0  # theta beyond which nothing changes
+_STATIONS = 101
+
+
+def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
+    """Stiffness dM/dkappa over E I of a strip under a curvature, by theta > 0 and Poisson's ratio."""
+    theta = np.minimum(theta, _WIDEST)
+    difference, total = np.cosh(theta) - np.cos(theta), np.sinh(theta) + np.sin(theta)
+    f = 2 * difference / (theta * total)
+    tangent = f / 2 + 1 - difference * (np.cosh(theta) + np.cos(theta)) / total**2
+    return (1 - nu**2 * tangent) / (1 - nu**2)
+
+
+def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Statement]:
+    """Yield a warning if large deflection bends a strip so far at a speed [rad/s] that it cannot camber."""
+    section, solver = model.scene.beam.section, model.solver
+    if section is None or not isinstance(solver, DeflectedSolver):
+        return
+    nu, length, xi = section.poissons_ratio, model.scene.beam.length, np.linspace(0, 1, _STATIONS)
+    curvature = np.abs(solver.equilibria(speeds) @ model.equations.deflection(xi, order=2)) / length**2
+    b, t = section.width(xi), section.thickness(xi)
+    searle = b**2 * curvature / t
+    if not searle.max(initial=0.0) > _FLAT:
+        return
+    at, place = np.unravel_index(searle.argmax(), searle.shape)
+    ratio = ASSUMED_POISSONS_RATIO if nu is None else nu
+    theta = (3 * (1 - ratio**2)) ** 0.25 * b[place] * np.sqrt(curvature[at, place] / t[place])
+    stiffer = float(tangent_stiffening(theta, ratio)) - 1
+    assumed = "" if nu is not None else f", with Poisson's ratio {ratio:g} assumed"
+    said = (
+        f" the strip is bent to b^2 kappa/t = {searle[at, place]:.2g} (Searle's parameter) at x/L = "
+        f"{xi[place]:.2g}: past 1 it cannot camber, and is up to {percent(stiffer)} stiffer, its frequencies up to "
+        f"{percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
+    )
+    quantity = "Searle's parameter b^2 kappa/t"
+    yield Statement(
+        "at ",
+        Speeds(speeds[at]),
+        said,
+        kind=MODEL_ERROR,
+        quantity=quantity,
+        value=searle[at, place],
+        limit=_FLAT,
+    )
