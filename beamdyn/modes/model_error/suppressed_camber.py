@@ -26,16 +26,16 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
 
 _FLAT = 1.0  # Searle's parameter from which camber is suppressed
-_WIDEST = 50.0  # theta beyond which nothing changes
+_WIDEST = 50.0  # theta beyond which its functions have their limits
 _STATIONS = 101
 
 
 def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
     """Stiffness dM/dkappa over E I of a strip under a curvature, by theta > 0 and Poisson's ratio."""
-    theta = np.minimum(theta, _WIDEST)
-    difference, total = np.cosh(theta) - np.cos(theta), np.sinh(theta) + np.sin(theta)
+    wide = np.minimum(theta, _WIDEST)
+    difference, total = np.cosh(wide) - np.cos(wide), np.sinh(wide) + np.sin(wide)
     f = 2 * difference / (theta * total)
-    tangent = f / 2 + 1 - difference * (np.cosh(theta) + np.cos(theta)) / total**2
+    tangent = f / 2 + 1 - difference * (np.cosh(wide) + np.cos(wide)) / total**2
     return (1 - nu**2 * tangent) / (1 - nu**2)
 
 
@@ -55,9 +55,10 @@ def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Stat
     theta = (3 * (1 - ratio**2)) ** 0.25 * b[place] * np.sqrt(curvature[at, place] / t[place])
     stiffer = float(tangent_stiffening(theta, ratio)) - 1
     assumed = "" if nu is not None else f", with Poisson's ratio {ratio:g} assumed"
-    said = (
-        f" the strip is bent to b^2 kappa/t = {searle[at, place]:.2g} (Searle's parameter) at x/L = "
-        f"{xi[place]:.2g}: past 1 it cannot camber, and is up to {percent(stiffer)} stiffer, its frequencies up to "
+    bent = f"b^2 kappa/t = {searle[at, place]:.2g} (Searle's parameter) at x/L = {xi[place]:.2g}"
+    where = f" the strip is bent to {bent}"
+    worth = (
+        f": past 1 it cannot camber, and is up to {percent(stiffer)} stiffer, its frequencies up to "
         f"{percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
     )
     quantity = "Searle's parameter b^2 kappa/t"
