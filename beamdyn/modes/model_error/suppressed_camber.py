@@ -65,7 +65,8 @@ def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Stat
     yield Statement(
         "at ",
         Speeds(speeds[at]),
-        said,
+        where,
+        worth,
         kind=MODEL_ERROR,
         quantity=quantity,
         value=searle[at, place],
