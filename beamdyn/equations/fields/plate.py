@@ -419,10 +419,10 @@ class Torsion(SectionField):
 
     def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
         yield from super()._terms(strip, rows, columns)
-        c1, c2 = axis_in_section(strip.scene)
-        tilt, names = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y")), (self.name,) * 2
-        yield Term("rotary inertia of torsion", *names, 2, tilt)
-        yield Term("spin of sections of torsion", *names, 0, tilt, "speed_squared", c2**2 - c1**2)
+        (c1, c2), name = axis_in_section(strip.scene), self.name
+        tilt = strip.integrate(strip.rotary_inertia, (rows, "w_y"), (columns, "w_y"))
+        yield Term("rotary inertia of torsion", name, name, 2, tilt)
+        yield Term("spin of sections of torsion", name, name, 0, tilt, "speed_squared", c2**2 - c1**2)
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
         tip = strip.scene.beam.tip

@@ -88,7 +88,8 @@ def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, coun
     momentum = np.einsum("ij,sjm->sim", equations.steady().M, found.vector)
     energy = (found.vector.conj() * momentum).real
     is_own = energy[:, own].sum(axis=1) > energy[:, ~own].sum(axis=1)
-    omega = np.where(is_own & (found.eigenvalue.imag > 0), found.eigenvalue.imag, np.inf)
+    omega = np.imag(found.eigenvalue)
+    omega = np.where(is_own & (omega > 0), omega, np.inf)
     return np.sort(omega, axis=1)
 
 
