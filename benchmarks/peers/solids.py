@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -80,6 +80,8 @@ class Strip:
         0 (the strip points inward) or 180 (outward).
     bending_angle : float
         Of the thickness out of the plane of rotation.
+    taper : callable, optional
+        Thickness and width at x/L over those given; for a strip that is no plain one.
     """
 
     length: float
@@ -92,6 +94,7 @@ class Strip:
     setting_angle: float = 0.0
     bending_angle: float = 0.0
     speed: float = 0.0  # rad/s
+    taper: Callable[[float], tuple[float, float]] | None = None
 
     def scene(self, physics: bd.Physics | None = None) -> bd.Scene:
         """The strip as a beam; plain, if no physics is given."""
@@ -188,7 +191,8 @@ def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
     number = hexahedra.numbers(counts)
     sides = coordinates(strip, counts)
     points = (
-        (n, *(side[step] for side, step in zip(sides, place, strict=True))) for place, n in number.items()
+        (n, *_tapered(strip, *(side[step] for side, step in zip(sides, place, strict=True))))
+        for place, n in number.items()
     )
     psi = math.radians(strip.bending_angle)
     inward = strip.setting_angle == 0
@@ -209,6 +213,14 @@ def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
         poissons_ratio=strip.poissons_ratio,
         density=strip.density,
     )
+
+
+def _tapered(strip: Strip, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """A place in the strip of a place in the one of constant section."""
+    if strip.taper is None:
+        return x, y, z
+    thicker, wider = strip.taper(x / strip.length)
+    return x, y * thicker, z * wider
 
 
 def coordinates(strip: Strip, counts: Counts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,0 +1,90 @@
+"""Whether solids contradict the model errors that the scenes of examples/ state.
+
+Run: python -m benchmarks.example_solids.  Each scene of a rectangular section is taken with its own physics,
+without bodies at the tip in both, at rest; one that points at the axis or away from it also turns.  Solids in
+CalculiX on three meshes give the frequencies of bending; a model error is contradicted where the true one
+is more than twice as large, but for the own error of the solids.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.peers.solids import BENDING, Strip, reference
+from benchmarks.rows import Row, show
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+_MODES, _ALLOWED, _SHARE = 3, 2.0, 0.6  # of the critical speed, or of the first frequency at rest
+
+
+def scenes() -> Iterator[tuple[str, bd.Scene]]:
+    """Scenes of beams with a rectangular section, each section once."""
+    seen = set()
+    for path in sorted(EXAMPLES.glob("*.toml")):
+        try:
+            scene = bd.load_scene(path)
+        except ValueError:  # a file on brakes
+            continue
+        if scene.beam.section is not None and scene.beam.twist is None:
+            beam = replace(scene.beam, tip=None, point_masses=(), point_springs=())
+            bare = replace(scene.undamped, beam=beam, motion=None, gravity=0.0)
+            if (beam, bare.mount) not in seen:
+                seen.add((beam, bare.mount))
+                yield path.name, bare
+
+
+def strip_of(scene: bd.Scene, speed: float) -> Strip:
+    """The beam of a scene as a solid."""
+    section, mount, end = scene.beam.section, scene.mount, np.zeros(1)
+    assert section is not None
+    t, b = float(section.thickness(end)[0]), float(section.width(end)[0])
+    varies = bool(section.thickness.degree or section.width.degree or len(section.thickness.breakpoints) > 2)
+
+    def taper(xi: float) -> tuple[float, float]:
+        at = np.array([xi])
+        return float(section.thickness(at)[0]) / t, float(section.width(at)[0]) / b
+
+    angles = math.degrees(mount.setting_angle), math.degrees(mount.bending_angle)
+    material = section.youngs_modulus, section.density, section.poissons_ratio or 0.3
+    return Strip(scene.beam.length, b, t, *material, mount.radius, *angles, speed, taper if varies else None)
+
+
+def speeds_of(scene: bd.Scene) -> list[float]:
+    """At rest; and one speed, where the beam points at the axis or away from it."""
+    if math.sin(scene.mount.setting_angle) > 1e-9:
+        return [0.0]
+    critical = bd.critical_speed(scene)
+    turning = critical if math.isfinite(critical) else 2 * math.pi * bd.natural_modes(scene).frequency[0]
+    return [0.0, float(f"{_SHARE * turning:.2g}")]
+
+
+def compare() -> Iterator[Row]:
+    """Each scene: the largest true difference of its modes, the model error stated of it, and the bound."""
+    for name, scene in scenes():
+        for speed in speeds_of(scene):
+            solid = [mode for mode in reference(strip_of(scene, speed)) if mode.kind == BENDING][:_MODES]
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of what is compared here
+                found = bd.natural_modes(scene, speed, _MODES)
+                stated = found.model_error
+            true = np.abs([m.frequency / f - 1 for m, f in zip(solid, found.frequency, strict=False)])
+            own = np.array([mode.error for mode in solid])
+            holds = true <= _ALLOWED * stated[: len(true)] + own
+            worst = int((true - _ALLOWED * stated[: len(true)]).argmax())
+            said = f"{true[worst]:.1e}, {stated[worst]:.1e}, {own[worst]:.0e}"
+            verdict = "holds" if holds.all() else "contradicted"
+            yield f"{name} at {speed:g} rad/s: true, stated, solids' own", said, verdict
+
+
+if __name__ == "__main__":
+    show("model errors of the examples beside solids", compare)
