@@ -24,10 +24,11 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
         place[coordinates] = np.arange(len(coordinates))
         parts = [places[places >= 0] for places in (place[part] for part in parts)]
         pencil = pencil.part(coordinates)
-    return _solver_of_part(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
+    return solver_of_pencil(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
 
 
-def _solver_of_part(pencil: SteadyPencil) -> Eigensolver:
+def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
+    """Eigensolver of equations at steady speed that are solved together."""
     if len(pencil.M) <= LARGE:
         return Solver(pencil)
     # It is imported here for the time that sparse algebra takes to import.
@@ -49,7 +50,7 @@ class UncoupledSolver(Eigensolver):
 
     def __init__(self, pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> None:
         super().__init__(pencil)
-        self.parts, self.solvers = tuple(parts), tuple(_solver_of_part(pencil.part(part)) for part in parts)
+        self.parts, self.solvers = tuple(parts), tuple(solver_of_pencil(pencil.part(part)) for part in parts)
 
     @cached_property
     def lowest_at_rest(self) -> float:

@@ -29,7 +29,7 @@ from beamdyn.scene.scene import Scene
 
 _MOST = 160  # coordinates of a model: an estimate of a change needs no more
 _APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
-_AT_CLAMP = 5  # functions along each segment at least, where what a clamp hinders is resolved
+_AT_CLAMP = 3  # functions along each segment beyond as many as modes, where what a clamp hinders is resolved
 _ACROSS = 4  # functions across the width, which leave 1 % of what the clamp changes, and 0.1 % of torsion
 _STEPS = 8  # steps of inverse iteration: one will do unless the effect is large or modes are close
 _CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
@@ -104,7 +104,7 @@ class BaseEquations:
 
 def clamp_spaces(scene: Scene, modes: int) -> Spaces:
     """Function spaces that resolve so many modes of a scene with camber or torsion, to one in a thousand."""
-    functions = min(MOST_FUNCTIONS, _AT_CLAMP + modes)
+    functions = min(MOST_FUNCTIONS, _AT_CLAMP + max(modes, 2))
     return replace(Ritz(functions).spaces(scene.modelled_beam), across=_ACROSS)
 
 

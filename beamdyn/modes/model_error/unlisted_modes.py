@@ -24,7 +24,7 @@ from beamdyn.equations.effects import (
 )
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.modes.modal.uncoupled import solver_of_pencil
 from beamdyn.modes.model_error.additions import add_effect, can_add
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, without_large_deflection
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedMode
@@ -55,7 +55,9 @@ def _find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> 
         if effect.is_in(scene) or not can_add(scene, effect):
             continue
         added = add_effect(scene, effect)
-        extended, count = _refined(added.scene), eigenvalue.shape[1] + _EXTRA
+        extended, count = added.scene, eigenvalue.shape[1] + _EXTRA
+        if effect is SECOND_PLANE:
+            extended = _refined(extended)
         spaces = _spaces(extended, model, count)
         own = _own_frequencies(assemble_over(extended, spaces), fields, speeds, count)
         for k, omega in enumerate(np.where(own <= highest[:, None], own, np.nan).T):
@@ -79,18 +81,21 @@ def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
 
 
 def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Angular frequencies (S, k) of modes that move most in fields whose names begin so, ascending."""
-    own = np.zeros(equations.size, dtype=bool)
-    for name, place in equations.blocks.items():
-        own[place] = name.startswith(fields)
-    solver = solver_of(equations)
-    found = solver.solve(speeds, min(2 * count, solver.size))
-    momentum = np.einsum("ij,sjm->sim", equations.steady().M, found.vector)
-    energy = (found.vector.conj() * momentum).real
-    is_own = energy[:, own].sum(axis=1) > energy[:, ~own].sum(axis=1)
+    """Angular frequencies (S, k) of modes that move most in fields whose names begin so, ascending.
+
+    Gyroscopic coupling with other fields is left out: it changes them little.
+    """
+    own = {name for name in equations.blocks if name.startswith(fields)}
+    names = [name for together in equations.coupled if own.intersection(together) for name in together]
+    pencil, count = equations.steady().part(equations.places(names)), 2 * count
+    solver = solver_of_pencil(pencil)
+    found = solver.solve(speeds, min(count, solver.size))
+    sizes = [equations.blocks[name].stop - equations.blocks[name].start for name in names]
+    is_own = np.repeat([name in own for name in names], sizes)
+    energy = np.real(found.vector.conj() * (pencil.M @ found.vector))
+    moves_own = energy[:, is_own].sum(axis=1) > energy[:, ~is_own].sum(axis=1)
     omega = np.imag(found.eigenvalue)
-    omega = np.where(is_own & (omega > 0), omega, np.inf)
-    return np.sort(omega, axis=1)
+    return np.sort(np.where(moves_own & (omega > 0), omega, np.inf), axis=1)
 
 
 def _kind(effect: Effect, scene: Scene) -> str:
