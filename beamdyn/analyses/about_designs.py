@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
-from dataclasses import replace
+from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -19,7 +18,6 @@ from beamdyn.analyses.results.of_studies import study_table
 from beamdyn.analyses.values import (
     final_speed,
     in_unit_of,
-    naming_option,
     parse_positive,
     parse_speed,
     parse_window,
@@ -176,7 +174,7 @@ def study(
         "workers": varying.workers,
         "store": varying.store,
     }
-    with _refused_as_given(axes, speed=speed, window=window):
+    with _refused_as_given(axes):
         return (
             _spread(scene, known, spreading, how) if spreading.spread else _study(scene, axes, varying, how)
         )
@@ -232,21 +230,16 @@ def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
 
 
 @contextmanager
-def _refused_as_given(axes: Sequence[Axis], **options: str | None) -> Iterator[None]:
-    """Within it, a refusal of an option shows its text, one of an input its value and bound as given."""
+def _refused_as_given(axes: Sequence[Axis]) -> Iterator[None]:
+    """Within it, a refusal of an input shows its value and bound as given."""
     try:
-        with ExitStack() as named:
-            for name, text in options.items():
-                if text is not None:
-                    named.enter_context(naming_option(name, f"--{name}", text))
-            yield
+        yield
     except InvalidValue as error:
         axis = next((axis for axis in axes if axis.input.path == error.field and axis.unit), None)
         if axis is None or not isinstance(error.value, float):
             raise
         unit, si = _unit_of(axis)
-        limit = None if error.limit is None else error.limit / si
-        raise replace(error, value=error.value / si, limit=limit, unit=unit, cases=None) from None
+        raise error.in_unit(unit, lambda value: value / si) from None
 
 
 def _inputs(scene: Scene) -> list[Input]:

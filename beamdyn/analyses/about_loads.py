@@ -33,7 +33,7 @@ from beamdyn.analyses.results.of_loads import (
     equivalents_table,
     transient_loads_table,
 )
-from beamdyn.analyses.values import final_speed, naming_option, parse_quantity, parse_speeds, parse_window
+from beamdyn.analyses.values import final_speed, parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.outputs import write_table
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
@@ -88,9 +88,8 @@ class CycleOptions:
         if self.equivalent_cycles is not None and not text:
             number = f"{self.equivalent_cycles:g}"
             raise ValueError(f"--equivalent-cycles = {number}: give --woehler, too, or leave it out")
-        with naming_option("exponent", "--woehler", self.woehler or ""):
-            for exponent in self.exponents:
-                checks.positive("exponent", exponent)
+        for exponent in self.exponents:
+            checks.positive("exponent", exponent)
         checks.positive("equivalent_cycles", self.number)
 
     @property
@@ -131,7 +130,7 @@ NOT_COUNTED = CycleOptions()
 
 
 LoadSpeeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given)]
-End = Annotated[float | None, positive("s", absent=none_given, field="t_end")]
+End = Annotated[float | None, positive("s", absent=none_given)]
 Angle = Annotated[
     float | None, AsText(lambda option, text, _: parse_quantity(option, text, "rad"), absent=none_given)
 ]

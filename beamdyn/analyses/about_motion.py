@@ -99,7 +99,7 @@ def steady(
 
 _PERIODS, _FRAMES = 3, 60  # periods and frames of a close-up
 Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
-Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text), field="t_end")]
+Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text))]
 
 
 @analysis(

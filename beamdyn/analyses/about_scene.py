@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
-MeasuredEnd = Annotated[float | None, positive("s", absent=none_given, field="t_end")]
+MeasuredEnd = Annotated[float | None, positive("s", absent=none_given)]
 Budget = Annotated[float, positive("s", default="60 s")]
 
 

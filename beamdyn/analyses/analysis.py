@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass, is_dataclass, replace
 from enum import Enum, auto
 from functools import cached_property
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin,
 from cyclopts import Parameter
 
 from beamdyn.analyses.results.cautions import describe_choice, noted, warnings_of
-from beamdyn.analyses.values import check_moves, in_unit_of, naming_option
+from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import program
 from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
@@ -64,14 +63,11 @@ class AsText:
         The text if none is given.
     absent : callable, optional
         ``absent(scene)``: the value if none is given; without it and a default, the option is required.
-    field : str
-        Argument of the core whose refusal shows the option as it was given.
     """
 
     read: Callable[[str, str, Scene], Any]
     default: str | None = None
     absent: Callable[[Scene], Any] | None = None
-    field: str = ""
 
     def shown(self, option: inspect.Parameter) -> inspect.Parameter:
         """The option as the command line has it: a text."""
@@ -246,11 +242,7 @@ class Analysis:
         values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
         if "outputs" in inspect.signature(self.function).parameters:
             values["outputs"] = outputs
-        with ExitStack() as refusals:
-            for name, text in self.texts.items():
-                if text.field and given[name] is not None:
-                    refusals.enter_context(naming_option(text.field, named(name), given[name]))
-            made = self.function(scene, **values)
+        made = self.function(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:

@@ -45,7 +45,7 @@ Speed = Annotated[float | None, AsText(parse_speed, absent=none_given)]
 PositiveSpeed = Annotated[float, positive("rad/s")]
 Speeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene))]
 
-EndOfRun = Annotated[float, positive("s", field="t_end")]
+EndOfRun = Annotated[float, positive("s")]
 
 # Discretization, modes and physics ------------------------------------------------------------------
 
@@ -82,7 +82,7 @@ TimeTolerance = Annotated[
 LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 Stations = Annotated[
     list[float] | None,
-    AsText(lambda option, text, _: parse_positions(option, text), absent=none_given, field="at"),
+    AsText(lambda option, text, _: parse_positions(option, text), absent=none_given),
     Parameter(
         help='Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of '
         "jumps."
@@ -90,7 +90,7 @@ Stations = Annotated[
 ]
 SectionPoints = Annotated[
     list[list[float]] | None,
-    AsText(lambda option, text, _: parse_points(option, text), absent=none_given, field="points"),
+    AsText(lambda option, text, _: parse_points(option, text), absent=none_given),
     Parameter(
         help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, '
         "in which the beam bends, and along the second. Default: the outermost."

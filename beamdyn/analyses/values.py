@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
@@ -16,7 +15,6 @@ from cyclopts import Parameter, Token
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import InvalidInput, quantity
-from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.display_units import known_unit
 from beamdyn.files.scenes import as_velocity
 from beamdyn.scene.motion import RollingWheel
@@ -64,17 +62,6 @@ def parse_positive(option: str, text: str, unit: str, scene: Scene | None = None
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
     return value
-
-
-@contextmanager
-def naming_option(field: str, option: str, text: str) -> Iterator[None]:
-    """Within it, a refusal of an argument of the core names the option and shows its value as given."""
-    try:
-        yield
-    except InvalidValue as error:
-        if error.field != field:
-            raise
-        raise InvalidInput(option, text, error.bound, error.remedy, error.unit, error.limit) from None
 
 
 def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:

@@ -15,7 +15,7 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
 from beamdyn.analyses.results.of_studies import crossings_columns
-from beamdyn.analyses.values import naming_option, parse_positive, parse_speed
+from beamdyn.analyses.values import parse_positive, parse_speed
 from beamdyn.cli.decks import read_with
 from beamdyn.common.edge.config import read
 from beamdyn.common.edge.html_report import Question
@@ -99,11 +99,10 @@ def campbell(
     )  # fmt: skip
     by_label = _label(inputs, labels, physics)
     at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1], alone)
-    with naming_option("per_rev", "--per-rev", per_rev):
-        result = bd.campbell(
-            by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
-            bounds=bounds, **options,
-        )  # fmt: skip
+    result = bd.campbell(
+        by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
+        bounds=bounds, **options,
+    )  # fmt: skip
     if crossings is not None:
         write_table(crossings, crossings_columns(result))
     ignored = (warning for given in inputs for warning in given.warnings)

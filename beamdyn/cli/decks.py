@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 from beamdyn.analyses.options import Text
-from beamdyn.analyses.values import naming_option, parse_quantity, parse_speed
+from beamdyn.analyses.values import parse_quantity, parse_speed
 from beamdyn.common.edge.outputs import Flag, Outputs
 from beamdyn.common.edge.program import examples, warn
 from beamdyn.common.edge.tables import show, table
@@ -87,11 +87,7 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
         name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")
         for name, text in {"length": length, "hub_radius": hub_radius}.items()
     }
-    with (
-        naming_option("length", "--length", length or ""),
-        naming_option("hub_radius", "--hub-radius", hub_radius or ""),
-    ):
-        return read_deck(file, **given)
+    return read_deck(file, **given)
 
 
 def add(app: App) -> None:

@@ -262,9 +262,7 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
             return refusal  # about another number, which was made from this one
     except InvalidInput:  # such as a length that stands for a fraction
         return replace(refusal, value=given)
-    written, convert = unit_as_written(given, unit)
-    limit = None if refusal.limit is None else convert(refusal.limit)
-    return replace(refusal, value=given, unit=written, limit=limit)
+    return replace(refusal.in_unit(*unit_as_written(given, unit)), value=given)
 
 
 def _without_indices(field: str) -> str:

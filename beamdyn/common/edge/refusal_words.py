@@ -10,7 +10,7 @@ from numpy.linalg import LinAlgError
 
 from beamdyn.common.edge.file_words import say, word
 from beamdyn.common.edge.option_words import TYPED
-from beamdyn.common.edge.units import InvalidInput
+from beamdyn.common.edge.units import InvalidInput, last_quantity
 from beamdyn.common.edge.wording import in_unit_of
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 
@@ -26,6 +26,8 @@ _ELSEWHERE = {
     "operating[0]": "--operating",
     "operating[1]": "--operating",
     "position": "position after @",
+    "exponent": "--woehler",
+    "t_end": "--window",
 }
 _PHYSICS = "physics."
 
@@ -44,19 +46,27 @@ def as_typed(error: Exception) -> str:
         return f"{error}; check the size of each value"
     if not isinstance(error, InvalidValue):
         return reason_of(error) if isinstance(error, ArithmeticError) else say(error)
-    option = f"--{error.field.replace('_', '-')}"
-    text, name = _text_of(option), _name(error.field)
+    name = _name(error.field)
+    text = _text_of(name)
     named = replace(error, field=name, other=_name(error.other))
     if error.field == "combine" or (error.field == "scene.motion" and error.value):
         return f"{name}: {named.advice(word)}"  # what was typed has no value of its own
     if error.field == "scene.motion":
         return f"{name}: missing: {named.advice(word)}"
-    if isinstance(error.value, float):
-        return say(in_unit_of(named, text) if text and error.unit else named)
-    if not name.startswith("-") or (not isinstance(error.value, str) and not is_dataclass(error.value)):
-        return say(named)
-    given = text if is_dataclass(error.value) else error.value
-    return say(InvalidInput(**vars(named) | {"value": given}))
+    if isinstance(error.value, float) and error.unit:
+        return say(in_unit_of(named, text))
+    if text and _says_more(text, error.value):
+        return say(InvalidInput(**vars(named) | {"value": text}))
+    if name.startswith("-") and isinstance(error.value, str):
+        return say(InvalidInput(**vars(named)))
+    return say(named)
+
+
+def _says_more(text: str, value: object) -> bool:
+    """Whether what was typed says more than its value: a quantity with a unit, or what is made of a text."""
+    if isinstance(value, float | int):
+        return text == last_quantity(text) != f"{value:g}"
+    return isinstance(value, tuple) or is_dataclass(value)
 
 
 def _name(field: str) -> str:
@@ -64,7 +74,7 @@ def _name(field: str) -> str:
     option = f"--{field.replace('_', '-')}"
     if field.startswith(_PHYSICS):
         return f"[physics] {field.removeprefix(_PHYSICS)}"
-    return _ELSEWHERE.get(field) or (option if option in _options() else field)
+    return option if option in _options() else _ELSEWHERE.get(field, field)
 
 
 def _text_of(option: str) -> str:

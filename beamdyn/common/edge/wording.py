@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.units import last_quantity, unit_as_written
-from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue, RefusedCases
+from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _AMOUNT = re.compile(
@@ -90,26 +90,18 @@ def _decades(number: float) -> float:
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
     """Convert the numbers of an error about an angle to degrees."""
-    value = math.degrees(error.value) if isinstance(error.value, float) else error.value
-    limit = None if error.limit is None else math.degrees(error.limit)
-    return replace(error, value=value, limit=limit, unit="deg", cases=_cases_in_degrees(error.cases))
+    return error.in_unit("deg", math.degrees)
 
 
 def in_millimetres(error: InvalidValue) -> InvalidValue:
     """Convert the numbers of an error about a length below a metre to mm; others are unchanged."""
-    if error.unit != "m" or not isinstance(error.value, float) or abs(error.value) >= 1:
-        return error
-    limit = None if error.limit is None else 1e3 * error.limit
-    return replace(error, value=1e3 * error.value, limit=limit, unit="mm", cases=None)
+    short = error.unit == "m" and isinstance(error.value, float) and abs(error.value) < 1
+    return error.in_unit("mm", lambda metres: 1e3 * metres) if short else error
 
 
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
     """Convert an error to the unit at the end of a text, as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
-    if not isinstance(error.value, float):
-        return error
-    written, convert = unit_as_written(last_quantity(text), error.unit)
-    limit = None if error.limit is None else convert(error.limit)
-    return replace(error, value=convert(error.value), limit=limit, unit=written, cases=None)
+    return error.in_unit(*unit_as_written(last_quantity(text), error.unit))
 
 
 def in_small_units(sentence: str) -> str:
@@ -120,10 +112,3 @@ def in_small_units(sentence: str) -> str:
         return _NUMBER.sub(lambda number: f"{factor * float(number[0]):.6g}", found[1]) + f" {unit}"
 
     return _AMOUNT.sub(convert, sentence)
-
-
-def _cases_in_degrees(cases: RefusedCases | None) -> RefusedCases | None:
-    if cases is None:
-        return None
-    limit = None if cases.limit is None else np.degrees(cases.limit)
-    return RefusedCases(cases.bad, np.degrees(cases.value), limit)

@@ -6,11 +6,14 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import NoneType, UnionType
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from beamdyn.common.words import Named, Words, worded
+
+if TYPE_CHECKING:
+    from typing import Self
 
 MOST = 1e50  # largest size in SI units: products of six are still far from overflow
 _LONGEST = 60  # characters of a value that a message shows
@@ -33,6 +36,11 @@ class RefusedCases:
     bad: np.ndarray
     value: np.ndarray
     limit: np.ndarray | None
+
+    def converted(self, convert: Callable[[float], float]) -> RefusedCases:
+        """The cases with numbers in another unit."""
+        each = np.vectorize(convert, otypes=[float])
+        return RefusedCases(self.bad, each(self.value), None if self.limit is None else each(self.limit))
 
 
 @dataclass(eq=False)
@@ -87,6 +95,13 @@ class InvalidValue(ValueError):
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
+
+    def in_unit(self, unit: str, convert: Callable[[float], float]) -> Self:
+        """The refusal with its numbers in another unit, by what converts one."""
+        value = convert(self.value) if isinstance(self.value, float) else self.value
+        limit = None if self.limit is None else convert(self.limit)
+        cases = None if self.cases is None else self.cases.converted(convert)
+        return replace(self, value=value, limit=limit, unit=unit, cases=cases)
 
     def by_case(self) -> dict[int, InvalidValue]:
         """A refusal of each bad case by itself, by the number of the case."""
