@@ -29,7 +29,12 @@ from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import joined
 from beamdyn.common.screens.screens import FoldedPart, Screen
-from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError, say_change
+from beamdyn.modes.model_error.left_out_effects import (
+    LeftOutEffects,
+    StatesModelError,
+    say_change,
+    spans_by_kind,
+)
 
 _LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
 _DECADE = 3  # letters of a bar for a decade
@@ -123,7 +128,14 @@ def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
         rows.append((name, say_change(sizes[name]), bar(sizes[name]), in_files(how)))
     unknown = ((name, why) for name, why in effects.not_known.items() if name not in sizes)
     rows += [(name, "not known", "", in_files(why)) for name, why in unknown]
-    rows += [(name, "not modelled", "", "no model here has it") for name in effects.not_modelled]
+    of_kind = {mode.kind: mode.effect for mode in effects.unlisted}
+    rows += [
+        (f"modes: {kind}", span, "", in_files(effects.reasons.get(of_kind[kind], "")))
+        for kind, span in spans_by_kind(effects.unlisted).items()
+    ]
+    rows += [
+        (name, "not modelled", "", in_files(effects.reasons.get(name, ""))) for name in effects.not_modelled
+    ]
     heads = "left out", "largest change", "size, logarithmic", "how to include it"
     return table(f"What the physics leaves out, and by how much it changes the {of}", heads, rows, (0, 2, 3))
 

@@ -79,10 +79,11 @@ class Effect:
 
 
 def _lacks(beam: Beam, name: str) -> bool:
-    """Whether a beam, or the section that it was made from, lacks a property."""
+    """Whether a beam lacks a property that neither is given nor follows from its section."""
+    has_ratio = beam.section is not None and beam.section.poissons_ratio is not None
     if name == "poissons_ratio":
-        return beam.section is None or beam.section.poissons_ratio is None
-    return getattr(beam, name) is None
+        return not has_ratio
+    return getattr(beam, name) is None and not (name == "torsion_stiffness" and has_ratio)
 
 
 _SECOND = ("second_bending_stiffness",)
@@ -116,7 +117,12 @@ CAMBER = Effect(
     needs=("poissons_ratio",),
     uncertainty=0.1,
 )
-TORSION = Effect("torsion", "the beam is rigid against torsion", "torsion", needs=("poissons_ratio",))
+TORSION = Effect(
+    "torsion",
+    "the beam is rigid against torsion",
+    "torsion",
+    needs=("torsion_stiffness", "poissons_ratio"),
+)
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )

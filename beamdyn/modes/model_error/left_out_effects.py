@@ -33,6 +33,8 @@ class UnlistedMode:
         Its kind: torsion, or the direction of bending.
     number : int
         Its number among those of its kind, from 1.
+    effect : str
+        Name of the effect with which a model has it.
     frequency : ndarray
         Its frequency [Hz] at each speed; nan where it lies above the modes listed.
     assumed : str
@@ -41,6 +43,7 @@ class UnlistedMode:
 
     kind: str
     number: int
+    effect: str
     frequency: np.ndarray
     assumed: str = ""
 
@@ -51,11 +54,16 @@ class UnlistedMode:
         return " to ".join(dict.fromkeys(both))
 
 
+def spans_by_kind(modes: Sequence[UnlistedMode]) -> dict[str, str]:
+    """Frequencies of modes by their kind: "79.9, 499 Hz"."""
+    kinds = dict.fromkeys(mode.kind for mode in modes)
+    return {kind: f"{', '.join(mode.span() for mode in modes if mode.kind == kind)} Hz" for kind in kinds}
+
+
 def say_unlisted(modes: Sequence[UnlistedMode]) -> str:
     """Name modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
-    kinds = {mode.kind: mode.assumed for mode in modes}
-    spans = {kind: ", ".join(mode.span() for mode in modes if mode.kind == kind) for kind in kinds}
-    return ", ".join(f"{k} {spans[k]} Hz{assumed and f' ({assumed})'}" for k, assumed in kinds.items())
+    assumed = {mode.kind: f" ({mode.assumed})" for mode in modes if mode.assumed}
+    return ", ".join(f"{kind} {span}{assumed.get(kind, '')}" for kind, span in spans_by_kind(modes).items())
 
 
 @dataclass(frozen=True)

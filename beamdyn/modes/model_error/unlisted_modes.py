@@ -62,7 +62,8 @@ def _find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> 
         own = _own_frequencies(assemble_over(extended, spaces), fields, speeds, count)
         for k, omega in enumerate(np.where(own <= highest[:, None], own, np.nan).T):
             if np.isfinite(omega).any():
-                yield UnlistedMode(_kind(effect, extended), k + 1, omega / (2 * np.pi), added.assumed)
+                kind, frequency = _kind(effect, extended), omega / (2 * np.pi)
+                yield UnlistedMode(kind, k + 1, effect.name, frequency, added.assumed)
 
 
 def _refined(scene: Scene) -> Scene:
