@@ -257,10 +257,8 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     oblique = bool(body or products.any())
     if not (oblique or moments.any()):
         return None
-    bending, springs = (
-        _tensor(beam, "bending_stiffness", xi, planes),
-        np.array(mount.root_stiffnesses)[:planes],
-    )
+    bending = _tensor(beam, "bending_stiffness", xi, planes)
+    springs = np.array(mount.root_stiffnesses)[:planes]
     flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility by the smaller stiffness
     root = np.diag([1 / k if k else 0.0 for k in springs])  # there is no bound with hinges that matter
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
@@ -286,10 +284,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = (
-        float((_MARGIN * min(ratios)) ** -0.5),
-        0.0,
-    )  # and the speed of sound over the length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # that of sound over the length
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None

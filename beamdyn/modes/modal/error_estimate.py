@@ -102,27 +102,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         relative = np.abs(distance) / (2 * np.abs(squared))
         if order is not None:
             before = coarse**2 - _coarsest_squares(model, speeds, compared)
-            noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
-            K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
-            # Short elements have stiff entries, of which the rounding is random.
-            noise += _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", v, K, v, optimize=True))
-            least = LEAST_RATIO if len(scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
-            left = extrapolation_error(distance, before, noise, least)
-            truncation = (left + noise) / (2 * np.abs(squared))
-            # Elements resolve lower modes better, but for coincidences; a small square has a larger error.
-            size = np.abs(squared) / model.solver.lowest_at_rest
-            known = (size > 0) & np.isfinite(truncation)
-            of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
-            truncation = np.maximum(truncation, np.maximum.accumulate(of_lower, axis=1))
+            truncation = _mesh_error(model, fine, squared, distance, before)
         else:
-            # A first mode's quotient at rest bounds the lowest square there from above.
-            pencil, first = model.solver.pencil, fine.vector[:, :, 0]
-            stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
-            are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift)
-            lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
-            margin = SLOW_BASES.factor if scene.is_slender_beam_in_one_plane else BASES_OF_FIELDS.factor
-            parts = parts_of_distances(scene, model.discretization)
-            truncation = _ritz_error(distance, squared, lowest, margin, parts)
+            truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
     # But for rotation, nothing holds a root without a spring, or on the axis: a frequency within rounding of
@@ -135,6 +117,38 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
     lacking = np.full((len(speeds), modes - compared), np.inf)
     return EstimatedModes(model, fine, np.concatenate([stated, lacking], axis=1))
+
+
+def _mesh_error(
+    model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
+) -> np.ndarray:
+    """Relative truncation error (S, k) of squares extrapolated over meshes, by their last distances."""
+    compared = squared.shape[1]
+    noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
+    K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
+    # Short elements have stiff entries, of which the rounding is random.
+    noise += _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", v, K, v, optimize=True))
+    least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
+    left = extrapolation_error(distance, before, noise, least)
+    truncation = (left + noise) / (2 * np.abs(squared))
+    # Elements resolve lower modes better, but for coincidences; a small square has a larger error.
+    size = np.abs(squared) / model.solver.lowest_at_rest
+    known = (size > 0) & np.isfinite(truncation)
+    of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
+    return np.maximum(truncation, np.maximum.accumulate(of_lower, axis=1))
+
+
+def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """Relative truncation error (S, k) of squares of eigenvalues, by their distance from a smaller basis."""
+    # A first mode's quotient at rest bounds the lowest square there from above.
+    pencil, first = model.solver.pencil, fine.vector[:, :, 0]
+    stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
+    are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift)
+    lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
+    is_slender = model.scene.is_slender_beam_in_one_plane
+    margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
+    parts = parts_of_distances(model.scene, model.discretization)
+    return _ritz_error(distance, squared, lowest, margin, parts)
 
 
 def extrapolation_error(
