@@ -95,6 +95,11 @@ class Totals(NamedTuple):
     force: np.ndarray
     couple: np.ndarray
 
+    def push(self, row: np.ndarray, body: np.ndarray, arm: np.ndarray, force: np.ndarray) -> None:
+        """Add forces on bodies, each at an arm from the body's centre; a body may occur more than once."""
+        np.add.at(self.force, (row, body), force)
+        np.add.at(self.couple, (row, body), np.imag(arm.conj() * force))
+
 
 Arm = Callable[[str, Point], complex]  # distance from the centre of a body to a point of it, over L
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
@@ -164,27 +169,17 @@ class Line(_AtPoint):
         return [(*bodies, arm(self.body, self.at), arm(self.other, self.on), complex(*self.normal))]
 
     @staticmethod
-    def add(
-        pose: Pose,
-        totals: Totals,
-        row: np.ndarray,
-        a: np.ndarray,
-        b: np.ndarray,
-        frame: np.ndarray,
-        *vectors: Any,
-    ) -> None:
+    def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """n.(p - o), with the couple n' x (p - o) on the body with which n turns."""
-        value, force, couple = totals
+        a, b, frame, *vectors = columns
         turned = (pose.spin[k] * vector[:, None] for k, vector in zip((a, b, frame), vectors, strict=True))
         arm, arm_other, normal = turned
         gap = pose.centre[a] + arm - pose.centre[b] - arm_other
-        value[row] += np.real(normal.conj() * gap)
-        force[row, a] += normal
-        couple[row, a] += np.imag(arm.conj() * normal)
-        force[row, b] -= normal
-        couple[row, b] -= np.imag(arm_other.conj() * normal)
+        totals.value[row] += np.real(normal.conj() * gap)
+        totals.push(row, a, arm, normal)
+        totals.push(row, b, arm_other, -normal)
         # A force that follows its body (frame = body) is not a gradient: it has no such couple.
-        couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
+        totals.couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
 
     def unit_force(self, place: Place) -> complex:
         """The normal."""
@@ -217,20 +212,16 @@ class Round(_AtPoint):
         return [(index[self.body], index[self.other], *ends, self.direction)]
 
     @staticmethod
-    def add(
-        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, arm: Any, on: Any, way: Any
-    ) -> None:
+    def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """|p - c| where the row is normal to the face, 0 where it is tangential; forces act at p on both."""
-        value, force, couple = totals
+        a, b, arm, on, way = columns
         arm = pose.spin[a] * arm[:, None]
         span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * on[:, None]
         length = np.maximum(np.abs(span), _TINY)
         push = way[:, None] * span / length
-        value[row] += np.real(way)[:, None] * length
-        force[row, a] += push
-        force[row, b] -= push
-        couple[row, a] += np.imag(arm.conj() * push)
-        couple[row, b] -= np.imag((pose.centre[a] + arm - pose.centre[b]).conj() * push)
+        totals.value[row] += np.real(way)[:, None] * length
+        totals.push(row, a, arm, push)
+        totals.push(row, b, pose.centre[a] + arm - pose.centre[b], -push)
 
     def unit_force(self, place: Place) -> complex:
         """The normal of the circle at the point, turned by the direction."""
@@ -262,20 +253,16 @@ class Path:
         return [(index[a], index[b], arm(a, p), arm(b, q)) for (a, p), (b, q) in pairwise(self.ends)]
 
     @staticmethod
-    def add(
-        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, arm: Any, arm_other: Any
-    ) -> None:
+    def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """Minus the length of the path, whose segments pull their ends together."""
-        value, force, couple = totals
+        a, b, arm, arm_other = columns
         arm, arm_other = pose.spin[a] * arm[:, None], pose.spin[b] * arm_other[:, None]
         span = pose.centre[b] + arm_other - pose.centre[a] - arm
         length = np.maximum(np.abs(span), _TINY)
         pull = span / length
-        np.add.at(value, row, -length)  # a path may have several segments on one body: not +=
-        np.add.at(force, (row, a), pull)
-        np.add.at(force, (row, b), -pull)
-        np.add.at(couple, (row, a), np.imag(arm.conj() * pull))
-        np.add.at(couple, (row, b), -np.imag(arm_other.conj() * pull))
+        np.add.at(totals.value, row, -length)  # a path has a row for all its segments: not +=
+        totals.push(row, a, arm, pull)
+        totals.push(row, b, arm_other, -pull)
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
         """At each point of the body, the pull towards its neighbours on the path."""
@@ -312,16 +299,13 @@ class Turn:
         return [(index[self.body], index[self.other], self.ratio)]
 
     @staticmethod
-    def add(
-        pose: Pose, totals: Totals, row: np.ndarray, a: np.ndarray, b: np.ndarray, ratio: np.ndarray
-    ) -> None:
+    def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """Angle - ratio * other angle; what a gear does not pass on, its housing on the ground takes."""
-        value, _, couple = totals
-        ratio = ratio[:, None]
-        value[row] += pose.angle[a] - ratio * pose.angle[b]
-        couple[row, a] += 1.0
-        couple[row, b] -= ratio
-        couple[row, -1] += ratio - 1.0
+        a, b, ratio = columns[0], columns[1], columns[2][:, None]
+        totals.value[row] += pose.angle[a] - ratio * pose.angle[b]
+        totals.couple[row, a] += 1.0
+        totals.couple[row, b] -= ratio
+        totals.couple[row, -1] += ratio - 1.0
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
         """A couple; what a gear does not pass on, its housing on the ground takes."""
