@@ -29,14 +29,11 @@ from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
     PlanarAnswer,
-    describe_statics,
     format_size,
     joint_outputs,
-    largest_error,
     name_output,
     reactions_table,
     select_rows,
-    unknown_loads,
 )
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
 from brakes.config.caliper import CaliperInput
@@ -169,7 +166,7 @@ class CaliperAnswer(PlanarAnswer):
     def error(self) -> float:
         """Largest error of the forces, over the largest force."""
         rubbing = np.nan if self.friction is None else self.friction.error
-        return float(np.fmax.reduce((*self.run.error, largest_error(self.equilibrium), rubbing)))
+        return float(np.fmax.reduce((*self.run.error, self.equilibrium.largest_error, rubbing)))
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
@@ -216,7 +213,7 @@ class CaliperAnswer(PlanarAnswer):
             shown.append(
                 f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
             )
-        return [*shown, describe_statics(self.equilibrium, run.message, run.virtual_work.max(), self.error)]
+        return [*shown, self._diagnosis(run.message, run.virtual_work)]
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
@@ -370,7 +367,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         if not isinstance(answer, MechanismAnswer):
             return super()._first(answer, outputs)
         mechanism = answer.equilibrium.position.mechanism
-        given = {load.name for load in mechanism.loads} - {load.name for load in unknown_loads(mechanism)}
+        given = {load.name for load in mechanism.loads} - {load.name for load in mechanism.unknown_loads}
         loads = sorted(mechanism.loads, key=lambda load: load.name in given)
         when = "at the end of the stroke" if answer.motion else "as drawn"
         return [(f"{load.name} {when}", name_output(load.name)) for load in loads][:3]

@@ -20,15 +20,12 @@ from beamdyn.common.results.result import plain
 from brakes.answers.planar import (
     MechanismFriction,
     PlanarAnswer,
-    describe_statics,
     format_force,
     joint_outputs,
-    largest_error,
     name_output,
     reactions_table,
     select_rows,
     units_of,
-    unknown_loads,
 )
 from brakes.answers.tables import SCALES
 from brakes.config.caliper import CaliperInput
@@ -79,7 +76,7 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
                 load.unit,
             )
             for way in ("squeezing", "releasing")
-            if load in unknown_loads(mechanism)
+            if load in mechanism.unknown_loads
         ]
     return (*loads, *joint_outputs(mechanism, lambda answer: answer.last.magnitudes), *rubbing)
 
@@ -172,7 +169,7 @@ class MechanismAnswer(PlanarAnswer):
     @property
     def error(self) -> float:
         """Largest error of the forces, over the largest force."""
-        return max(largest_error(self.last), self.friction.error if self.friction else 0.0)
+        return max(self.last.largest_error, self.friction.error if self.friction else 0.0)
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
@@ -195,8 +192,7 @@ class MechanismAnswer(PlanarAnswer):
             last = solve(self._mechanism, self.motion.position[end])
             shown.append(table(f"Stroke of {self.motion.driver}", [*columns], rows))
             shown.append(reactions_table(last, title.format(f"at {self._travelled(end)}")))
-        virtual_work = np.max(self.last.virtual_work)
-        return [*shown, describe_statics(self.equilibrium, self.message, virtual_work, self.error)]
+        return [*shown, self._diagnosis(self.message, self.last.virtual_work)]
 
     def _columns(self) -> dict[str, np.ndarray]:
         """Travels and sizes of the loads over the stroke, by name and unit."""
@@ -283,7 +279,7 @@ class MechanismAnswer(PlanarAnswer):
         title = "\n".join(filter(None, (title, *captions)))
         drawn = open_and_closed(self.equilibrium.position, now, title)
         if now.status == "self-locking":
-            drawn = with_lock(drawn, now, unknown_loads(self._mechanism)[-1].name)
+            drawn = with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
         points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 

@@ -69,7 +69,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
     rows.append(())
     # The error of the forces [N]: a smaller one neither pulls nor pushes.
     largest = np.nan_to_num(np.abs(np.concatenate([(0.0,), *map(np.ravel, magnitudes.values())])))
-    least = max(1e-9, float(np.nan_to_num(largest_error(equilibrium))) * float(largest.max(initial=0.0)))
+    least = max(1e-9, float(np.nan_to_num(equilibrium.largest_error)) * float(largest.max(initial=0.0)))
     for joint in mechanism.joints:
         size = float(np.ravel(magnitudes[joint.name])[0])
         xy = (
@@ -99,21 +99,6 @@ def format_force(value: Any, digits: int = 5) -> str:
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
     """A force or moment with its unit; as `format_force` where it is not a number."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
-
-
-def largest_error(equilibrium: Equilibrium) -> float:
-    """Largest error of an equilibrium's positions, over the largest force; nan where there are no forces."""
-    return float(np.fmax.reduce(equilibrium.error, axis=None))
-
-
-def describe_statics(equilibrium: Equilibrium, message: str, virtual_work: float, error: float) -> str:
-    """Diagnosis in a sentence or two, with the error of the forces, nan where there are none."""
-    stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
-    return (
-        f"Statics: {in_small_units(message)}. Mobility {int(np.max(equilibrium.mobility))}, indeterminacy "
-        f"{int(np.max(equilibrium.indeterminacy))}; virtual work of all loads "
-        f"{virtual_work:.1e} of the largest force.{stated}"
-    )
 
 
 # Friction in a mechanism: its forces without friction, squeezing and releasing, side by side -------------
@@ -179,7 +164,7 @@ class MechanismFriction(Result):
     @property
     def error(self) -> float:
         """Largest error of the forces, over the largest force, where there is equilibrium."""
-        return max(largest_error(way) for way in self.last.ways.values())
+        return max(way.largest_error for way in self.last.ways.values())
 
     def table(self) -> RenderableType:
         """Sizes of loads, joints and friction as drawn: without friction, squeezing, releasing."""
@@ -204,14 +189,14 @@ class MechanismFriction(Result):
         """Unknown loads over the stroke, squeezing and releasing: the load, its name, and its size."""
         return [
             (load, f"{load.name}, {name}", way.amplitudes[load.name])
-            for load in unknown_loads(self.last.without.position.mechanism)
+            for load in self.last.without.position.mechanism.unknown_loads
             for name, way in self._moving(self.last)
         ]
 
     def caption(self, index: int) -> str:
         """The unknown load in three numbers, at one of the positions."""
         sentences = []
-        for load in unknown_loads(self.drawn.without.position.mechanism):
+        for load in self.drawn.without.position.mechanism.unknown_loads:
             sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in self.last.ways.values()])
             sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
             said = (
@@ -241,11 +226,6 @@ class MechanismFriction(Result):
         return {"driver": self.driver} | {
             n: {key: plain(getattr(way, key)) for key in keys} for n, way in ways
         }
-
-
-def unknown_loads(mechanism: Mechanism) -> list[Load]:
-    """Loads without a given magnitude, which equilibrium gives."""
-    return [load for load in mechanism.loads if load.amplitude(np.zeros(1)) is None]
 
 
 # Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation -----------
@@ -291,6 +271,17 @@ class PlanarAnswer(Answer):
     def refusals(self) -> Sequence[str]:
         """Which bodies are loose, or which reactions statics does not determine."""
         return () if self.status == "determined" else (in_small_units(self.message),)
+
+    def _diagnosis(self, message: str, virtual_work: np.ndarray) -> str:
+        """Statics in a sentence or two, with the error of the forces, nan where there are none."""
+        mobility, indeterminacy = self.equilibrium.mobility, self.equilibrium.indeterminacy
+        error = self.error
+        stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
+        return (
+            f"Statics: {in_small_units(message)}. Mobility {int(np.max(mobility))}, indeterminacy "
+            f"{int(np.max(indeterminacy))}; virtual work of all loads {np.max(virtual_work):.1e} of the "
+            f"largest force.{stated}"
+        )
 
     def handles(self, place: float) -> Sequence[Handle]:
         """The points of the file: a named caliper's dimensions, or a mechanism's named points."""

@@ -73,6 +73,11 @@ class Mechanism:
         """Joints, then loads."""
         return (*self.joints, *self.loads)
 
+    @property
+    def unknown_loads(self) -> list[Load]:
+        """Loads without a given magnitude, which equilibrium gives."""
+        return [load for load in self.loads if load.amplitude(np.zeros(1)) is None]
+
     @cached_property
     def friction(self) -> dict[str, tuple[str, FrictionLaw]]:
         """Friction by its name: that of the joint, and its label where the joint has several."""

@@ -119,6 +119,11 @@ class Equilibrium:
         return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
 
     @property
+    def largest_error(self) -> float:
+        """Largest error of the positions; nan where there are no forces."""
+        return float(np.fmax.reduce(self.error, axis=None))
+
+    @property
     def has_answer(self) -> bool:
         """Whether the forces are those of the mechanism; see `is_answer`."""
         return self.is_determined and is_answer(self.status, self.multiplier)
