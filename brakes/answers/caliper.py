@@ -21,10 +21,12 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.varied_inputs import numbers
-from beamdyn.common.edge.wording import in_range, in_small_units
+from beamdyn.common.edge.wording import in_range
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
+from beamdyn.common.results.statements import in_small_units
 from beamdyn.common.screens.screen_parts import Slider
+from beamdyn.common.words import Words
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
@@ -140,7 +142,7 @@ class CaliperAnswer(PlanarAnswer):
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
-        return f"from {1e3 * self.run.cable[pulls.argmax()]:.6g} mm of cable on: {self.run.message}"
+        return Words(f"from {1e3 * self.run.cable[pulls.argmax()]:.6g} mm of cable on: ", self.run.message)
 
     @property
     def refusals(self) -> Sequence[str]:
@@ -356,11 +358,12 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 remedy = "move pads, pivots or the ends of the cable"
                 raise ValueError(f"the cable opens the pads: {remedy}") from None
             except AssemblyError as error:
-                raise NoAnswer(in_small_units(str(error))) from None
+                raise NoAnswer(in_small_units(error.args[0])) from None
             except ValueError as error:
                 if solve(core.free if isinstance(core, Caliper) else core).mobility == 1:
                     raise
-                raise NoAnswer(in_small_units(str(error))) from None
+                said = error.args[0] if isinstance(error.args[0], Words) else str(error)
+                raise NoAnswer(in_small_units(said)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
         """The loads that equilibrium gives, then the others."""

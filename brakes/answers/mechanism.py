@@ -15,8 +15,8 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
-from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results.result import plain
+from beamdyn.common.results.statements import in_small_units
 from brakes.answers.planar import (
     MechanismFriction,
     PlanarAnswer,

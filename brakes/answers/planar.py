@@ -14,10 +14,11 @@ from rich.console import RenderableType
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table
-from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.results.one_line import error_at_most, rounded_up
 from beamdyn.common.results.result import Result, plain
+from beamdyn.common.results.statements import in_small_units
 from beamdyn.common.screens.screen_parts import Handle
+from beamdyn.common.words import Words
 from brakes.answers.base import Answer
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
@@ -144,7 +145,7 @@ class MechanismFriction(Result):
     def locking(self, answered: bool) -> list[str]:
         """Sentences on directions in which it does not just move, but has an answer, or has none."""
         return [
-            f"{name}: {way.message}"
+            Words(name, ": ", way.message)
             for name, way in self._moving(self.last)
             if way.status != "determined" and way.has_answer == answered
         ]

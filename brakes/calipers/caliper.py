@@ -11,6 +11,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import count, not_negative, one_of, positive, real, real_array
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words
 from brakes.calipers.results import CaliperStroke, PadWear, PivotFriction
 from brakes.planar import Equilibrium, Joint, Mechanism, Position, solve, solve_with_friction, stroke
 from brakes.planar.kinematics import MOST_POSITIONS, driver_at_travel
@@ -234,7 +236,7 @@ class Caliper:
         worst = max(
             (way.status for way in wrong.values()), key=lambda s: s != "self-locking", default="determined"
         )
-        words = "; ".join(f"{name}: {way.message}" for name, way in wrong.items())
+        words = joined("; ", (Words(name, ": ", way.message) for name, way in wrong.items()))
         return PivotFriction(
             coefficient=coefficient,
             cable=float(travel),

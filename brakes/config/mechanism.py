@@ -14,9 +14,9 @@ from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, v
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
-from beamdyn.common.edge.wording import in_small_units
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import described_hints, description, descriptions
+from beamdyn.common.results.statements import in_small_units
 from brakes.calipers import NAMED, Caliper
 from brakes.config.caliper import (
     QUANTITIES,
@@ -85,7 +85,7 @@ class PartSection(MadeSection):
         except InvalidValue:  # it is put into the file's words where its key is known
             raise
         except ValueError as error:
-            raise ValueError(in_small_units(str(error))) from None
+            raise ValueError(in_small_units(error.args[0])) from None
 
 
 SECTIONS = {  # sections by the name of their table

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.common.results.statements import IN_LINE, Statement
+from beamdyn.common.results.statements import IN_LINE, Statement, joined
+from beamdyn.common.words import Words
 from brakes.planar.kinematics import assemble
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, solve, tell_where
@@ -101,10 +102,8 @@ def solve_with_friction(
     position = assemble(mechanism) if position is None else position.of(mechanism)
     without = solve(mechanism, position)
     if not without.is_determined or (without.mobility != 1).any():
-        raise ValueError(
-            f"friction needs mobility 1 and a determined equilibrium; here the mobility is "
-            f"{np.max(without.mobility)}, and {without.message}"
-        )
+        needs = "friction needs mobility 1 and a determined equilibrium; here the mobility is "
+        raise ValueError(Words(needs, f"{np.max(without.mobility)}, and ", without.message))
     balance, system = balance_at(mechanism, position), mechanism.system
     gradient = balance.rows.gradient
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
@@ -156,7 +155,7 @@ def _branch(
     if not words:
         return result
     if set(result.open_or_slack) - {name}:  # a cable that would have to push back is what locks
-        return replace(result, message="; ".join((result.message, *words)))
+        return replace(result, message=joined("; ", (result.message, *words)))
     return replace(result, status="self-locking", message="; ".join(words))
 
 

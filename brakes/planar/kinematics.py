@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamdyn.common.inputs.checks import count, positive, real_array
+from beamdyn.common.results.statements import Amount
+from beamdyn.common.words import Words
 from brakes.planar.curve import (
     Node,
     find_zero,
@@ -159,11 +161,10 @@ def assemble(mechanism: Mechanism) -> Position:
     if np.abs(rows.value[:, :m]).max(initial=0.0) > _rounding(system):
         gaps = {name: np.linalg.norm(rows.value[0, own]) for name, own in system.joints.items()}
         worst = max(gaps, key=lambda name: gaps[name])
-        apart = f"{worst!r} stays {gaps[worst] * system.length:.6g} m apart"
-        raise AssemblyError(
-            f"the joints cannot be brought together: {apart}; "
-            "check its points and the lengths of the bars and cables in its loop"
-        )
+        apart = Amount(gaps[worst] * system.length)
+        remedy = "check its points and the lengths of the bars and cables in its loop"
+        said = f"the joints cannot be brought together: {worst!r} stays "
+        raise AssemblyError(Words(said, apart, f" apart; {remedy}"))
     return Position(mechanism, y[0])
 
 
@@ -328,11 +329,9 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
             return float((node_at(system, y, last.tangent).value[k] - start.value[k]) * unit[k])
         if last is not node:
             reached, moved = weight @ (last.value - start.value), (last.value[k] - start.value[k]) * unit[k]
-            raise OutOfReachError(
-                f"the travel of {join_names(weights)} cannot reach {value:g} m: it is {reached:.9g} m where "
-                f"it or the driver {driver!r} turns back, at {_amount(mechanism, driver, moved)}",
-                "give less",
-            )
+            said = f"the travel of {join_names(weights)} cannot reach ", Amount(value), ": it is "
+            where = f" where it or the driver {driver!r} turns back, at ", _amount(mechanism, driver, moved)
+            raise OutOfReachError(Words(*said, Amount(reached, digits=9), *where), "give less")
         before = node
     raise AssertionError("a curve is followed until it ends with an error")
 
@@ -354,10 +353,9 @@ def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, N
     if not (mobility := free.shape[1]):
         raise ValueError("the mechanism does not move: mobility 0; a stroke needs 1: remove a joint")
     if mobility > 1:
-        raise ValueError(
-            f"the mechanism has mobility {mobility}; a stroke needs 1: {describe(system, y, free)}; "
-            f"add {mobility - 1} joint{'s' if mobility > 2 else ''} (a rotation lock, a bar, a contact)"
-        )
+        needs = f"the mechanism has mobility {mobility}; a stroke needs 1: "
+        more = f"{mobility - 1} joint{'s' if mobility > 2 else ''} (a rotation lock, a bar, a contact)"
+        raise ValueError(Words(needs, describe(system, y, free), f"; add {more}"))
     node = node_at(system, y[0], free[:, 0])
     check_moves(system, driver, node.rate[k])
     return system, node if node.rate[k] > 0 else node.reversed(), k
@@ -374,9 +372,10 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
             if (target - turning.value[k]) * sense > _rounding(system):
                 reached = (turning.value[k] - start.value[k]) * unit
                 near = f"{reached:.4g}" == f"{value * unit:.4g}"
+                where = f": it turns back {'just short of it, ' * near}at "
+                there = _amount(mechanism, driver, reached)
                 raise OutOfReachError(
-                    f"driver {driver!r} cannot reach {wanted}: it turns back {'just short of it, ' * near}at "
-                    f"{_amount(mechanism, driver, reached)} (toggle position)",
+                    Words(f"driver {driver!r} cannot reach ", wanted, where, there, " (toggle position)"),
                     "stay below it, drive another load, or follow the motion past it with trace",
                 )
             return [*nodes, turning]
@@ -384,7 +383,7 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
         if (node.value[k] - target) * sense >= 0:
             return nodes
     if value:
-        raise OutOfReachError(f"driver {driver!r} stops before {wanted}", "give a smaller value")
+        raise OutOfReachError(Words(f"driver {driver!r} stops before ", wanted), "give a smaller value")
     return nodes
 
 
@@ -432,15 +431,15 @@ def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float],
 
 def _toggle(mechanism: Mechanism, node: Node, value: float, driver: str, load: str | None) -> Toggle:
     """The toggle position of a load, or where motions branch, at a value of the driver [m or rad]."""
-    position, there = Position(mechanism, node.y), f"at driver value {_amount(mechanism, driver, value, 6)}"
+    position, there = Position(mechanism, node.y), _amount(mechanism, driver, value, 6)
     if load is None:
-        message = f"motions branch {there}: the mechanism may leave the drawn one there"
-        return Toggle(None, value, position, (), message)
+        message = "motions branch at driver value ", there, ": the mechanism may leave the drawn one there"
+        return Toggle(None, value, position, (), Words(*message))
     moving = names_of_moving(mechanism.system, node.tangent[:, None])
     still = tuple(name for name in mechanism.bodies if name not in moving)
-    message = f"toggle position of {load!r} {there}: its motion reverses"
-    message += f"; {join_names(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
-    return Toggle(load, value, position, still, message)
+    resting = f"; {join_names(still)} stand{'s' if len(still) == 1 else ''} still there" if still else ""
+    message = f"toggle position of {load!r} at driver value ", there, f": its motion reverses{resting}"
+    return Toggle(load, value, position, still, Words(*message))
 
 
 def _units(system: System) -> np.ndarray:
@@ -448,6 +447,6 @@ def _units(system: System) -> np.ndarray:
     return system.length / system.unit[list(system.loads.values())]
 
 
-def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> str:
-    """How far the coordinate of a load has moved, with its SI unit."""
-    return f"{moved:.{digits}g} {'rad' if mechanism.load(load).is_couple else 'm'}"
+def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> Amount:
+    """How far the coordinate of a load has moved."""
+    return Amount(moved, unit="rad" if mechanism.load(load).is_couple else "m", digits=digits)

@@ -24,6 +24,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from beamdyn.common.inputs.checks import real
+from beamdyn.common.results.statements import Amount
+from beamdyn.common.words import Words
 
 # Points and directions in the drawing of a mechanism, and their checks -----------------------------------
 
@@ -60,7 +62,7 @@ def check_distinct(key: str, points: Iterable[Point], remedy: str) -> None:
     """A ValueError if two successive points coincide."""
     for p, q in pairwise(tuple(map(float, point)) for point in points):
         if p == q:
-            raise ValueError(f"{key} has zero length at {p} m: {remedy}")
+            raise ValueError(Words(f"{key} has zero length at ", Amount(*p), f": {remedy}"))
 
 
 def suggest(name: object, known: Iterable[str]) -> str:

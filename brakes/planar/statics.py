@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words
 from brakes.planar.curve import close_joints
 from brakes.planar.kinematics import assemble
 from brakes.planar.mechanism import Mechanism, Position, check_mechanism
@@ -362,15 +364,16 @@ def _verdict(
     if unbalanced.any():
         free, margin, least = constraints.null(worst), forces.dropped[worst], rank_tolerance(system.rounding)
         if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
-            sentence = (
-                f"too near a toggle position to decide whether the loads are in balance: {how} there, which "
-                f"only forces beyond all bounds could stop (smallest singular value {margin:.1g}, at least "
-                f"{least:.1g} is needed); draw it further from that position, or give a load that moves it "
-                "an unknown amplitude"
+            sentence = Words(
+                "too near a toggle position to decide whether the loads are in balance: ",
+                how,
+                f" there, which only forces beyond all bounds could stop (smallest singular value "
+                f"{margin:.1g}, at least {least:.1g} is needed); draw it further from that position, or give "
+                "a load that moves it an unknown amplitude",
             )
             found.append(("near a toggle", sentence))
         else:
-            found.append(("no equilibrium", f"the loads are not in balance: {how}; {remedy}"))
+            found.append(("no equilibrium", Words("the loads are not in balance: ", how, f"; {remedy}")))
     else:
         if undetermined:
             sentence = (
@@ -380,8 +383,8 @@ def _verdict(
             )
             found.append(("undetermined", sentence))
         if loose.shape[1]:
-            sentence = f"the loads are in balance, but nothing keeps them so: {how}; {remedy}"
-            found.append(("loose", sentence))
+            said = "the loads are in balance, but nothing keeps them so: "
+            found.append(("loose", Words(said, how, f"; {remedy}")))
         found += wrong_way
     status, message = combine(found)
     return {"status": status, "message": message, "loose": names_of_moving(system, loose)}
@@ -402,4 +405,4 @@ def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
     """Status and message of what was found, each with a status and a sentence, the worst first."""
     if not found:
         return "determined", "every reaction and amplitude is determined"
-    return found[0][0], "; ".join(sentence for _, sentence in found)
+    return found[0][0], joined("; ", (sentence for _, sentence in found))

@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.common.results.statements import Amount, joined
+from beamdyn.common.words import Words
 from brakes.planar.rows import GROUND, FrictionLaw, Point, Pose, Row, Totals
 
 # Rank, null spaces and least-squares solutions of many small matrices at once, by singular values --------
@@ -272,7 +274,7 @@ def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
     return tuple(name for name, moving in zip(system.bodies, moves, strict=False) if moving)
 
 
-def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
+def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
     """Describe motions (3 n, k) in words; bodies without relative motion are named together."""
     parts, pose = motions.reshape(len(motions) // 3, 3, motions.shape[1]), y.reshape(-1, 3)
     centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
@@ -287,7 +289,8 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> str:
             groups.append(([name], twist))
         else:
             names.append(name)
-    return ", ".join(f"{join_names(names)} {_motion(system, len(names), twist)}" for names, twist in groups)
+    each = (Words(f"{join_names(names)} ", _motion(system, len(names), twist)) for names, twist in groups)
+    return joined(", ", each)
 
 
 def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
@@ -305,7 +308,7 @@ def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
         return f"slide{end} along ({x:.3g}, {y:.3g})"
     centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
     x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
-    return f"turn{end} about ({x:.6g}, {y:.6g}) m"
+    return Words(f"turn{end} about ", Amount(x, y))
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:

@@ -31,7 +31,7 @@ P, Q = (0.0, 0.0), (1.0, 0.0)
     [
         (
             lambda: Bar("link", "arm", GROUND, P, P),
-            r"bar 'link' has zero length at \(0.0, 0.0\) m: move one of its ends",
+            r"bar 'link' has zero length at \(0, 0\) m: move one of its ends",
         ),
         (
             lambda: Bar("link", "arm", GROUND, P, Q, length=0),

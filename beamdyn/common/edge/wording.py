@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,14 +14,9 @@ from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.units import last_quantity, unit_as_written
 from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue
 
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-_AMOUNT = re.compile(
-    rf"(?<![\w.])({_NUMBER.pattern}|\({_NUMBER.pattern}, {_NUMBER.pattern}\)) (m|rad)(?![\w/])"
-)
 _SUSPECT = 12.0  # powers of ten by which a number is far from 1
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
-_SMALLER = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}
 
 
 @contextmanager
@@ -102,13 +96,3 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
     """Convert an error to the unit at the end of a text, as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
     return error.in_unit(*unit_as_written(last_quantity(text), error.unit))
-
-
-def in_small_units(sentence: str) -> str:
-    """A sentence of the core with its lengths and angles in mm and degrees, as in drawings."""
-
-    def convert(found: re.Match[str]) -> str:
-        unit, factor = _SMALLER[found[2]]
-        return _NUMBER.sub(lambda number: f"{factor * float(number[0]):.6g}", found[1]) + f" {unit}"
-
-    return _AMOUNT.sub(convert, sentence)
