@@ -14,6 +14,7 @@ from cyclopts import App, Parameter
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
+from beamdyn.analyses.results.of_modes import said_of_model
 from beamdyn.analyses.results.of_studies import crossings_columns
 from beamdyn.analyses.values import parse_positive, parse_speed
 from beamdyn.cli.decks import read_with
@@ -106,7 +107,8 @@ def campbell(
     if crossings is not None:
         write_table(crossings, crossings_columns(result))
     ignored = (warning for given in inputs for warning in given.warnings)
-    warnings = *ignored, *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
+    said = *result.warnings, *result.left_out_effects.warnings(where="in speeds of crossings")
+    warnings = *ignored, *(said_of_model(result, warning) for warning in said)
     deliver(Answer(result, warnings=warnings), outputs, question)
 
 

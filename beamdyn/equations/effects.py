@@ -181,12 +181,13 @@ def effects_left_out(scene: Scene) -> Iterator[Effect]:
 def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     """List the effects that the model of a scene leaves out, with what it assumes and how to include them.
 
-    Where the physics is "auto", the model is that of the plain beam, and analyses choose what they add.
+    Where the physics is "auto", the model is that of the plain beam, and analyses choose what they add: all
+    but torsion, which only adds modes.
     """
     modelled = replace(scene, physics=Physics()) if scene.chooses_physics else scene
     for effect in effects_left_out(modelled):
         reason = effect.reason(modelled)
-        if scene.chooses_physics and effect.switch:
+        if scene.chooses_physics and effect.switch and effect is not TORSION:
             reason = f"{effect.assumption(modelled)}; {_CHOSEN}"
         yield OmittedEffect(effect.name, reason, effect.switch)
 

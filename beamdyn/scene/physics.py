@@ -143,7 +143,7 @@ class JudgedEffect:
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
     >>> modes = bd.natural_modes(bd.Scene(strip, bd.Mount(0.215), physics="auto"), speed=50.0, modes=1)
     >>> sorted(effect.name for effect in modes.physics_choice.effects)[:2]
-    ['large deflection', 'rotary inertia of sections']
+    ['camber of sections', 'large deflection']
     """
 
     name: str

@@ -32,7 +32,8 @@ def test_readme(capsys: pytest.CaptureFixture[str]) -> None:
         assert number in printed
 
 
-def test_tour(capsys: pytest.CaptureFixture[str]) -> None:
+def test_tour(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)  # it writes files
     printed = printed_by("docs/tour.md", capsys)
     for number in ("61.96301", "159.8183326", "0.0019424", "53.0858418", "69.802403", "0.000261"):
         assert number in printed

@@ -181,17 +181,27 @@ def test_references_are_those_of_the_seed():
 
 
 def test_references_are_known_well_enough():
-    """Lowest four modes, and all up to the third of bending, of which errors of 1e-3 can be judged."""
+    """Lowest four modes, and all up to the third of bending, of which errors of 1e-3 can be judged.
+
+    Of two long thin strips the fourth mode, in the other direction, is known to 2 % only.
+    """
     assert all(each.complete and len(each.kind) >= 4 for each in KNOWN)
+    rough = {88, 135}
     for each in KNOWN:
         assert list(each.frequency) == sorted(each.frequency)
-        assert max(each.error) < 5e-3, each.number
+        well = [
+            error
+            for kind, error in zip(each.kind, each.error, strict=True)
+            if not (each.number in rough and kind == OTHER)
+        ]
+        assert max(well) < 5e-3, each.number
 
 
 def test_beams_are_near_the_solids():
     """Bending in two planes lies some percent below solids, whose clamp holds the section in all directions.
 
-    The first torsional modes are those of Saint-Venant's torsion, without the warping that the clamp hinders.
+    The first torsional modes at rest are those of Saint-Venant's torsion, without the warping that the clamp
+    hinders.
     """
     differences: dict[str, list[float]] = {BENDING: [], OTHER: [], TORSION: []}
     for each in KNOWN:
@@ -201,7 +211,7 @@ def test_beams_are_near_the_solids():
         own = {
             BENDING: modes.frequency[first],
             OTHER: modes.frequency[~first],
-            TORSION: [saint_venant(strip)],
+            TORSION: [] if strip.speed else [saint_venant(strip)],
         }
         for mode in each.modes():
             if mode.number <= len(own.get(mode.kind, ())):

@@ -15,14 +15,15 @@ from hypothesis import strategies as st
 from beamdyn.analyses.values import parse_speeds
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER
 from beamdyn.common.results.digits import supported, supported_or_range
+from tests.unit.toml_scenes import without_camber
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "tyre_harvester.toml")
 BLADE = str(ROOT / "examples" / "blade.toml")
 
 
-def test_modes_prints_the_published_frequency_without_noise(run):
-    code, out, err = run("modes", SCENE, "--speed", "50 rad/s")
+def test_modes_prints_the_published_frequency_without_noise(run, tmp_path):
+    code, out, err = run("modes", without_camber(SCENE, tmp_path), "--speed", "50 rad/s")
     assert (code, err) == (DONE, "")
     assert "61.96301891" in out and "stable" in out
 
@@ -105,8 +106,7 @@ def test_modes_writes_files(run, tmp_path):
 
 def test_modes_of_a_strip_are_written_as_surfaces(run, tmp_path):
     scene = tmp_path / "strip.toml"
-    given = Path(SCENE).read_text().replace("[beam]", "[beam]\npoissons_ratio = 0.3")
-    scene.write_text(f"{given}\n[physics]\ntorsion = true\ncamber = true\n")
+    scene.write_text(f"{Path(SCENE).read_text()}\n[physics]\ntorsion = true\ncamber = true\n")
     files = {option: tmp_path / f"{option}{suffix}" for option, suffix in FILES.items()}
     code, out, _ = run("modes", scene, *(x for o, path in files.items() for x in (f"--{o}", path)))
     assert code == DONE and "torsion" in out

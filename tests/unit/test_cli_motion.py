@@ -21,13 +21,15 @@ from beamdyn.analyses.about_motion import Interrupted, _progress
 from beamdyn.analyses.results.of_motion import peaks
 from beamdyn.analyses.values import parse_window
 from beamdyn.cli import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
+from tests.unit.toml_scenes import without_camber
 
 ROOT = Path(__file__).parents[2]
 SCENE = str(ROOT / "examples" / "rolling_harvester.toml")
 STILL = str(ROOT / "examples" / "tyre_harvester.toml")
 BLADE = str(ROOT / "examples" / "blade.toml")
 QUICK = ("--t-end", "0.5 s", "--modes", "2")
-SWEEP = ("sweep", SCENE, "--speeds", "50, 55 rad/s", "--window", "0.1:0.2 s", "--modes", "1")
+OF_SWEEP = "--speeds", "50, 55 rad/s", "--window", "0.1:0.2 s", "--modes", "1"
+SWEEP = ("sweep", SCENE, *OF_SWEEP)
 
 
 @pytest.fixture
@@ -58,8 +60,9 @@ def test_modes_are_those_at_the_final_speed_of_the_motion(run):
 # simulate -----------------------------------------------------------------------------------------
 
 
-def test_simulate_prints_table_3(run):
-    code, out, err = run("simulate", SCENE, "--t-end", "30 s", "--window", "20:30 s")
+def test_simulate_prints_table_3(run, tmp_path):
+    scene = without_camber(SCENE, tmp_path)
+    code, out, err = run("simulate", scene, "--t-end", "30 s", "--window", "20:30 s")
     assert (code, err) == (DONE, "")
     for part in ("1.9425", "29.65", "2.0731", "8.67", "steps", "20 to 30 s", "time-integration error"):
         assert part in out
@@ -109,8 +112,9 @@ def test_outside_linear_theory_is_said_as_by_other_commands(run, edited):
 def test_resonances(run, tmp_path):
     j, c, p = (tmp_path / name for name in ("r.json", "r.csv", "r.svg"))
     code, out, err = run(
-        "resonances", SCENE, "--top-speed", "150 rad/s", "--json", j, "--csv", c, "--plot", p
-    )
+        "resonances", without_camber(SCENE, tmp_path), "--top-speed", "150 rad/s",
+        "--json", j, "--csv", c, "--plot", p,
+    )  # fmt: skip
     assert (code, err) == (DONE, "")
     for part in ("53.08584183", "69.80240337", "forced", "92.044267", "parametric"):
         assert part in out
@@ -149,13 +153,14 @@ def test_inside_a_tongue_there_is_no_steady_response(run):
 
 def test_sweep_is_stored_and_resumed(run, tmp_path):
     store, c, p = tmp_path / "store", tmp_path / "s.csv", tmp_path / "s.png"
-    code, out, err = run(*SWEEP, "--store", store, "--csv", c, "--plot", p)
+    sweep = "sweep", without_camber(SCENE, tmp_path), *OF_SWEEP
+    code, out, err = run(*sweep, "--store", store, "--csv", c, "--plot", p)
     assert (code, err) == (DONE, "")
     assert "0.1 to 0.2 s" in out
     assert [float(row["speed_rad_per_s"]) for row in read_csv(c)] == [50.0, 55.0]
     stored = {path.name: path.stat().st_mtime_ns for path in store.iterdir() if path.name != "store.json"}
     assert stored
-    assert run(*SWEEP, "--store", store)[1] == out
+    assert run(*sweep, "--store", store)[1] == out
     assert stored.items() <= {path.name: path.stat().st_mtime_ns for path in store.iterdir()}.items()
     assert p.read_bytes().startswith(b"\x89PNG")
 

@@ -42,7 +42,7 @@ def test_examples_load(path):
 
 
 def test_published_scene():
-    beam = Beam.rectangular(length=0.05, width=0.01, thickness=0.0002, youngs_modulus=200e9, density=7850.0)
+    beam = Beam.rectangular(0.05, 0.01, 0.0002, youngs_modulus=200e9, density=7850.0, poissons_ratio=0.3)
     assert load_scene(EXAMPLES / "tyre_harvester.toml") == Scene(beam, Mount(radius=0.215))
 
 

@@ -26,7 +26,7 @@ STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)
 SCENE = bd.Scene(STRIP, OUTWARD)
 NONE = np.zeros((2, 2))
-NEVER = ("torsion", "offsets of sections", "warping and Poisson contraction", "contact")
+NEVER = ("offsets of sections", "contact")
 
 FILE = """
 [beam]
@@ -56,10 +56,11 @@ def test_model_error_is_the_size_of_the_sum() -> None:
 
 
 def test_nothing_is_left_out_of_what_is_modelled() -> None:
-    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
+    physics = bd.Physics(2, shear=True, rotary_inertia=True, stretch=True, camber=True, torsion=True)
     modes = bd.natural_modes(replace(SCENE, physics=physics), 100.0)
     assert {*modes.left_out} == {"large deflection"}
     assert modes.left_out_effects.not_modelled == NEVER
+    assert modes.left_out_effects.unlisted == ()
 
 
 def test_what_the_beam_lacks_is_named() -> None:
@@ -68,20 +69,55 @@ def test_what_the_beam_lacks_is_named() -> None:
     assert effects.not_known == {
         "shear deformation": "give shear_stiffness",
         "rotary inertia of sections": "give rotary_inertia",
+        "camber of sections": "give the sides of a rectangular section",
         "stretch": "give axial_stiffness",
         "second plane of bending": "give second_bending_stiffness",
     }
+    assert effects.not_modelled == ("torsion", *NEVER)
     assert "not known: second plane of bending (give second_bending_stiffness)" in effects.sentence()
 
 
-def test_shear_of_a_rectangle_is_estimated_by_an_assumed_ratio_which_is_said() -> None:
-    silent = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0)
-    assumed, given = (bd.natural_modes(bd.Scene(beam, OUTWARD), 100.0) for beam in (silent, STRIP))
-    name = "shear deformation"
-    np.testing.assert_allclose(assumed.left_out[name], given.left_out[name], rtol=1e-12)  # the same sums
-    assert assumed.left_out_effects.assumed == {name: "with Poisson's ratio 0.3 assumed"}
-    assert "with Poisson's ratio 0.3 assumed" in assumed.left_out_effects.sentence()
+def with_ratio(ratio: float | None) -> bd.Beam:
+    """The strip with another Poisson's ratio, or with none."""
+    return bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=ratio)
+
+
+def test_shear_and_camber_of_a_rectangle_are_estimated_by_assumed_ratios_which_are_said() -> None:
+    """Shear hardly depends on it, and has the usual one; camber grows with it from 0, and has the largest."""
+    assumed, given, largest = (
+        bd.natural_modes(bd.Scene(with_ratio(ratio), OUTWARD), 100.0) for ratio in (None, 0.3, 0.5)
+    )
+    shear, camber = "shear deformation", "camber of sections"
+    np.testing.assert_allclose(assumed.left_out[shear], given.left_out[shear], rtol=1e-12)  # the same sums
+    np.testing.assert_allclose(assumed.left_out[camber], largest.left_out[camber], rtol=1e-12)
+    assert assumed.left_out_effects.assumed == {
+        shear: "with Poisson's ratio 0.3 assumed",
+        camber: "with Poisson's ratio 0.5, not given; 0 % with 0",
+    }
+    for said in assumed.left_out_effects.assumed.values():
+        assert said in assumed.left_out_effects.sentence()
     assert not given.left_out_effects.assumed
+
+
+def test_camber_changes_nothing_without_poissons_ratio() -> None:
+    modes = bd.natural_modes(bd.Scene(with_ratio(0.0), OUTWARD), 100.0)
+    np.testing.assert_allclose(modes.left_out["camber of sections"], 0.0, atol=1e-9)
+
+
+def test_modes_that_the_model_does_not_have_are_named_below_its_highest() -> None:
+    """Of the other direction, by the ratio of the sides; of torsion, by Saint-Venant's formula for 2:1."""
+    modes = bd.natural_modes(bd.Scene(STRIP, OUTWARD), 0.0)
+    unlisted = {(mode.kind, mode.number): mode for mode in modes.left_out_effects.unlisted}
+    assert {*unlisted} == {("edge", 1), ("edge", 2), ("torsion", 1)}
+    slender = 0.06 / 0.03 * modes.frequency[0]
+    assert 0.98 * slender < unlisted["edge", 1].frequency < slender  # less by shear and rotary inertia
+    shear_modulus, constant = 200e9 / 2.6, 0.229 * 0.06 * 0.03**3  # Timoshenko and Goodier, 2:1
+    polar = 7850.0 * 0.06 * 0.03 * (0.06**2 + 0.03**2) / 12
+    free = math.sqrt(shear_modulus * constant / polar) / (4 * 0.5)
+    assert free < unlisted["torsion", 1].frequency < 1.02 * free  # more, as the root does not warp
+    assert modes.frequency[2] > unlisted["torsion", 1].frequency
+    lowest = bd.natural_modes(bd.Scene(STRIP, OUTWARD), 0.0, modes=1)
+    assert lowest.left_out_effects.unlisted == ()
 
 
 def test_sections_that_are_no_rectangles_are_not_assumed_to_be() -> None:
@@ -106,7 +142,7 @@ def test_where_nothing_loads_the_straight_beam_large_deflection_changes_nothing(
     np.testing.assert_array_equal(bd.natural_modes(trailing, 0.0).left_out["large deflection"], 0.0)
 
 
-HARVESTER = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+HARVESTER = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.0)  # no camber
 
 
 @pytest.mark.parametrize(
@@ -327,12 +363,14 @@ def test_commands_say_it_below_the_table_and_in_json(
     said = capsys.readouterr()
     printed = " ".join(said.out.split())
     assert "left out" in printed
-    assert "not modelled: torsion, offsets of sections" in printed
+    assert "not modelled: offsets of sections, contact" in printed
     found = json.loads(out.read_text(encoding="utf-8"))
     assert "shear deformation" in found["left_out"]
     assert "model_error" in found
     assert found["not_modelled"] == list(NEVER)
     if command[0] != "critical":
+        assert "modes not listed: edge" in printed
+        assert {mode["kind"] for mode in found["unlisted"]} == {"edge", "torsion"}
         assert "with Poisson's ratio 0.3 assumed" in printed
         assert "exceeds 1 %: shear deformation, left out, changes the answer by" in said.err
         assert "[physics] shear = true includes it, with shear_stiffness or poissons_ratio" in said.err

@@ -13,6 +13,7 @@ import pytest
 from beamdyn import cli as beams
 from beamdyn.common.edge.tables import Terminal, spell, spell_output, table
 from brakes import cli as brakes
+from tests.unit.toml_scenes import without_camber
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -115,7 +116,8 @@ def test_the_files_are_written_though_the_reader_has_left(run_into, tmp_path):
     reader, writer = os.pipe()
     os.close(reader)
     with open(writer, "w") as stream:
-        code, err = run_into(stream, *COMMANDS["modes"], "--json", str(tmp_path / "modes.json"))
+        command = beams, "modes", without_camber(SCENE, tmp_path)
+        code, err = run_into(stream, *command, "--json", str(tmp_path / "modes.json"))
     assert (code, err) == (beams.DONE, "")
     assert len(json.loads((tmp_path / "modes.json").read_text())["frequency"]) == 3
 

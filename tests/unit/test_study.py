@@ -15,6 +15,7 @@ from beamdyn.scene.numbers import number_at, units, with_numbers
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
 SCENE = bd.Scene(bd.Beam.rectangular(**BEAM, tip=bd.TipMass(1e-4, 1e-3, 1e-10)), bd.Mount(0.2))
+WITHOUT_CAMBER = replace(SCENE, beam=bd.Beam.rectangular(**BEAM, tip=SCENE.beam.tip, poissons_ratio=0.0))
 TOO_MANY = dict.fromkeys(("beam.width", "mount.radius"), np.linspace(1e-3, 2e-2, 4000))
 ROUNDING = 1e-12  # a few ulp of the inputs, times what frequencies amplify them
 TOML = """
@@ -368,7 +369,7 @@ def test_model_error_says_where_it_is_large():
 def test_a_model_error_that_is_not_known_names_the_design_that_diverges():
     """Not the stable one whose known changes are largest."""
     for thickness in ([1e-4, 2e-4, 4e-4], [4e-4, 2e-4, 1e-4]):
-        study = bd.study(SCENE, {"beam.thickness": thickness}, speed=120.0, modes=1)
+        study = bd.study(WITHOUT_CAMBER, {"beam.thickness": thickness}, speed=120.0, modes=1)
         assert study.status[:, 0].tolist().count("divergence") == 1
         (said,) = study.model_warnings()
         assert said.startswith("at beam.thickness = 0.0001 m the model error may exceed")
@@ -376,7 +377,7 @@ def test_a_model_error_that_is_not_known_names_the_design_that_diverges():
 
 def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
     vary = {"beam.thickness": [1e-4, 4e-4], "speed": [0.0, 120.0, 130.0]}
-    study = bd.study(SCENE, vary, modes=1)
+    study = bd.study(WITHOUT_CAMBER, vary, modes=1)
     (said,) = study.model_warnings()
     assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
 

@@ -1,6 +1,7 @@
 """Scenes as TOML gives them, and the mistakes that are found in them."""
 
 import copy
+from pathlib import Path
 
 import pytest
 
@@ -49,3 +50,12 @@ def mistakes(data):
 def only_mistake(data):
     (mistake,) = mistakes(data)
     return mistake
+
+
+def without_camber(example: str | Path, folder: Path) -> str:
+    """A copy of an example with Poisson's ratio 0: what its sections' camber changes is no part of a test."""
+    text = Path(example).read_text(encoding="utf-8")
+    assert "poissons_ratio = 0.3" in text
+    copied = folder / Path(example).name
+    copied.write_text(text.replace("poissons_ratio = 0.3", "poissons_ratio = 0"), encoding="utf-8")
+    return str(copied)

@@ -48,7 +48,7 @@ _AXES = "b1", "b2", "b3"  # along the beam at rest, in the direction of bending,
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """What stands below a table on its model, in words and units of files."""
+    """What is said of a result's model, in words and units of files."""
     return in_files(sentence, result.display_units)
 
 

@@ -201,7 +201,7 @@ class LeftOutEffects:
             begin = (where, " the model error") if where else ("the model error",)
             partial = np.isnan(self.total[self.total_of_known == at_least]).any()
             size = f"{'at least ' if partial else ''}{say_size(at_least)}, exceeds {say_size(limit)}"
-            largest = max(self.changes, key=lambda name: np.nanmax(np.abs(self.changes[name]), initial=0.0))
+            largest = max(self.changes, key=lambda name: np.abs(np.nan_to_num(self.changes[name])).max())
             change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
             said = f", {size}: {largest}, left out, changes the answer by {change}"
             data = {"quantity": "model error", "value": at_least, "limit": limit}
