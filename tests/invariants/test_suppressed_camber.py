@@ -54,6 +54,10 @@ def test_a_narrow_strip_says_nothing():
     assert not said(bent(0.001))
 
 
+def test_a_strip_that_does_not_camber_says_nothing():
+    assert not said(bent(0.01, 0.0))
+
+
 def test_an_assumed_ratio_is_said():
     (warning,) = said(bent(0.01, None))
     assert "with Poisson's ratio 0.3 assumed" in warning

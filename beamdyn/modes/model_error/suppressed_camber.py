@@ -42,8 +42,8 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
 def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Statement]:
     """Yield a warning if large deflection bends a strip so far at a speed [rad/s] that it cannot camber."""
     section, solver = model.scene.beam.section, model.solver
-    if section is None or not isinstance(solver, DeflectedSolver):
-        return
+    if section is None or section.poissons_ratio == 0 or not isinstance(solver, DeflectedSolver):
+        return  # without Poisson's ratio there is no camber to suppress
     nu, length, xi = section.poissons_ratio, model.scene.beam.length, np.linspace(0, 1, _STATIONS)
     curvature = np.abs(solver.equilibria(speeds) @ model.equations.deflection(xi, order=2)) / length**2
     b, t = section.width(xi), section.thickness(xi)
