@@ -37,7 +37,7 @@ def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
     """
     paper = paper or Paper.of(rows)
     width, height = paper.width, paper.height
-    figure = new_figure(width / _INCH, height / _INCH, layout="none")
+    figure = new_figure(width / _INCH, height / _INCH, layout=None)
     for layout in lay_out(rows, paper):
         left, top, right, bottom = layout.frame
         box = (left / width, 1 - bottom / height, (right - left) / width, (bottom - top) / height)

@@ -123,7 +123,7 @@ def new_axes(width: float = 7.5, height: float = 4.8) -> Axes:
     return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
 
 
-def new_figure(width: float, height: float, layout: Literal["constrained", "none"] = "constrained") -> Figure:
+def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
     """An empty figure of a size in inches; constrained, its parts make room for one another."""
     from matplotlib.figure import Figure
 
