@@ -18,47 +18,6 @@ _MOST = 100  # named designs
 _LONGEST_LINK, _LARGEST = 30_000, 200_000  # characters of a link, and bytes of what it holds
 _SOURCE = "the link"
 
-# Width of a page below which drawings have narrow paper, as the rules of `look` have it.
-_NARROW = "(max-width: 600px)"
-# The script keeps a key stroke in a field until the program has stored it, marks its screen until the program
-# has heard it (a field tells what is typed after 0.1 s, one of a list when it is left), follows a link that
-# is put into the address of an open page, passes on the keys of undo and redo after what has been typed, and
-# reports when the page becomes narrow or wide.
-SCRIPT = """<script type="module">
-const typedKey = %(typed)s;
-let strokes = 0;
-const askAfter = (delay) => {
-  const stroke = ++strokes;
-  setTimeout(() => stroke === strokes && emitEvent("typed", stroke), delay);
-};
-window.heard = (stroke) => {
-  if (stroke === strokes) for (const it of document.querySelectorAll(".typed")) it.classList.remove("typed");
-};
-const askNow = (event) => { if (event.target.closest?.(".typed [data-path]")) askAfter(0); };
-document.addEventListener("focusout", askNow);
-document.addEventListener("keydown", (event) => { if (event.key === "Enter") askNow(event); });
-document.addEventListener("input", (event) => {
-  const field = event.target.closest?.("[data-path]"), screen = event.target.closest?.("[data-document]");
-  if (!field || !screen || event.target.value === undefined) return;
-  const typed = JSON.parse(sessionStorage.getItem(typedKey) || "{}");
-  (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
-  sessionStorage.setItem(typedKey, JSON.stringify(typed));
-  field.closest(".screen").classList.add("typed");
-  if (field.closest(".lists")) ++strokes;
-  else askAfter(150);
-});
-matchMedia(%(narrow)s).addEventListener("change", (event) => emitEvent("narrow", event.matches));
-window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });
-document.addEventListener("keydown", (event) => {
-  if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest?.(".q-dialog")) return;
-  const key = event.key.toLowerCase();
-  const way = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
-  if (!way) return;
-  event.preventDefault();
-  setTimeout(() => emitEvent(way), 150);
-});
-</script>"""
-
 
 class BrowserMemory:
     """Scripts that store and read a program's data in the browser.
@@ -75,11 +34,6 @@ class BrowserMemory:
         )
 
     @property
-    def script(self) -> str:
-        """The script that the page runs by itself."""
-        return SCRIPT % {"typed": self._typed, "narrow": json.dumps(_NARROW)}
-
-    @property
     def recall(self) -> str:
         """Script that returns, as JSON, what was stored, the look, the width, and the link in the address.
 
@@ -89,7 +43,7 @@ class BrowserMemory:
             f"const kept = JSON.parse(sessionStorage.getItem({self._page}) || '{{}}');"
             f"kept.typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
             f"kept.look = localStorage.getItem({self._look}); kept.link = location.hash;"
-            f"kept.narrow = matchMedia({json.dumps(_NARROW)}).matches;"
+            "kept.narrow = narrowPage.matches;"
             "if (location.hash) history.replaceState(null, '', location.pathname);"
             "return JSON.stringify(kept);"
         )

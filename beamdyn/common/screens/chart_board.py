@@ -11,46 +11,10 @@ from zlib import crc32
 from nicegui import ui
 
 from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.screens.chart_options import chart_colours, marks_of, options_of
+from beamdyn.common.screens.chart_options import marks_of, options_of
 from beamdyn.common.screens.page_writer import PageWriter
 
-STYLE = (
-    chart_colours(":root")
-    + chart_colours(".body--dark", dark=True)
-    + """
-.chart { width: 100%; max-width: 1000px; height: clamp(330px, 52vh, 480px); contain: strict; }
-.chart-title { font-weight: 600; margin-top: 0.4rem; }
-"""
-)
-
-
 _HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
-# Zooming and moving by keys: each changes the part of the x axis [%] that is shown.
-_KEYS = """(event) => {
-  const chart = getElement(%d)?.chart, zoom = chart?.getOption().dataZoom?.[0];
-  if (!zoom || event.ctrlKey || event.altKey || event.metaKey) return;
-  const {start, end} = zoom, step = 0.1 * (end - start);
-  const to = {"+": [start + step, end - step], "=": [start + step, end - step],
-    "-": [start - 1.25 * step, end + 1.25 * step], "0": [0, 100],
-    ArrowLeft: [Math.max(start - step, 0), end - Math.min(step, start)],
-    ArrowRight: [start + Math.min(step, 100 - end), Math.min(end + step, 100)]}[event.key];
-  if (!to) return;
-  event.preventDefault();
-  chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
-}"""
-
-# Saves what is seen, on paper: programs that draw and write know neither the page's colours nor its letters.
-_SAVE = """(model, api) => {
-  const [head, ...seen] = api.getDataURL({excludeComponents: ["toolbox"]}).split(",");
-  const picture = decodeURIComponent(seen.join(",")).replace('fill="none"', 'fill="#ffffff"')
-    .replace(/var\\(--[\\w-]+,(#\\w+|none)\\)/g, "$1")
-    .replace(/font-family: ?inherit/g, "font-family:sans-serif");
-  const name = model.getComponent("toolbox").get(["feature", "mySave", "name"]);
-  const link = Object.assign(document.createElement("a"),
-    {href: `${head},${encodeURIComponent(picture)}`, download: `${name}.svg`});
-  link.click();
-}"""
-
 _NO_TOOLBOX = {"toolbox": {"show": False}}  # while something is held: it would be made anew for each picture
 
 
@@ -62,7 +26,7 @@ class _ShownChart:
         self._options: dict[str, Any] = {}
         self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
         self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
-        self.element.on("keydown", js_handler=_KEYS % self.element.id)
+        self.element.on("keydown", js_handler=f"(event) => zoomChart(event, {self.element.id})")
         # What the component restores is what it was given first: the present data follow.
         self.element.on("chart:restore", self.update, args=[])
 
@@ -75,7 +39,7 @@ class _ShownChart:
         """Show another chart."""
         self.heading.set_text(chart.title)
         last, self._options = self._options, options_of(chart)
-        self._options["toolbox"]["feature"]["mySave"][":onclick"] = _SAVE
+        self._options["toolbox"]["feature"]["mySave"][":onclick"] = "saveChart"
         with self.element.props.suspend_updates():
             self.element.props["aria-label"] = chart.words
         if self._writer.is_ahead:

@@ -12,10 +12,6 @@ from nicegui import background_tasks, ui
 from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Slider
 
-STYLE = """
-.stroke { flex-wrap: nowrap; align-items: center; gap: 0; }
-.stroke .player { order: -1; margin-bottom: 1.5rem; }
-"""
 _OFTEN = (
     0.03  # least time between two messages of a slider that is dragged, or two pictures of one played [s]
 )

@@ -9,57 +9,15 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.drawing.svg import page_colours
 from beamdyn.common.screens.handles import Place, Sheet, Viewport
 from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.screen_parts import Handle
 
-STYLE = (
-    page_colours(":root")
-    + """
-.board { position: relative; width: min(100%, 1000px, 72vh * var(--ratio)); min-width: 480px; }
-.board .machine { display: block; width: 100%; height: auto; user-select: none; }
-.waits { opacity: 0.4; }
-.handle { position: absolute; width: 16px; height: 16px; margin: -8px; border-radius: 50%; cursor: grab;
-  border: 2px solid #0072B2; background: rgb(255 255 255 / 0.35); box-shadow: 0 0 0 1px white;
-  touch-action: none; }
-.handle::after { content: ""; position: absolute; inset: -7px; }
-.handle.away { visibility: hidden; }
-.handle:hover { background: rgb(86 180 233 / 0.6); }
-.handle:active { cursor: grabbing; background: rgb(86 180 233 / 0.9); }
-"""
-)
 _OFTEN = 0.03  # least time between two messages of a moving handle [s]
 _PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
+# Functions of page.js: they send where the pointer is, and the way of an arrow key.
+_HOLD, _KEY = "(event) => holdHandle(event, emit)", "(event) => stepHandle(event, emit)"
 _FAR = 10  # arrow keys' steps with shift
-
-# Sends the position of the handle in the picture, in parts of its width and height, as the pointer drags it,
-# and whether it has been let go; by one listener, so that this message comes last. The picture's position is
-# taken at the start: if a new sentence above shifts the picture, the point does not follow.
-_HOLD = """(down) => {
-  if (down.button) return;
-  const handle = down.currentTarget, board = handle.parentElement;
-  const own = handle.getBoundingClientRect();
-  const aside = [down.clientX - own.x - own.width / 2, down.clientY - own.y - own.height / 2];
-  const box = board.getBoundingClientRect();
-  const send = (event, done) => {
-    const part = (at, size) => Math.min(Math.max(at / size, 0), 1);
-    emit(part(event.clientX - aside[0] - box.x, box.width),
-         part(event.clientY - aside[1] - box.y, box.height), done);
-  };
-  handle.setPointerCapture(down.pointerId);
-  handle.onpointermove = (event) => send(event, false);
-  handle.onpointerup = handle.onpointercancel = (event) => {
-    handle.onpointermove = handle.onpointerup = handle.onpointercancel = null;
-    send(event, true);
-  };
-}"""
-_KEY = """(event) => {
-  const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
-  if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
-  event.preventDefault();
-  emit(way[0], way[1], event.shiftKey);
-}"""
 
 
 class DraggableDrawing:

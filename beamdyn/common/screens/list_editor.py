@@ -16,17 +16,6 @@ from beamdyn.common.screens.page_writer import PageWriter
 Put = Callable[[Item, str, str], object]  # item, key of its cell, and text
 
 _READ = 10_000  # how long a notice stays [ms]
-STYLE = """
-.listed { display: flex; gap: 4px; align-items: start; width: 100%; }
-.listed > .q-field { flex: 1 1 0; min-width: 0; }
-.listed-part { border-left: 3px solid #0072B2; padding-left: 6px; width: 100%; }
-.listed-part .cells { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 4px 6px; }
-.left .lists .nicegui-expansion-content { display: flex; flex-direction: column; gap: 6px; }
-.lists .rows { gap: 6px; }
-.lists .rows:empty { display: none; }
-.advice { border-left: 4px solid #0072B2; padding-left: 0.5rem; width: 100%; }
-.advice:empty { display: none; }
-"""
 
 
 class ItemRow:

@@ -10,7 +10,7 @@ from typing import Any
 from nicegui import background_tasks, run, ui
 
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.screens import page_writer, tasks
+from beamdyn.common.screens import tasks
 from beamdyn.common.screens.browser_memory import (
     BrowserMemory,
     LinkedDesign,
@@ -23,7 +23,7 @@ from beamdyn.common.screens.dialogs import DesignsDialog, FileDialog, LinkDialog
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.header import Header
-from beamdyn.common.screens.look import BLUE, RED, STYLE
+from beamdyn.common.screens.look import BLUE, RED, STYLE, scripts_of
 from beamdyn.common.screens.open_document import OpenDocument, OtherDesign
 from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screen_view import ScreenView
@@ -32,20 +32,12 @@ from beamdyn.common.screens.tasks import outcome_of
 
 _CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
-# NiceGUI shows its element "popup" while it tries to reach the program; these are other words for it.
-_STOPPED = """<script type="module">
-const notice = document.getElementById("popup");
-notice.setAttribute("role", "alert");
-notice.textContent = `The program has stopped. Start "{name} app --port ${{location.port}}" again: `
-  + "this page goes on by itself.";
-</script>"""
 
 
 def add_style_and_scripts(program: Program) -> None:
     """Add to every page of the process the style and scripts of a program."""
     ui.add_css(STYLE, shared=True)
-    scripts = _STOPPED.format(name=program.name) + BrowserMemory(program.name).script + page_writer.SCRIPT
-    ui.add_body_html(scripts, shared=True)
+    ui.add_body_html(scripts_of(program.name), shared=True)
 
 
 async def open_page(program: Program, solver: RunsTasks) -> None:

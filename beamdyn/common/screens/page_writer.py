@@ -9,45 +9,6 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-# Writes changes of elements, given by their ids. Of their content only what differs is replaced, since new
-# nodes cost the browser and the toolkit a search for style rules. A field keeps its text in a property.
-SCRIPT = """<script>
-{
-  const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
-  const fill = (shown, wanted) => {
-    const there = [...shown.childNodes], nodes = [...wanted.childNodes];
-    nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
-    there.slice(nodes.length).forEach((node) => node.remove());
-  };
-  const become = (shown, wanted) => {
-    if (shown.nodeName !== wanted.nodeName) return shown.replaceWith(wanted);
-    if (!wanted.attributes) return shown.data === wanted.data || (shown.data = wanted.data);
-    for (const {name} of [...shown.attributes]) if (!wanted.hasAttribute(name)) shown.removeAttribute(name);
-    for (const {name, value} of wanted.attributes) put(shown, name, value);
-    fill(shown, wanted);
-  };
-  const parsed = document.createElement("template");
-  window.writeChanges = (changes) => {
-    for (const [id, changed] of Object.entries(changes)) {
-      const shown = getHtmlElement(id);
-      if (shown === null) continue;
-      for (const [name, value] of Object.entries(changed)) {
-        if (name === "innerHTML") {
-          parsed.innerHTML = value;
-          fill(shown, parsed.content);
-        } else if (name === "text") shown.textContent = value;
-        else if (name === "value") {
-          Vue.toRaw(getElement(id).$data).inputValue = value;  // for when it is rendered again
-          (shown.querySelector("input, textarea") ?? shown).value = value;
-        } else if (name === "place") getElement(id).at = value;
-        else if (name === "options") {
-          getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
-        } else put(shown, name, value);
-      }
-    }
-  };
-}
-</script>"""
 _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
 

@@ -22,12 +22,6 @@ from beamdyn.common.screens.computations import LatestComputation
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.screens import Screen
 
-STYLE = """
-.folded svg, .sketch svg { width: 100%; max-width: 960px; height: auto; }
-.sketch svg { max-width: 340px; margin: 0 auto; }
-.sketch .nicegui-expansion-content { display: block !important; padding: 0 !important; }
-"""
-
 
 class ComparisonPanel:
     """Tables of the inputs and results that differ; hidden while no other design is compared.

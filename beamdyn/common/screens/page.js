@@ -1,0 +1,142 @@
+// Scripts of an interactive program's page.  `window.programName` is set before.
+
+// What has been typed, undo and redo, links, width ------------------------------------------------------
+
+// A key stroke in a field is kept until the program has stored it, and its screen is marked until the program
+// has heard it (a field tells what is typed after 0.1 s, one of a list when it is left).  A link that is put
+// into the address of an open page is followed.  The keys of undo and redo are passed on after what has been
+// typed, and it is reported when the page becomes narrow or wide.
+window.narrowPage = matchMedia("(max-width: 600px)"); // below it drawings have narrow paper, as in page.css
+const typedKey = `${window.programName}-typed`;
+let strokes = 0;
+const askAfter = (delay) => {
+  const stroke = ++strokes;
+  setTimeout(() => stroke === strokes && emitEvent("typed", stroke), delay);
+};
+window.heard = (stroke) => {
+  if (stroke === strokes) for (const it of document.querySelectorAll(".typed")) it.classList.remove("typed");
+};
+const askNow = (event) => { if (event.target.closest?.(".typed [data-path]")) askAfter(0); };
+document.addEventListener("focusout", askNow);
+document.addEventListener("keydown", (event) => { if (event.key === "Enter") askNow(event); });
+document.addEventListener("input", (event) => {
+  const field = event.target.closest?.("[data-path]"), screen = event.target.closest?.("[data-document]");
+  if (!field || !screen || event.target.value === undefined) return;
+  const typed = JSON.parse(sessionStorage.getItem(typedKey) || "{}");
+  (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
+  sessionStorage.setItem(typedKey, JSON.stringify(typed));
+  field.closest(".screen").classList.add("typed");
+  if (field.closest(".lists")) ++strokes;
+  else askAfter(150);
+});
+narrowPage.addEventListener("change", (event) => emitEvent("narrow", event.matches));
+window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest?.(".q-dialog")) return;
+  const key = event.key.toLowerCase();
+  const way = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
+  if (!way) return;
+  event.preventDefault();
+  setTimeout(() => emitEvent(way), 150);
+});
+
+// While NiceGUI tries to reach the program it shows its element "popup"; these are other words for it.
+const notice = document.getElementById("popup");
+notice.setAttribute("role", "alert");
+notice.textContent = `The program has stopped. Start "${window.programName} app --port ${location.port}" again: `
+  + "this page goes on by itself.";
+
+// Changes during a drag ---------------------------------------------------------------------------------
+
+// Writes changes of elements, given by their ids.  Of their content only what differs is replaced, since new
+// nodes cost the browser and the toolkit a search for style rules.  A field keeps its text in a property.
+const put = (shown, name, value) => shown.getAttribute(name) === value || shown.setAttribute(name, value);
+const fill = (shown, wanted) => {
+  const there = [...shown.childNodes], nodes = [...wanted.childNodes];
+  nodes.forEach((node, i) => i < there.length ? become(there[i], node) : shown.append(node));
+  there.slice(nodes.length).forEach((node) => node.remove());
+};
+const become = (shown, wanted) => {
+  if (shown.nodeName !== wanted.nodeName) return shown.replaceWith(wanted);
+  if (!wanted.attributes) return shown.data === wanted.data || (shown.data = wanted.data);
+  for (const {name} of [...shown.attributes]) if (!wanted.hasAttribute(name)) shown.removeAttribute(name);
+  for (const {name, value} of wanted.attributes) put(shown, name, value);
+  fill(shown, wanted);
+};
+const parsed = document.createElement("template");
+window.writeChanges = (changes) => {
+  for (const [id, changed] of Object.entries(changes)) {
+    const shown = getHtmlElement(id);
+    if (shown === null) continue;
+    for (const [name, value] of Object.entries(changed)) {
+      if (name === "innerHTML") {
+        parsed.innerHTML = value;
+        fill(shown, parsed.content);
+      } else if (name === "text") shown.textContent = value;
+      else if (name === "value") {
+        Vue.toRaw(getElement(id).$data).inputValue = value;  // for when it is rendered again
+        (shown.querySelector("input, textarea") ?? shown).value = value;
+      } else if (name === "place") getElement(id).at = value;
+      else if (name === "options") {
+        getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
+      } else put(shown, name, value);
+    }
+  }
+};
+
+// Points of drawings ------------------------------------------------------------------------------------
+
+// Sends the position of a handle in the picture, in parts of its width and height, as the pointer drags it,
+// and whether it has been let go; by one listener, so that this message comes last.  The picture's position is
+// taken at the start: if a new sentence above shifts the picture, the point does not follow.
+window.holdHandle = (down, emit) => {
+  if (down.button) return;
+  const handle = down.currentTarget, board = handle.parentElement;
+  const own = handle.getBoundingClientRect();
+  const aside = [down.clientX - own.x - own.width / 2, down.clientY - own.y - own.height / 2];
+  const box = board.getBoundingClientRect();
+  const send = (event, done) => {
+    const part = (at, size) => Math.min(Math.max(at / size, 0), 1);
+    emit(part(event.clientX - aside[0] - box.x, box.width),
+         part(event.clientY - aside[1] - box.y, box.height), done);
+  };
+  handle.setPointerCapture(down.pointerId);
+  handle.onpointermove = (event) => send(event, false);
+  handle.onpointerup = handle.onpointercancel = (event) => {
+    handle.onpointermove = handle.onpointerup = handle.onpointercancel = null;
+    send(event, true);
+  };
+};
+window.stepHandle = (event, emit) => {
+  const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
+  if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  emit(way[0], way[1], event.shiftKey);
+};
+
+// Charts ------------------------------------------------------------------------------------------------
+
+// Zooming and moving by keys: each changes the part of the x axis [%] that is shown.
+window.zoomChart = (event, id) => {
+  const chart = getElement(id)?.chart, zoom = chart?.getOption().dataZoom?.[0];
+  if (!zoom || event.ctrlKey || event.altKey || event.metaKey) return;
+  const {start, end} = zoom, step = 0.1 * (end - start);
+  const to = {"+": [start + step, end - step], "=": [start + step, end - step],
+    "-": [start - 1.25 * step, end + 1.25 * step], "0": [0, 100],
+    ArrowLeft: [Math.max(start - step, 0), end - Math.min(step, start)],
+    ArrowRight: [start + Math.min(step, 100 - end), Math.min(end + step, 100)]}[event.key];
+  if (!to) return;
+  event.preventDefault();
+  chart.dispatchAction({type: "dataZoom", start: Math.max(to[0], 0), end: Math.min(to[1], 100)});
+};
+// Saves what is seen, on paper: programs that draw and write know neither the page's colours nor its letters.
+window.saveChart = (model, api) => {
+  const [head, ...seen] = api.getDataURL({excludeComponents: ["toolbox"]}).split(",");
+  const picture = decodeURIComponent(seen.join(",")).replace('fill="none"', 'fill="#ffffff"')
+    .replace(/var\(--[\w-]+,(#\w+|none)\)/g, "$1")
+    .replace(/font-family: ?inherit/g, "font-family:sans-serif");
+  const name = model.getComponent("toolbox").get(["feature", "mySave", "name"]);
+  const link = Object.assign(document.createElement("a"),
+    {href: `${head},${encodeURIComponent(picture)}`, download: `${name}.svg`});
+  link.click();
+};
