@@ -75,7 +75,7 @@ def clients(first):
         transport = httpx.ASGITransport(core.app)
         user = User(httpx.AsyncClient(transport=transport, base_url="http://test")) if made else first
         made.append(user)
-        user.javascript_rules[re.compile(r".*const kept = ")] = lambda _: stored
+        user.javascript_rules[re.compile(r".*recallPage")] = lambda _: stored
         await user.open("/")
         while not any(element.tag == "q-tabs" for element in user.client.elements.values()):
             await asyncio.sleep(0.005)  # the page is made when its client has connected

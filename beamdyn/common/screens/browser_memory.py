@@ -19,83 +19,9 @@ _LONGEST_LINK, _LARGEST = 30_000, 200_000  # characters of a link, and bytes of 
 _SOURCE = "the link"
 
 
-class BrowserMemory:
-    """Scripts that store and read a program's data in the browser.
-
-    Parameters
-    ----------
-    program : str
-        Name of the program.
-    """
-
-    def __init__(self, program: str) -> None:
-        self._page, self._typed, self._designs, self._look = (
-            json.dumps(f"{program}-{what}") for what in ("page", "typed", "designs", "look")
-        )
-
-    @property
-    def recall(self) -> str:
-        """Script that returns, as JSON, what was stored, the look, the width, and the link in the address.
-
-        It takes the link out of the address.
-        """
-        return (
-            f"const kept = JSON.parse(sessionStorage.getItem({self._page}) || '{{}}');"
-            f"kept.typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
-            f"kept.look = localStorage.getItem({self._look}); kept.link = location.hash;"
-            "kept.narrow = narrowPage.matches;"
-            "if (location.hash) history.replaceState(null, '', location.pathname);"
-            "return JSON.stringify(kept);"
-        )
-
-    def remember(self, stored: Mapping[str, Any], heard: Mapping[str, Mapping[str, str]]) -> str:
-        """Script that stores the content of the page.
-
-        Parameters
-        ----------
-        stored : mapping
-            The content.
-        heard : mapping
-            Texts of fields that the program has received, by document and path: they need no longer be kept
-            as key strokes.
-        """
-        return (
-            f"sessionStorage.setItem({self._page}, {json.dumps(json.dumps(stored))});"
-            f"const typed = JSON.parse(sessionStorage.getItem({self._typed}) || '{{}}');"
-            f"for (const [document, fields] of Object.entries({json.dumps(heard)}))"
-            " for (const [path, text] of Object.entries(fields))"
-            " if (typed[document]?.[path] === text) delete typed[document][path];"
-            f"sessionStorage.setItem({self._typed}, JSON.stringify(typed));"
-        )
-
-    @property
-    def forget_typed(self) -> str:
-        """Script that forgets the key strokes, for when another design is shown."""
-        return f"sessionStorage.removeItem({self._typed});"
-
-    def keep_look(self, look: str) -> str:
-        """Script that stores whether the page is light or dark."""
-        return f"localStorage.setItem({self._look}, {json.dumps(look)});"
-
-    @property
-    def designs(self) -> str:
-        """Script that returns the named designs, as JSON."""
-        return f"return localStorage.getItem({self._designs});"
-
-    def keep_design(self, name: str, document: str, entries: Mapping[str, str]) -> str:
-        """Script that stores a named design, and returns "" or why the browser has no room for it."""
-        return self._with_designs(f"all[{json.dumps(name)}] = {json.dumps([document, dict(entries)])};")
-
-    def drop_design(self, name: str) -> str:
-        """Script that deletes a named design."""
-        return self._with_designs(f"delete all[{json.dumps(name)}];")
-
-    def _with_designs(self, change: str) -> str:
-        return (
-            f"const all = JSON.parse(localStorage.getItem({self._designs}) || '{{}}'); {change}"
-            f"try {{ localStorage.setItem({self._designs}, JSON.stringify(all)); return ''; }}"
-            "catch (error) { return 'the browser has no room for it: delete another design'; }"
-        )
+def call(function: str, *given: Any) -> str:
+    """Script that calls a function of page.js with values of JSON's types, and returns what it returns."""
+    return f"return {function}({', '.join(map(json.dumps, given))});"
 
 
 def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:

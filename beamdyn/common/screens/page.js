@@ -1,5 +1,48 @@
 // Scripts of an interactive program's page.  `window.programName` is set before.
 
+// What the browser keeps: a tab's page and what is typed in it, named designs, look -----------------------
+
+const nameOf = (what) => `${window.programName}-${what}`;
+const kept = (store, what) => JSON.parse(store.getItem(nameOf(what)) || "{}");
+const keep = (store, what, value) => store.setItem(nameOf(what), JSON.stringify(value));
+
+// What was stored, the look, the width, and the link in the address, which is taken out of there: as JSON.
+window.recallPage = () => {
+  const page = kept(sessionStorage, "page");
+  page.typed = kept(sessionStorage, "typed");
+  page.look = localStorage.getItem(nameOf("look"));
+  page.link = location.hash;
+  page.narrow = narrowPage.matches;
+  if (location.hash) history.replaceState(null, "", location.pathname);
+  return JSON.stringify(page);
+};
+// Stores the content of the page.  The texts of fields that the program has heard, by document and path, need
+// no longer be kept as key strokes.
+window.rememberPage = (content, heard) => {
+  keep(sessionStorage, "page", content);
+  const typed = kept(sessionStorage, "typed");
+  for (const [name, fields] of Object.entries(heard))
+    for (const [path, text] of Object.entries(fields))
+      if (typed[name]?.[path] === text) delete typed[name][path];
+  keep(sessionStorage, "typed", typed);
+};
+// Forgets the key strokes, for when another design is shown.
+window.forgetTyped = () => sessionStorage.removeItem(nameOf("typed"));
+window.keepLook = (look) => localStorage.setItem(nameOf("look"), look);
+window.namedDesigns = () => localStorage.getItem(nameOf("designs"));
+// Stores a named design, or deletes it where none is given; returns "" or why the browser has no room for it.
+window.putDesign = (name, design) => {
+  const all = kept(localStorage, "designs");
+  if (design) all[name] = design;
+  else delete all[name];
+  try {
+    keep(localStorage, "designs", all);
+    return "";
+  } catch (error) {
+    return "the browser has no room for it: delete another design";
+  }
+};
+
 // What has been typed, undo and redo, links, width ------------------------------------------------------
 
 // A key stroke in a field is kept until the program has stored it, and its screen is marked until the program
@@ -7,7 +50,6 @@
 // into the address of an open page is followed.  The keys of undo and redo are passed on after what has been
 // typed, and it is reported when the page becomes narrow or wide.
 window.narrowPage = matchMedia("(max-width: 600px)"); // below it drawings have narrow paper, as in page.css
-const typedKey = `${window.programName}-typed`;
 let strokes = 0;
 const askAfter = (delay) => {
   const stroke = ++strokes;
@@ -22,9 +64,9 @@ document.addEventListener("keydown", (event) => { if (event.key === "Enter") ask
 document.addEventListener("input", (event) => {
   const field = event.target.closest?.("[data-path]"), screen = event.target.closest?.("[data-document]");
   if (!field || !screen || event.target.value === undefined) return;
-  const typed = JSON.parse(sessionStorage.getItem(typedKey) || "{}");
+  const typed = kept(sessionStorage, "typed");
   (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
-  sessionStorage.setItem(typedKey, JSON.stringify(typed));
+  keep(sessionStorage, "typed", typed);
   field.closest(".screen").classList.add("typed");
   if (field.closest(".lists")) ++strokes;
   else askAfter(150);

@@ -12,8 +12,8 @@ from nicegui import background_tasks, run, ui
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens import tasks
 from beamdyn.common.screens.browser_memory import (
-    BrowserMemory,
     LinkedDesign,
+    call,
     named_designs,
     read_typed,
     refused_name,
@@ -47,7 +47,7 @@ async def open_page(program: Program, solver: RunsTasks) -> None:
     """
     await ui.context.client.connected(timeout=_CONNECTS)
     try:
-        stored = await ui.run_javascript(BrowserMemory(program.name).recall, timeout=_ANSWERS)
+        stored = await ui.run_javascript(call("recallPage"), timeout=_ANSWERS)
     except TimeoutError:
         stored = None
     Page(program, solver).recall(json.loads(stored or "{}"))
@@ -71,7 +71,6 @@ class Page:
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
-        self._memory = BrowserMemory(program.name)
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
         files = {
@@ -153,7 +152,7 @@ class Page:
         if self.current[0] is document:  # other screens are made up to date when they come to the front
             self.panels[self.front].rebuild()
         if self._recalled:
-            self._run(self._memory.forget_typed)
+            self._run(call("forgetTyped"))
         self.panels[self.front].enter()
         self._edited()
 
@@ -169,7 +168,7 @@ class Page:
 
     def _go(self, steps: int) -> None:
         if self.work.go(steps):
-            self._run(self._memory.forget_typed)
+            self._run(call("forgetTyped"))
             self.panels[self.front].enter()
             self._edited()
 
@@ -236,7 +235,7 @@ class Page:
 
     async def designs(self) -> None:
         """Show the named designs of this browser, and the examples."""
-        stored = await ui.run_javascript(self._memory.designs, timeout=_ANSWERS)
+        stored = await ui.run_javascript(call("namedDesigns"), timeout=_ANSWERS)
         kept = {name: found for name, found in named_designs(stored).items() if found[0] in self.works}
         self._kept = kept
         examples = await run.io_bound(examples_of, self.program) or ()
@@ -245,14 +244,14 @@ class Page:
     async def _keep(self, name: str) -> str:
         sentence = refused_name(name, self._kept)
         if not sentence:
-            made = self._memory.keep_design(name.strip(), self.work.document.name, self.work.entries)
+            made = call("putDesign", name.strip(), [self.work.document.name, self.work.entries])
             sentence = str(await ui.run_javascript(made, timeout=_ANSWERS))
         if not sentence:
             await self.designs()
         return sentence
 
     async def _drop(self, name: str) -> None:
-        await ui.run_javascript(self._memory.drop_design(name), timeout=_ANSWERS)
+        await ui.run_javascript(call("putDesign", name), timeout=_ANSWERS)
         await self.designs()
 
     def _open_design(self, name: str, kind: str, entries: Entries) -> None:
@@ -291,7 +290,7 @@ class Page:
         designs = {name: work.entries for name, work in self.works.items()}
         if heard is None:
             heard = {self.current[0].name: self.panels[self.front].form.typed}
-        self._run(self._memory.remember({"front": self.front, "designs": designs}, heard))
+        self._run(call("rememberPage", {"front": self.front, "designs": designs}, heard))
 
     def recall(self, stored: Mapping[str, Any]) -> None:
         """Restore what the browser stored, and store every change from now on.
@@ -332,4 +331,4 @@ class Page:
 
     def keep_look(self, look: str) -> None:
         """Store whether the page is light or dark."""
-        self._run(self._memory.keep_look(look))
+        self._run(call("keepLook", look))
