@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -117,6 +118,17 @@ class Setting(Named):
     def on_form(self, heading: str) -> str:
         """The setting as a form calls it, under the heading of its table."""
         return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
+
+
+def amount(*values: float, unit: str = "m", digits: int = 6) -> Named:
+    """A length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or degrees."""
+    small, factor = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}[unit]
+    return Named(_placed(values, digits, unit), _placed([factor * value for value in values], 6, small))
+
+
+def _placed(numbers: Sequence[float], digits: int, unit: str) -> str:
+    said = ", ".join(f"{number:.{digits}g}" for number in numbers)
+    return f"({said}) {unit}" if len(numbers) > 1 else f"{said} {unit}"
 
 
 def _as_toml(keys: Mapping[str, Any]) -> str:

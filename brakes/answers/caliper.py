@@ -16,6 +16,7 @@ from rich.console import RenderableType
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
+from beamdyn.common.edge.file_words import in_files, say
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
@@ -24,7 +25,6 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.results.statements import in_small_units
 from beamdyn.common.screens.screen_parts import Slider
 from beamdyn.common.words import Words
 from brakes.answers.base import Answer, TableBrakeType
@@ -153,7 +153,7 @@ class CaliperAnswer(PlanarAnswer):
     @property
     def _unsolved(self) -> Sequence[str]:
         """Why the forces of the pads are not known."""
-        stuck = self.friction and not self.friction.has_answer and in_small_units(self.friction.message)
+        stuck = self.friction and not self.friction.has_answer and in_files(self.friction.message)
         return (*super().refusals, *([stuck] if stuck else []))
 
     @property
@@ -162,7 +162,7 @@ class CaliperAnswer(PlanarAnswer):
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
         unchecked = self.stop.unchecked if self.stop and self.stop.status == "stops" else ()
-        return tuple(map(in_small_units, (*self.run.warnings, *held, *unchecked)))
+        return tuple(map(in_files, (*self.run.warnings, *held, *unchecked)))
 
     @property
     def error(self) -> float:
@@ -350,7 +350,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 return MechanismAnswer.of(core, design)
             except OutOfReachError as error:
                 what = "clearance" if design.run.travel is None else "travel"
-                words = f"{in_small_units(error.reason)}; give a smaller {what}, or move points"
+                words = f"{in_files(error.reason)}; give a smaller {what}, or move points"
                 raise NoAnswer(words) from None
             except OppositeTravelError:
                 if isinstance(design, MechanismInput):
@@ -358,12 +358,11 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 remedy = "move pads, pivots or the ends of the cable"
                 raise ValueError(f"the cable opens the pads: {remedy}") from None
             except AssemblyError as error:
-                raise NoAnswer(in_small_units(error.args[0])) from None
+                raise NoAnswer(say(error)) from None
             except ValueError as error:
                 if solve(core.free if isinstance(core, Caliper) else core).mobility == 1:
                     raise
-                said = error.args[0] if isinstance(error.args[0], Words) else str(error)
-                raise NoAnswer(in_small_units(said)) from None
+                raise NoAnswer(say(error)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
         """The loads that equilibrium gives, then the others."""

@@ -13,10 +13,10 @@ from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import MissingValue
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results.result import plain
-from beamdyn.common.results.statements import in_small_units
 from brakes.answers.planar import (
     MechanismFriction,
     PlanarAnswer,
@@ -151,7 +151,7 @@ class MechanismAnswer(PlanarAnswer):
         """Sentences on forces not determined, contacts that open, and directions in which friction jams."""
         found = super().refusals
         if self.friction is not None:
-            return (*found, *map(in_small_units, self.friction.refusals))
+            return (*found, *map(in_files, self.friction.refusals))
         if self._mechanism.friction and self.last.is_determined:
             return (*found, f"friction acts against one motion; the mobility is {self.equilibrium.mobility}")
         return found
@@ -164,7 +164,7 @@ class MechanismAnswer(PlanarAnswer):
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
-        return tuple(map(in_small_units, (*said, *(self.friction.warnings if self.friction else ()))))
+        return tuple(map(in_files, (*said, *(self.friction.warnings if self.friction else ()))))
 
     @property
     def error(self) -> float:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import RenderableType
 
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table
 from beamdyn.common.results.one_line import error_at_most, rounded_up
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.statements import in_small_units
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.words import Words
 from brakes.answers.base import Answer
@@ -271,7 +271,7 @@ class PlanarAnswer(Answer):
     @property
     def refusals(self) -> Sequence[str]:
         """Which bodies are loose, or which reactions statics does not determine."""
-        return () if self.status == "determined" else (in_small_units(self.message),)
+        return () if self.status == "determined" else (in_files(self.message),)
 
     def _diagnosis(self, message: str, virtual_work: np.ndarray) -> str:
         """Statics in a sentence or two, with the error of the forces, nan where there are none."""
@@ -279,7 +279,7 @@ class PlanarAnswer(Answer):
         error = self.error
         stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
         return (
-            f"Statics: {in_small_units(message)}. Mobility {int(np.max(mobility))}, indeterminacy "
+            f"Statics: {in_files(message)}. Mobility {int(np.max(mobility))}, indeterminacy "
             f"{int(np.max(indeterminacy))}; virtual work of all loads {np.max(virtual_work):.1e} of the "
             f"largest force.{stated}"
         )

@@ -14,9 +14,7 @@ from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, v
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
-from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import described_hints, description, descriptions
-from beamdyn.common.results.statements import in_small_units
 from brakes.calipers import NAMED, Caliper
 from brakes.config.caliper import (
     QUANTITIES,
@@ -30,7 +28,7 @@ from brakes.config.caliper import (
     model_of,
     named,
 )
-from brakes.planar import JOINTS, LOADS, Load, Mechanism, Part
+from brakes.planar import JOINTS, LOADS, Load, Mechanism
 from brakes.planar.part import DescribedPoint, is_list
 from brakes.planar.rows import Point as Coordinates
 
@@ -73,19 +71,9 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
 
 
 class PartSection(MadeSection):
-    """Table of a joint or load; its refusals say where it is in millimetres, as the file does."""
+    """Table of a joint or load."""
 
     model_config = SHORT_TEXTS
-
-    @cached_property
-    def core(self) -> Part:
-        """The joint or load."""
-        try:
-            return super().core
-        except InvalidValue:  # it is put into the file's words where its key is known
-            raise
-        except ValueError as error:
-            raise ValueError(in_small_units(error.args[0])) from None
 
 
 SECTIONS = {  # sections by the name of their table

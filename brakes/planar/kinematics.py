@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamdyn.common.inputs.checks import count, positive, real_array
-from beamdyn.common.results.statements import Amount
-from beamdyn.common.words import Words
+from beamdyn.common.words import Named, Words, amount
 from brakes.planar.curve import (
     Node,
     find_zero,
@@ -161,7 +160,7 @@ def assemble(mechanism: Mechanism) -> Position:
     if np.abs(rows.value[:, :m]).max(initial=0.0) > _rounding(system):
         gaps = {name: np.linalg.norm(rows.value[0, own]) for name, own in system.joints.items()}
         worst = max(gaps, key=lambda name: gaps[name])
-        apart = Amount(gaps[worst] * system.length)
+        apart = amount(gaps[worst] * system.length)
         remedy = "check its points and the lengths of the bars and cables in its loop"
         said = f"the joints cannot be brought together: {worst!r} stays "
         raise AssemblyError(Words(said, apart, f" apart; {remedy}"))
@@ -329,9 +328,9 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
             return float((node_at(system, y, last.tangent).value[k] - start.value[k]) * unit[k])
         if last is not node:
             reached, moved = weight @ (last.value - start.value), (last.value[k] - start.value[k]) * unit[k]
-            said = f"the travel of {join_names(weights)} cannot reach ", Amount(value), ": it is "
+            said = f"the travel of {join_names(weights)} cannot reach ", amount(value), ": it is "
             where = f" where it or the driver {driver!r} turns back, at ", _amount(mechanism, driver, moved)
-            raise OutOfReachError(Words(*said, Amount(reached, digits=9), *where), "give less")
+            raise OutOfReachError(Words(*said, amount(reached, digits=9), *where), "give less")
         before = node
     raise AssertionError("a curve is followed until it ends with an error")
 
@@ -447,6 +446,6 @@ def _units(system: System) -> np.ndarray:
     return system.length / system.unit[list(system.loads.values())]
 
 
-def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> Amount:
+def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> Named:
     """How far the coordinate of a load has moved."""
-    return Amount(moved, unit="rad" if mechanism.load(load).is_couple else "m", digits=digits)
+    return amount(moved, unit="rad" if mechanism.load(load).is_couple else "m", digits=digits)

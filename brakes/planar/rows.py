@@ -24,8 +24,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from beamdyn.common.inputs.checks import real
-from beamdyn.common.results.statements import Amount
-from beamdyn.common.words import Words
+from beamdyn.common.words import Words, amount
 
 # Points and directions in the drawing of a mechanism, and their checks -----------------------------------
 
@@ -62,7 +61,7 @@ def check_distinct(key: str, points: Iterable[Point], remedy: str) -> None:
     """A ValueError if two successive points coincide."""
     for p, q in pairwise(tuple(map(float, point)) for point in points):
         if p == q:
-            raise ValueError(Words(f"{key} has zero length at ", Amount(*p), f": {remedy}"))
+            raise ValueError(Words(f"{key} has zero length at ", amount(*p), f": {remedy}"))
 
 
 def suggest(name: object, known: Iterable[str]) -> str:

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.results.statements import Amount, joined
-from beamdyn.common.words import Words
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words, amount
 from brakes.planar.rows import GROUND, FrictionLaw, Point, Pose, Row, Totals
 
 # Rank, null spaces and least-squares solutions of many small matrices at once, by singular values --------
@@ -308,7 +308,7 @@ def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
         return f"slide{end} along ({x:.3g}, {y:.3g})"
     centre = system.origin + system.length * (1j * (vx + 1j * vy) / rate)
     x, y = (0.0 if abs(v) < 1e-9 * system.length else v for v in (centre.real, centre.imag))
-    return Words(f"turn{end} about ", Amount(x, y))
+    return Words(f"turn{end} about ", amount(x, y))
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:

@@ -7,22 +7,22 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import notes_of, warnings_of
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.statements import (
     GROWING,
     LIMITS,
     OUTSIDE,
-    Amount,
     InputValue,
     Speeds,
     Statement,
     Words,
     after,
-    in_small_units,
     kind_of,
     of_kind,
     said_in,
 )
+from beamdyn.common.words import amount
 from beamdyn.scene.validity import LARGE_DEFLECTION
 from benchmarks.cases.scenes import HARVESTER
 
@@ -69,8 +69,8 @@ def test_kinds_survive_files(tmp_path):
 
 
 def test_lengths_and_angles_are_said_in_small_units_wherever_they_stand():
-    said = Words("arm turns about ", Amount(0.0143, -0.2), ", at ", Amount(np.pi, unit="rad"))
+    said = Words("arm turns about ", amount(0.0143, -0.2), ", at ", amount(np.pi, unit="rad"))
     whole = Statement("loose: ", said, "; 5 m away", kind=LIMITS)
     assert whole == "loose: arm turns about (0.0143, -0.2) m, at 3.14159 rad; 5 m away"
     small = "loose: arm turns about (14.3, -200) mm, at 180 deg; 5 m away"  # what is no amount stays
-    assert in_small_units(whole) == in_small_units(pickle.loads(pickle.dumps(whole))) == small
+    assert in_files(whole) == in_files(pickle.loads(pickle.dumps(whole))) == small

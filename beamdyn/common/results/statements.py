@@ -7,7 +7,7 @@ into the units in which it shows them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from beamdyn.common.words import Part, Words, worded
@@ -59,43 +59,6 @@ class Speeds(Part):
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
 
-class Amount(Part):
-    """A length, an angle or the coordinates of a point in a text: "0.0143 m", "(0.1, 0.2) m".
-
-    Parameters
-    ----------
-    *values : float
-        The number, or the two coordinates [unit].
-    unit : {"m", "rad"}
-        The unit.
-    digits : int
-        Digits of each.
-    """
-
-    values: tuple[float, ...]
-    unit: str
-    digits: int
-
-    def __new__(cls, *values: SupportsFloat, unit: str = "m", digits: int = 6) -> Self:  # noqa: D102
-        numbers = tuple(map(float, values))
-        made = super().__new__(cls, _placed(numbers, digits, unit))
-        made.values, made.unit, made.digits = numbers, unit, digits
-        return made
-
-    def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """The numbers, and unit and digits by name."""
-        return self.values, {"unit": self.unit, "digits": self.digits}
-
-    def in_units(self, units: Units) -> str:
-        """The amount in SI."""
-        return str(self)
-
-    def in_small_units(self) -> str:
-        """The amount in mm or degrees, as in drawings."""
-        unit, factor = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}[self.unit]
-        return _placed([factor * value for value in self.values], 6, unit)
-
-
 class InputValue(Part):
     """An input and its value in a text: "beam.thickness = 0.0002 m".
 
@@ -132,11 +95,6 @@ class InputValue(Part):
 
 def _spanning(numbers: Iterable[float], digits: int, unit: str) -> str:
     return " to ".join(dict.fromkeys(f"{number:.{digits}g}" for number in numbers)) + f" {unit}"
-
-
-def _placed(numbers: Sequence[float], digits: int, unit: str) -> str:
-    said = ", ".join(f"{number:.{digits}g}" for number in numbers)
-    return f"({said}) {unit}" if len(numbers) > 1 else f"{said} {unit}"
 
 
 class Statement(Words):
@@ -208,11 +166,6 @@ def joined(separator: str, texts: Iterable[str]) -> Words:
     """Texts with a separator between them, which keep what they know of speeds."""
     parts = [part for text in texts for part in (separator, text)]
     return Words(*parts[1:])
-
-
-def in_small_units(text: str) -> str:
-    """A text with the lengths and angles that it knows in mm and degrees, as in drawings."""
-    return worded(text, lambda part: part.in_small_units() if isinstance(part, Amount) else str(part))
 
 
 def said_in(units: Units, text: str) -> str:
