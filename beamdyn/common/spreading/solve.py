@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
@@ -14,7 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import after
+from beamdyn.common.results.statements import Statement, after
 from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
 from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.statistics import Scatter, SpreadDesigns, indices_of, scatter_of
@@ -22,7 +21,6 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
 
 _FEW = 3  # reasons that a warning lists
-_NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -189,11 +187,17 @@ class _FurtherAnswers:
             parts = "; ".join([*why[:_FEW], *(["..."] if why[_FEW:] else [])])
             number = f"{sum(self._without.values())} of {self._count}"
             yield f"worst cases: {number} designs have no answer ({parts})"
-        said = {_NUMBER.sub("", sentence) for sentence in before}
+        said = {*map(_subject, before)}
         for sentence in self._said:
-            if (words := _NUMBER.sub("", sentence)) not in said:
-                said.add(words)
+            if (subject := _subject(sentence)) not in said:
+                said.add(subject)
                 yield after("worst cases: ", sentence)
+
+
+def _subject(sentence: str) -> tuple[str, ...]:
+    """What a sentence is about, whatever its numbers: a statement says that, of another the words do."""
+    is_data = isinstance(sentence, Statement)
+    return (sentence.kind, sentence.quantity) if is_data else (sentence,)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
