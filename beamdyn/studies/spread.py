@@ -26,6 +26,7 @@ from beamdyn.common.spreading.tolerances import (
     Uniform,
     check_holds,
     parse_tolerance,
+    without_unit,
 )
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, with_numbers
@@ -95,7 +96,6 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 
@@ -301,17 +301,10 @@ def _in_si(name: str, text: str, unit: str) -> Convert:
     def convert(number: str, written: str) -> float:
         if written not in ("", unit):
             bound = f"a text has percentages, or numbers in {unit or 'SI'}"
-            raise InvalidValue(name, text, bound, _without_unit(written, unit))
+            raise InvalidValue(name, text, bound, without_unit(text, written, unit))
         return float(number)
 
     return convert
-
-
-def _without_unit(written: str, unit: str) -> str:
-    """The remedy for a tolerance whose numbers have another unit than that of the input."""
-    factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
-    said = f"give numbers alone{f', in {unit}' if unit else ''}"
-    return said if factor is None else f"{said}: {factor:g} for 1 {written}"
 
 
 def check_reach(scene: Scene, given: SpreadInput) -> None:

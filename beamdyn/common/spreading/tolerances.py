@@ -20,6 +20,8 @@ _RANGE = re.compile(rf"([-+]?){_N}\s*(.*?)\s+to\s+([-+]?){_N}\s*(.*)")
 _DEVIATION = re.compile(rf"sd\s*{_N}\s*(.*)")
 _FORMS = 'give "+-2%", "+1% -2%", "0.9 to 1.1" with a unit, or "sd 1%"'
 
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
+
 # A number and a unit, as written, to SI.  Refuses a unit that does not fit by an `InvalidValue`.
 Convert: TypeAlias = "Callable[[str, str], float]"
 
@@ -266,3 +268,12 @@ def _as_text(given: Distribution, unit: str) -> str:
     if isinstance(given, Normal):
         return f"mean {given.mean:.6g} {unit}, sd {given.deviation:.4g} {unit}".replace(" ,", ",").strip()
     return f"{given.low:.6g} to {given.high:.6g} {unit}".strip()
+
+
+def without_unit(text: str, written: str, unit: str) -> str:
+    """The remedy for a tolerance whose numbers have another unit than that of the input: the text in that."""
+    factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
+    if factor is None:
+        return f"give numbers alone{f', in {unit}' if unit else ''}"
+    pattern = rf"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*{re.escape(written)}(?!\w)|(?![\d.]|\s*%))"
+    return f'give "{re.sub(pattern, lambda found: f"{float(found[1]) * factor:g}", text)}"'
