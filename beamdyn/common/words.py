@@ -120,7 +120,7 @@ class Setting(Named):
         return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
 
 
-def amount(*values: float, unit: str = "m", digits: int = 6) -> Named:
+def amount(*values: Any, unit: str = "m", digits: int = 6) -> Named:
     """A length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or degrees."""
     small, factor = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}[unit]
     return Named(_placed(values, digits, unit), _placed([factor * value for value in values], 6, small))

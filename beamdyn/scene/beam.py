@@ -101,7 +101,7 @@ class Beam(FieldsOnly, OneLine):
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
-            said = {"other": other, "where": " at the tip"}
+            said: dict[str, Any] = {"other": other, "where": " at the tip"}
             raise InvalidValue("twist", self.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")

@@ -54,12 +54,11 @@ def as_typed(error: Exception) -> str:
     if error.field == "scene.motion":
         return f"{name}: missing: {named.advice(word)}"
     if isinstance(error.value, float) and error.unit:
-        return say(in_unit_of(named, text))
-    if text and _says_more(text, error.value):
-        return say(InvalidInput(**vars(named) | {"value": text}))
-    if name.startswith("-") and isinstance(error.value, str):
-        return say(InvalidInput(**vars(named)))
-    return say(named)
+        named = in_unit_of(named, text)
+    elif text and _says_more(text, error.value):
+        named = replace(named, value=text)
+    quoted = name.startswith("-") and isinstance(named.value, str)
+    return say(InvalidInput(**vars(named)) if quoted else named)
 
 
 def _says_more(text: str, value: object) -> bool:
