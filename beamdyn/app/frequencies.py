@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
@@ -21,6 +20,7 @@ from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.one_line import number
+from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
@@ -30,6 +30,9 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
 _SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds in full, and while something is dragged
@@ -225,7 +228,7 @@ def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
 
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
     """Campbell's diagram; without motion the locus alone."""
-    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
+    figure = new_figure(9.0, 5.4)
     ax, units = figure.subplots(), answer.locus.display_units
     if answer.crossings is None:
         answer.locus.plot(ax)

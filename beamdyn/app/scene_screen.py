@@ -6,10 +6,9 @@ import shlex
 from collections.abc import Callable, Mapping, Sequence
 from inspect import Parameter
 from itertools import pairwise
-from typing import Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import numpy as np
-from matplotlib.figure import Figure
 from pydantic import Field, create_model
 from rich.console import RenderableType
 
@@ -26,6 +25,7 @@ from beamdyn.common.edge.wording import of_file
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import number
+from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import joined
 from beamdyn.common.screens.screens import FoldedPart, Screen
@@ -35,6 +35,9 @@ from beamdyn.modes.model_error.left_out_effects import (
     say_change,
     spans_by_kind,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
 _DECADE = 3  # letters of a bar for a decade
@@ -94,7 +97,7 @@ def tables_with_choice(result: Result) -> list[RenderableType]:
 
 def drawn(result: Result) -> Figure:
     """The picture of a result, with its notes below."""
-    figure = Figure(figsize=(9.0, 5.4), layout="constrained")
+    figure = new_figure(9.0, 5.4)
     result.plot(figure.subplots())  # pyright: ignore[reportAttributeAccessIssue]  (results with a picture)
     return note_below(figure, notes_of(result))
 

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from time import process_time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import RenderableType
 
 from beamdyn import natural_modes
@@ -22,6 +21,7 @@ from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoin
 from beamdyn.common.edge.tables import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.one_line import number
+from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens.screen_parts import Drag, KeyResult
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size
@@ -29,6 +29,9 @@ from beamdyn.modes.modes import Modes
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _BUDGET = 2.0  # time for all measurements of a diagram [s]
 _RUNS = 5  # runs of the chosen model, the shortest of which counts
@@ -195,7 +198,7 @@ def rows(answer: Trade) -> Iterator[Sequence[object]]:
 def draw(answer: Trade, _: float = 0.0) -> Figure:
     """The diagrams side by side."""
     known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
-    figure = Figure(figsize=(6.5 * len(known), 5.0), layout="constrained")
+    figure = new_figure(6.5 * len(known), 5.0)
     for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):
         diagram.plot(ax)
     return note_below(figure, notes_of(answer.modes))

@@ -42,14 +42,10 @@ class Sketch:
         """Draw shapes."""
         self.shapes += shapes
 
-    def say(
-        self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text", words: str = ""
-    ) -> None:
-        """Write a symbol, such as "alpha1", and words after it, at one of some points."""
+    def say(self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text") -> None:
+        """Write a symbol, such as "alpha1", at one of some points."""
         way = float(towards[0]), float(towards[1])
-        self.labels.append(
-            Label(words, at, role, way, typeset(symbol), priority=1 if symbol else 0, size=_LETTERS)
-        )
+        self.labels.append(Label("", at, role, way, typeset(symbol), priority=1, size=_LETTERS))
 
     def dashed(self, *points: Point) -> None:
         """Draw a thin dashed line."""
@@ -68,11 +64,11 @@ class Sketch:
         middle = arc(centre, radius, start + 0.5 * (end - start), start + 0.3 * (end - start), 2)
         self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
 
-    def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load", words: str = "") -> None:
+    def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load") -> None:
         """Draw a force or a direction of motion; its symbol stands at its free end."""
         ends = np.array([foot, tip], dtype=float)
-        self.add(Arrow(ends[0], ends[1], role, symbol or words, 1.8))
-        self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role, words)
+        self.add(Arrow(ends[0], ends[1], role, symbol, 1.8))
+        self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role)
 
     def moment(self, symbol: str, centre: Point, radius: float, start: float, end: float, role: str) -> None:
         """Draw a moment or a rotation about a point, as an arc between two angles [rad]."""
@@ -102,9 +98,9 @@ def symbols_in(rows: Rows) -> set[str]:
     return {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
 
 
-def sketch_paper(rows: Rows, width: float = WIDTH) -> Paper:
+def sketch_paper(rows: Rows) -> Paper:
     """Paper for sketches: as wide as a form, and no higher than is needed."""
-    return Paper(width, tuple(_height(row, width / len(row)) for row in rows))
+    return Paper(WIDTH, tuple(_height(row, WIDTH / len(row)) for row in rows))
 
 
 def _height(row: Sequence[Drawing], width: float) -> float:

@@ -9,7 +9,6 @@ from itertools import takewhile
 from pathlib import Path
 from textwrap import shorten
 
-from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens.screens import Document, Program
 
 _LONGEST = 110  # characters of a title
@@ -57,12 +56,9 @@ def _accepted(program: Program) -> Iterator[Example]:
     for file in sorted(found, key=lambda file: file.name):
         text, name = file.read_text(encoding="utf-8"), file.name.removesuffix(".toml")
         for document in program.documents:
-            try:
-                document.opened(text, file.name)
-            except ConfigError:
-                continue
-            yield Example(name, _title(text, name), document, text)
-            break
+            if document.accepts(text):
+                yield Example(name, _title(text, name), document, text)
+                break
 
 
 def _title(text: str, name: str) -> str:

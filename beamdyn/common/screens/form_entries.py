@@ -113,7 +113,7 @@ def _value(text: str, entry: Input | None) -> Any:
         return text
 
 
-def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
+def toml_of(tables: Mapping[str, Any]) -> str:
     """Tables as the text of a TOML file."""
 
     def lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
@@ -128,7 +128,7 @@ def toml_of(tables: Mapping[str, Any], heading: str = "") -> str:
             for item in [nested[key]] if key in nested else listed[key]:
                 yield from ("", head, *lines(item, f"{path}."))
 
-    return "\n".join([*([f"# {heading}", ""] if heading else []), *lines(tables, "")]).strip() + "\n"
+    return "\n".join(lines(tables, "")).strip() + "\n"
 
 
 def _key(name: str) -> str:

@@ -176,14 +176,8 @@ class Page:
 
     def open(self, text: str, name: str) -> None:
         """Open the text of a file as the document that accepts it, or show the parser's message."""
-        for document in self.program.documents:
-            try:
-                document.opened(text, "")
-                break
-            except ConfigError:
-                continue
-        else:
-            document = self.current[0]
+        accepting = (document for document in self.program.documents if document.accepts(text))
+        document = next(accepting, self.current[0])
         try:
             self.works[document.name].open(text, name)
         except ConfigError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
 from beamdyn.common.drawing.sketch import Sketcher
 from beamdyn.common.drawing.svg import element
-from beamdyn.common.edge.config import parse
+from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.plots.curves import sweep_figure
@@ -227,6 +228,12 @@ class Document:
         self.check(text, source)
         tables = self.in_fields(parse(text, source))
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
+
+    def accepts(self, text: str) -> bool:
+        """Whether the text of a file can be opened."""
+        with suppress(ConfigError):
+            return bool(self.opened(text, ""))
+        return False
 
     @property
     def beside(self) -> set[str]:

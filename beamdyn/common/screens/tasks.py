@@ -14,6 +14,7 @@ from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
+from beamdyn.common.edge.tables import FittedTable
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.screens.form_entries import (
     NOT_GIVEN,
@@ -108,9 +109,7 @@ def drawn(screen: Screen, answer: object, place: float) -> str:
     return drawing(lambda: screen.draw(answer, place))
 
 
-def report_of(
-    work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = (), now: datetime | None = None
-) -> str:
+def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = ()) -> str:
     """The HTML report on a document.
 
     Parameters
@@ -122,8 +121,6 @@ def report_of(
         Above it.
     sweeps : iterable of (title, picture)
         Sweeps that are shown, as HTML.
-    now : datetime, optional
-        Date of the report; now if not given.
     """
     parts: list[tuple[str, Sequence[str], str, str]] = []
     for screen in work.document.screens:
@@ -133,27 +130,22 @@ def report_of(
             more = further((part.title, partial(part.in_report, answered.answer)) for part in screen.more)
             parts.append((screen.name, answered.notes, html(answered.tables) + more, made))
     parts += [(name, (), "", made) for name, made in sweeps]
-    when = (now or datetime.now().astimezone()).strftime("%Y-%m-%d %H:%M %Z").strip()
+    when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z").strip()
     parts.append(("Every input", (), f"<p>{escape(when)}</p>{inputs_html(work)}", ""))
     return report_page(title, work.file(), parts)
 
 
 def inputs_html(work: OpenDocument) -> str:
     """A table of every input in HTML: name and symbol, value, whether it was given, and meaning."""
-
-    def row(cells: Iterable[str], tag: str) -> str:
-        return "<tr>" + "".join(f'<{tag} class="words">{escape(cell)}</{tag}>' for cell in cells) + "</tr>"
-
-    rows, idle = "", work.idle
+    made, idle = FittedTable(("input", "value", "", "meaning"), (0, 1, 2, 3)), work.idle
     for entry in work.inputs:
         if entry.path not in idle:
             text, default = work.entries.get(entry.path, "").strip(), default_words(entry)
             table = table_of(entry.path).replace("_", " ")
             state = "given" if text else "" if default == NOT_GIVEN else "default"
             name = f"{table}: {label(entry)}" if table else label(entry)
-            rows += row((name, text or default, state, help_of(entry)), "td")
-    head = f"<thead>{row(('input', 'value', '', 'meaning'), 'th')}</thead>"
-    return f'<div class="scrolls" tabindex="0"><table>{head}<tbody>{rows}</tbody></table></div>'
+            made.add_row(name, text or default, state, help_of(entry))
+    return html([made])
 
 
 # Why there is no answer -----------------------------------------------------------------------------------
