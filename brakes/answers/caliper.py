@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -442,13 +442,14 @@ class CaliperType(MechanismType):
 CALIPER, MECHANISM = CaliperType(), MechanismType()
 
 
-def names_table(name: str) -> RenderableType:
-    """Table of the dimensions of a named caliper with their usual values."""
-    design, rows = NAMED[name](), []
-    for key, entry in descriptions(NAMED[name]).items():
-        value = getattr(design, key)
-        if entry.unit == "m":
-            lengths = [f"{1e3 * part:.5g}" for part in np.ravel(value)]
-            value = f"({', '.join(lengths)}) mm" if isinstance(value, tuple) else f"{lengths[0]} mm"
-        rows.append((key, str(value), entry.meaning))
-    return table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))
+def names_tables() -> Iterator[RenderableType]:
+    """Tables of the dimensions of each named caliper with their usual values."""
+    for name, kind in NAMED.items():
+        design, rows = kind(), []
+        for key, entry in descriptions(kind).items():
+            value = getattr(design, key)
+            if entry.unit == "m":
+                lengths = [f"{1e3 * part:.5g}" for part in np.ravel(value)]
+                value = f"({', '.join(lengths)}) mm" if isinstance(value, tuple) else f"{lengths[0]} mm"
+            rows.append((key, str(value), entry.meaning))
+        yield table(f"{name}: {design.label}", ("dimension", "usual", "meaning"), rows, (0, 1, 2))

@@ -10,7 +10,9 @@ from cyclopts import Parameter
 
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.program import NoAnswer, examples
+from beamdyn.common.edge.tables import console, show
 from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
+from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
 from brakes.cli.answering import What, app, run_command
@@ -70,22 +72,18 @@ def caliper(
     outputs
         Files to write.
     """
-    from beamdyn.common.edge.tables import show
-    from beamdyn.common.results.pictures import save_figure
-    from brakes.answers.caliper import MECHANISM, names_table
-    from brakes.calipers import NAMED
+    from brakes.answers.caliper import MECHANISM, names_tables
 
     if list_:
-        files = {"plot": outputs.plot, "json": outputs.json, "csv": outputs.csv, "report": outputs.report}
-        files |= {"free-bodies": free_bodies, "animation": animation}
-        given = {"MECHANISM": mechanism or None} | {f"--{name}": value for name, value in files.items()}
-        given |= {f"--{name}": value for name, value in (varying.options | spreading.options).items()}
-        for name, value in (given | {"--what": what}).items():
-            if value is not None:
+        files = vars(outputs) | {"free-bodies": free_bodies, "animation": animation, "force": None}
+        options = files | varying.options | spreading.options | {"what": what}
+        given = {"MECHANISM": mechanism} | {f"--{name}": value for name, value in options.items()}
+        for name, value in given.items():
+            if value:
                 text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
                 says = "--list shows the named calipers alone; leave one of the two out"
                 raise ValueError(f"{name} = {text}: {says}")
-        show(names_table(name) for name in NAMED)
+        show(names_tables())
         return
     further = {
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
@@ -143,7 +141,6 @@ def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
     output
         Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
     """
-    from beamdyn.common.edge.tables import console
     from brakes.reproduce import compare_all
 
     check_folder("output", output)
