@@ -19,11 +19,11 @@ from rich.table import Table
 from rich.text import Text
 
 from beamdyn.common.edge.progress import quiet
-from beamdyn.common.results.comparison import Comparison
 from beamdyn.common.results.digits import count_sure, supported
 
 if TYPE_CHECKING:  # the columns need numpy, which help does without
     from beamdyn.common.results.columns import Column, Columns
+    from beamdyn.common.results.comparison import Comparison
     from beamdyn.common.results.display_units import DisplayUnits
 
 _BETWEEN, _EDGES = 3, 1  # characters that a column, and a table, have beside their text
