@@ -9,7 +9,7 @@ Derivation and conventions: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -57,10 +57,12 @@ class SteadyPencil:
     planes: int = 1
 
     def part(self, coordinates: np.ndarray) -> SteadyPencil:
-        """Extract the equations of some coordinates, which others do not affect."""
-        M, C, G, K0, K2 = (
-            A[coordinates[:, None], coordinates] for A in (self.M, self.C, self.G, self.K0, self.K2)
-        )
+        """Extract the equations of some coordinates, ascending, which others do not affect."""
+        first, end = int(coordinates[0]), int(coordinates[-1]) + 1
+        own = np.ix_(coordinates, coordinates)
+        if end - first == len(coordinates):  # a block is copied faster
+            own = slice(first, end), slice(first, end)
+        M, C, G, K0, K2 = (A[own].copy() for A in (self.M, self.C, self.G, self.K0, self.K2))
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
     def undamped(self) -> SteadyPencil:
@@ -181,6 +183,14 @@ class Equations:
             values[self.blocks[of_field.block]] += of_field.matrix.T @ functions.curvature_across(xi)
         return values
 
+    def momentum(self, vectors: np.ndarray) -> np.ndarray:
+        """Mass times vectors (..., n, k), block by block."""
+        total = np.zeros_like(vectors)
+        for term in (t for t in self.terms if t.order == 2 and t.quantity == "unity"):
+            moved = vectors[..., self.blocks[term.columns], :]
+            total[..., self.blocks[term.rows], :] += term.factor * (term.matrix @ moved)
+        return total
+
     @property
     def corner(self) -> np.ndarray:
         """Deflection per coordinate at the corner of the tip in the direction across, shape (n,)."""
@@ -228,19 +238,31 @@ class Equations:
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
         """Sums of the matrices of each quantity, for the time derivatives of orders 0, 1, 2 of q."""
+        return self._sum_terms(self.blocks)
+
+    def _sum_terms(self, blocks: Mapping[str, slice]) -> tuple[dict[Quantity, np.ndarray], ...]:
+        """Sum the matrices of some blocks, which no term couples with others, at the given places."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
+        size = sum(place.stop - place.start for place in blocks.values())
         for term in self.terms:
-            total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
-            total[self.blocks[term.rows], self.blocks[term.columns]] += term.factor * term.matrix
+            if term.rows in blocks:
+                total = sums[term.order].setdefault(term.quantity, np.zeros((size, size)))
+                total[blocks[term.rows], blocks[term.columns]] += term.factor * term.matrix
         return sums
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
         """Sums of the load vectors of each quantity."""
+        return self._sum_loads(self.blocks)
+
+    def _sum_loads(self, blocks: Mapping[str, slice]) -> dict[Quantity, np.ndarray]:
+        """Sum the load vectors of some blocks, at the given places."""
         sums: dict[Quantity, np.ndarray] = {}
+        size = sum(place.stop - place.start for place in blocks.values())
         for load in self.loads:
-            total = sums.setdefault(load.quantity, np.zeros(self.size))
-            total[self.blocks[load.rows]] += load.factor * load.vector
+            if load.rows in blocks:
+                total = sums.setdefault(load.quantity, np.zeros(size))
+                total[blocks[load.rows]] += load.factor * load.vector
         return sums
 
     def root(self, sample: MotionSample) -> RootMotion:
@@ -261,13 +283,27 @@ class Equations:
 
     @cached_property
     def _steady(self) -> SteadyPencil:
-        rotating, shape, parts = root_motion(self.mount, MotionSample.steady(1.0)), (self.size, self.size), []
-        for matrices in self.matrices:  # what is there at rest, and what motion of the root adds to it
-            moving: dict[Quantity, np.ndarray] = {q: A for q, A in matrices.items() if q != "unity"}
-            turning = _sum_over_quantities(moving, rotating, shape)
-            parts.append((matrices.get("unity", np.zeros(shape)), turning))
+        return self._pencil(self.matrices, self.vectors)
+
+    @cached_property
+    def separate(self) -> tuple[SteadyPencil, ...]:
+        """Equations at steady speed of each of the sets of blocks in `connected`."""
+        sizes = {name: place.stop - place.start for name, place in self.blocks.items()}
+        each = [place_blocks({name: sizes[name] for name in names}) for names in self.connected]
+        return tuple(self._pencil(self._sum_terms(own), self._sum_loads(own)) for own in each)
+
+    def _pencil(
+        self, matrices: Sequence[dict[Quantity, np.ndarray]], vectors: dict[Quantity, np.ndarray]
+    ) -> SteadyPencil:
+        """Equations at steady speed, by the matrices and loads of each quantity."""
+        rotating, shape, parts = root_motion(self.mount, MotionSample.steady(1.0)), _shape_of(matrices), []
+        nothing = np.zeros(shape)
+        for of_order in matrices:  # what is there at rest, and what motion of the root adds to it
+            moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
+            turning = _sum_over_quantities(moving, rotating, shape) if moving else nothing
+            parts.append((of_order.get("unity", nothing), turning))
         (K0, K2), (C, G), (M, _) = parts
-        load = _sum_over_quantities(self.vectors, rotating, (self.size,))
+        load = _sum_over_quantities(vectors, rotating, shape[:1])
         return SteadyPencil(M, C, G, K0, K2, load, self.shift, self.planes)
 
     @cached_property
@@ -331,6 +367,12 @@ class Equations:
             shapes=shapes,
             coarse=None,
         )
+
+
+def _shape_of(matrices: Sequence[Mapping[Quantity, np.ndarray]]) -> tuple[int, int]:
+    """Shape of matrices, of which that of the mass is there always."""
+    rows, columns = matrices[2]["unity"].shape
+    return rows, columns
 
 
 def _sum_over_quantities(

@@ -8,7 +8,6 @@ import numpy as np
 
 from beamdyn.common.results.result import Result
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.modal.model import kinetic_energy
 
 BENDING, TORSION, CAMBER = "bending", "torsion", "camber"
 _TIE = 1e-9  # relative difference of kinetic energies below which the first kind has it
@@ -23,7 +22,7 @@ def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | No
     own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
     if not own:
         return None
-    energy = kinetic_energy(equations, vectors)
+    energy = np.real(vectors.conj() * equations.momentum(vectors))
     fields = [[*equations.deflections], *([name] for name in own)]
     of_each = np.stack([energy[:, equations.places(names)].sum(axis=1) for names in fields])
     return np.array([BENDING, *own])[(of_each >= (1 - _TIE) * of_each.max(axis=0)).argmax(axis=0)]

@@ -4,4 +4,4 @@ from beamdyn.equations.fields.field import Field
 from beamdyn.equations.fields.plate import Camber, Torsion
 from beamdyn.equations.fields.stretch import Stretch
 
-FIELDS: tuple[Field, ...] = (*Stretch.partners, Stretch(), Torsion(), Camber())
+FIELDS: tuple[Field, ...] = (*Stretch.partners, Stretch(), Camber(), Torsion())

@@ -87,6 +87,18 @@ class Eigensolver(ABC):
         """Whether the equations have neither damping nor gyroscopic terms: then modes are real."""
         return self.pencil.conservative
 
+    def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Products (S,) of vectors (S, n) with themselves by stiffness at rest and by mass."""
+        of_stiffness, of_mass = (
+            np.real(v.conj() * (v @ A)).sum(axis=1) for A in (self.pencil.K0, self.pencil.M)
+        )
+        return of_stiffness, of_mass
+
+    def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
+        """Rayleigh quotients (S,) of vectors (S, n) at rest [rad2/s2]."""
+        stiffness, mass = self.energies_at_rest(v)
+        return stiffness / mass
+
     @cached_property
     @abstractmethod
     def lowest_at_rest(self) -> float:

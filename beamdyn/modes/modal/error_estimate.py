@@ -141,9 +141,8 @@ def _mesh_error(
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
     """Relative truncation error (S, k) of squares of eigenvalues, by their distance from a smaller basis."""
     # A first mode's quotient at rest bounds the lowest square there from above.
-    pencil, first = model.solver.pencil, fine.vector[:, :, 0]
-    stiffness, mass = (np.real(first.conj() * (first @ A)).sum(axis=1) for A in (pencil.K0, pencil.M))
-    are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + pencil.shift)
+    quotient = model.solver.quotient_at_rest(fine.vector[:, :, 0])
+    are_above = np.abs(squared).min() >= _ABOVE * (quotient.min() + model.equations.shift)
     lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
     is_slender = model.scene.is_slender_beam_in_one_plane
     margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor

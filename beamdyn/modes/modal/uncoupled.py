@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -18,13 +17,10 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 
     Where some coordinates, ascending, are given, the others are 0.
     """
-    pencil, parts = equations.steady(), [equations.places(names) for names in equations.connected]
-    if coordinates is not None:
-        place = np.full(equations.size, -1)
-        place[coordinates] = np.arange(len(coordinates))
-        parts = [places[places >= 0] for places in (place[part] for part in parts)]
-        pencil = pencil.part(coordinates)
-    return solver_of_pencil(pencil) if len(parts) == 1 else UncoupledSolver(pencil, parts)
+    if len(equations.connected) == 1:
+        pencil = equations.steady()
+        return solver_of_pencil(pencil if coordinates is None else pencil.part(coordinates))
+    return UncoupledSolver(equations, coordinates)
 
 
 def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
@@ -42,15 +38,45 @@ class UncoupledSolver(Eigensolver):
 
     Parameters
     ----------
-    pencil : SteadyPencil
-        Equations at steady speed.
-    parts : sequence of ndarray of int
-        Coordinates of each part.
+    equations : Equations
+        Equations that fall into parts.
+    coordinates : ndarray of int, optional
+        Coordinates that are kept, ascending; the others are 0.
     """
 
-    def __init__(self, pencil: SteadyPencil, parts: Sequence[np.ndarray]) -> None:
-        super().__init__(pencil)
-        self.parts, self.solvers = tuple(parts), tuple(solver_of_pencil(pencil.part(part)) for part in parts)
+    def __init__(self, equations: Equations, coordinates: np.ndarray | None = None) -> None:
+        self._equations, self._coordinates = equations, coordinates
+        places, pencils = [equations.places(names) for names in equations.connected], equations.separate
+        self.size = equations.size
+        if coordinates is not None:
+            number = np.full(equations.size, -1)
+            number[coordinates] = np.arange(len(coordinates))
+            kept = [number[part] >= 0 for part in places]
+            places = [number[part][own] for part, own in zip(places, kept, strict=True)]
+            own_pencils = zip(pencils, kept, strict=True)
+            pencils = tuple(pencil.part(np.flatnonzero(own)) for pencil, own in own_pencils)
+            self.size = len(coordinates)
+        self.parts = tuple(places)
+        self.solvers = tuple(map(solver_of_pencil, pencils))
+
+    @cached_property
+    def pencil(self) -> SteadyPencil:
+        """All equations at steady speed."""
+        pencil = self._equations.steady()
+        return pencil if self._coordinates is None else pencil.part(self._coordinates)
+
+    @property
+    def conservative(self) -> bool:
+        """Whether all parts are."""
+        return all(solver.conservative for solver in self.solvers)
+
+    def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
+        """As of any solver, without a matrix of all parts."""
+        each = [
+            solver.energies_at_rest(v[:, part]) for part, solver in zip(self.parts, self.solvers, strict=True)
+        ]
+        stiffness, mass = np.sum(each, axis=0)
+        return stiffness / mass
 
     @cached_property
     def lowest_at_rest(self) -> float:
