@@ -238,8 +238,8 @@ class MechanismAnswer(PlanarAnswer):
         place : float, optional
             Part of the stroke, from 0 to 1; if not given, as drawn, which the table of forces shows.
         """
-        index = self._index_at(0.0 if place is None else place)
-        return mechanism_figure(self._drawing(index), self.charts(place or 0.0))
+        ((drawn,),) = self.drawings(place or 0.0)
+        return mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
         """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
@@ -270,14 +270,13 @@ class MechanismAnswer(PlanarAnswer):
             title += way
         else:
             title += f": {self._travelled(index)}{way}; grey: as drawn" if index else f": as drawn{way}"
-        captions = self.friction.caption(index).split("; ") if self.friction else ()
         position = self.equilibrium.position if self.motion is None else self.motion.position[index]
         if self.friction is not None and self.branch != WITHOUT:
             now = solve_with_friction(self._mechanism, self.friction.driver, position).ways[self.branch]
         else:
-            now = self.equilibrium if self.motion is None else solve(self._mechanism, position)
-        title = "\n".join(filter(None, (title, *captions)))
-        drawn = open_and_closed(self.equilibrium.position, now, title)
+            now = solve(self._mechanism, position)
+        captions = self.friction.captions(index) if self.friction else ()
+        drawn = open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
         if now.status == "self-locking":
             drawn = with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
         points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions

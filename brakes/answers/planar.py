@@ -194,9 +194,8 @@ class MechanismFriction(Result):
             for name, way in self._moving(self.last)
         ]
 
-    def caption(self, index: int) -> str:
-        """The unknown load in three numbers, at one of the positions."""
-        sentences = []
+    def captions(self, index: int) -> Iterator[str]:
+        """Each unknown load in three numbers, at one of the positions."""
         for load in self.drawn.without.position.mechanism.unknown_loads:
             sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in self.last.ways.values()])
             sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
@@ -204,8 +203,7 @@ class MechanismFriction(Result):
                 f"{format_size(size, load.unit, 4)} {way}"
                 for size, way in zip(sizes, self.last.ways, strict=True)
             )
-            sentences.append(f"{load.name}: {', '.join(said)}")
-        return "; ".join(sentences)
+            yield f"{load.name}: {', '.join(said)}"
 
     def locked(self) -> dict[str, np.ndarray]:
         """Where the mechanism locks over the stroke, by the name of each curve on which it does.
