@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -24,7 +23,7 @@ from beamdyn.analyses.values import (
 )
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varied_inputs import designs_of, in_units_of, numbers, parse_axis, parse_spreads
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
 from beamdyn.common.edge.varying import (
     NO_SPREAD,
     NOTHING_VARIED,
@@ -32,8 +31,7 @@ from beamdyn.common.edge.varying import (
     SpreadOptions,
     VaryOptions,
 )
-from beamdyn.common.edge.wording import of_file
-from beamdyn.common.inputs.checks import InvalidValue, check_used
+from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
 from beamdyn.common.results.statements import InputValue
 from beamdyn.common.words import Words
@@ -99,16 +97,15 @@ def sensitivities(
     """
     check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     named, count = inputs or None, 3 if modes is None else modes
-    with of_file({}):
-        if what == "frequencies":
-            at = final_speed(scene) if speed is None else parse_speed("--speed", speed, scene)
-            result = bd.frequency_sensitivities(scene, at, count, named, discretization, tolerance)
-        elif what == "critical_speed":
-            result = bd.critical_speed_sensitivities(scene, named, discretization, tolerance)
-        else:
-            top = final_speed(scene)
-            top = top if speed is None else parse_positive("--speed", speed, "rad/s", scene)
-            result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
+    if what == "frequencies":
+        at = final_speed(scene) if speed is None else parse_speed("--speed", speed, scene)
+        result = bd.frequency_sensitivities(scene, at, count, named, discretization, tolerance)
+    elif what == "critical_speed":
+        result = bd.critical_speed_sensitivities(scene, named, discretization, tolerance)
+    else:
+        top = final_speed(scene)
+        top = top if speed is None else parse_positive("--speed", speed, "rad/s", scene)
+        result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
     each = zip(result.answers, np.isfinite(result.value), strict=True)
     lost = " and ".join(name for name, known in each if not known)
     return Answer(result, lost and f"{lost}: no such frequency, and no derivative of it")
@@ -174,16 +171,13 @@ def study(
         "workers": varying.workers,
         "store": varying.store,
     }
-    with _refused_as_given(axes):
-        return (
-            _spread(scene, known, spreading, how) if spreading.spread else _study(scene, axes, varying, how)
-        )
+    return _spread(scene, known, spreading, how) if spreading.spread else _study(scene, axes, varying, how)
 
 
 def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
     """Answer all designs."""
     inputs = {axis.input.path: axis.values for axis in axes}
-    with at_work("designs") as progress, of_file({}):
+    with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
     units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
     warnings = warnings_of(result, how["tolerance"], word=partial(_as_given, axes))
@@ -200,11 +194,10 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
 
-    with at_work("designs") as progress, of_file({"spread": "--spread", "samples": "--samples"}):
+    with at_work("designs") as progress:
         given = parse_spreads(inputs, spreading.spread, nominal)
         drawn = {"samples": spreading.samples, "seed": spreading.seed, "progress": progress}
-        with in_units_of(given):
-            result = bd.spread(scene, {each.name: each.distribution for each in given}, **drawn, **how)
+        result = bd.spread(scene, {each.name: each.distribution for each in given}, **drawn, **how)
     none = f"none of {result.designs} random designs has an answer"
     return Answer(result, none if (result.scatter.no_answer == 1).all() else "")
 
@@ -227,19 +220,6 @@ def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
         if axis.unit and isinstance(part, InputValue) and part.name == axis.input.path:
             return f"{part.name} = {axis.given[abs(axis.values - part.value).argmin()]:.6g} {axis.unit}"
     return None
-
-
-@contextmanager
-def _refused_as_given(axes: Sequence[Axis]) -> Iterator[None]:
-    """Within it, a refusal of an input shows its value and bound as given."""
-    try:
-        yield
-    except InvalidValue as error:
-        axis = next((axis for axis in axes if axis.input.path == error.field and axis.unit), None)
-        if axis is None or not isinstance(error.value, float):
-            raise
-        unit, si = _unit_of(axis)
-        raise error.in_unit(unit, lambda value: value / si) from None
 
 
 def _inputs(scene: Scene) -> list[Input]:

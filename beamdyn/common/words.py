@@ -9,20 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from typing import Protocol, Self
-
-    class Unit(Protocol):
-        """A unit in which speeds are shown; see `beamdyn.common.results.display_units.ShownUnit`."""
-
-        @property
-        def name(self) -> str: ...  # noqa: D102
-        def of(self, values: Any) -> Any: ...  # noqa: D102
-        def say(self, value: float, digits: int = 6) -> str: ...  # noqa: D102
-
-    class Units(Protocol):
-        """Units in which a medium shows quantities: `beamdyn.common.results.display_units.DisplayUnits`."""
-
-        def speed_unit(self) -> Unit: ...  # noqa: D102
+    from typing import Self
 
 
 class Words(str):
@@ -49,19 +36,19 @@ class Words(str):
         given, named = self.arguments()
         return partial(type(self), *given, **named), ()
 
-    def worded(self, word: Callable[[Words], str]) -> str:
+    def worded(self, word: Callable[[Part], str]) -> str:
         """The text with each part as a medium words it."""
         return "".join(worded(part, word) for part in self.parts)
-
-    def in_units(self, units: Units) -> str:
-        """The text with its speeds in a display unit."""
-        return self.worded(lambda part: part.in_units(units))
 
 
 class Part(Words):
     """A part that a medium words in its own way."""
 
-    def worded(self, word: Callable[[Words], str]) -> str:
+    def in_units(self, units: Any) -> str:
+        """The part in `DisplayUnits`, as far as they are about it."""
+        return str(self)
+
+    def worded(self, word: Callable[[Part], str]) -> str:
         """The part as a medium words it."""
         return word(self)
 
@@ -85,10 +72,6 @@ class Named(Part):
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
         """Both words."""
         return (str(self), self.elsewhere), {}
-
-    def in_units(self, units: Units) -> str:
-        """The words of Python, which have no units."""
-        return str(self)
 
 
 class Setting(Named):
@@ -136,6 +119,6 @@ def _as_toml(keys: Mapping[str, Any]) -> str:
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in keys.items())
 
 
-def worded(text: str, word: Callable[[Words], str]) -> str:
+def worded(text: str, word: Callable[[Part], str]) -> str:
     """A text with each part that it knows as a medium words it."""
     return text.worded(word) if isinstance(text, Words) else text

@@ -12,7 +12,7 @@ from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
-from beamdyn.common.edge.varied_inputs import Axis, in_units_of, parse_spreads
+from beamdyn.common.edge.varied_inputs import Axis, parse_spreads
 from beamdyn.common.edge.varying import SPREAD
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
@@ -69,9 +69,8 @@ def spread_of_brake(
     inputs = {entry.path: entry for entry in brake.sweep_inputs(design, tables)}
     used, cautions = check_samples(samples)
     given = parse_spreads([*inputs.values()], texts, lambda entry: nominal_of(design, entry))
-    with in_units_of(given):
-        for each in given:
-            _check_reach(inputs[each.name], each)
+    for each in given:
+        _check_reach(inputs[each.name], each)
     if (designs := count_designs(len(given), used)) > brake.most_cases:
         bound = f"these are {designs} designs, and at most {brake.most_cases} are solved"
         raise InvalidValue("--samples", samples, bound, "give fewer samples")

@@ -10,7 +10,7 @@ from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, kind_of, of_kind, said_in
-from beamdyn.common.words import Words, worded
+from beamdyn.common.words import Part, worded
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def warnings_of(
     result: Any,
     tolerance: float | None = None,
     without: str = "",
-    word: Callable[[Words], str | None] = lambda part: None,
+    word: Callable[[Part], str | None] = lambda part: None,
 ) -> list[str]:
     """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files.
 

@@ -23,7 +23,7 @@ from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_writ
 from beamdyn.common.edge.wording import in_millimetres
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.files import as_path
-from beamdyn.common.words import Words, worded
+from beamdyn.common.words import Part, worded
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -63,7 +63,7 @@ class ConfigError(ValueError):
 class MissingValue(InvalidValue):
     """A value that must be given and is not: only `field` and `bound` are said."""
 
-    def worded(self, word: Callable[[Words], str]) -> str:
+    def worded(self, word: Callable[[Part], str]) -> str:
         """The message, as a medium words it."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 

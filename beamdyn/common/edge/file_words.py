@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING
+from typing import Any
 
-from beamdyn.common.words import Named, Setting, Words, worded
-
-if TYPE_CHECKING:
-    from beamdyn.common.words import Units
+from beamdyn.common.words import Named, Part, Setting, Words, worded
 
 _HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", default=None)
 
 
-def in_files(text: str, units: Units | None = None) -> str:
+def in_files(text: str, units: Any = None) -> str:
     """A text in the terms of files and commands, and with its speeds in a display unit, if units are given.
 
     `Physics(shear=True)` becomes "[physics] shear = true", on a form "Physics: shear = true".
@@ -23,7 +20,7 @@ def in_files(text: str, units: Units | None = None) -> str:
     return worded(text, lambda part: word(part, units))
 
 
-def word(part: Words, units: Units | None = None) -> str:
+def word(part: Part, units: Any = None) -> str:
     """A part of a text in the terms of files, or of the form that asks."""
     if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
         return part.on_form(heading(part.table))

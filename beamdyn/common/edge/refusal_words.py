@@ -30,6 +30,7 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
+_USUAL = {"rad": "1 deg"}  # in whose unit numbers are said that were not typed
 
 
 def is_no_answer(error: Exception) -> bool:
@@ -54,7 +55,7 @@ def as_typed(error: Exception) -> str:
     if error.field == "scene.motion":
         return f"{name}: missing: {named.advice(word)}"
     if isinstance(error.value, float) and error.unit:
-        named = in_unit_of(named, text)
+        named = in_unit_of(named, text or _USUAL.get(error.unit, ""))
     elif text and _says_more(text, error.value):
         named = replace(named, value=text)
     quoted = name.startswith("-") and isinstance(named.value, str)
@@ -76,12 +77,13 @@ def _name(field: str) -> str:
     return option if option in _options() else _ELSEWHERE.get(field, field)
 
 
-def _text_of(option: str) -> str:
-    """The text that was typed for an option; empty if there is none."""
+def _text_of(name: str) -> str:
+    """The text that was typed for an option, or for an input that is varied; empty if there is none."""
     typed = TYPED.get()
     arguments = [] if typed is None else [str(each) for each in typed[1]]
-    after = (text for name, text in pairwise(arguments) if name == option)
-    joined = (each.partition("=")[2] for each in arguments if each.startswith(f"{option}="))
+    after = (text for before, text in pairwise(arguments) if before == name)
+    parts = (each.partition("=") for each in arguments)  # keys are shortened as far as they are told apart
+    joined = (text for key, _, text in parts if text and f".{name}".endswith(f".{key.strip()}"))
     return next(chain(after, joined), "")
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import get_args, get_origin
 
@@ -14,7 +13,6 @@ import numpy as np
 from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character, quantity
 from beamdyn.common.edge.varying import SPREAD
-from beamdyn.common.edge.wording import in_unit_of
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
@@ -239,13 +237,3 @@ def parse_spreads(
             raise InvalidInput(SPREAD, said, error.bound, error.remedy, error.unit, error.limit) from None
         made[entry.path] = SpreadInput(entry.path, unit, value, given)
     return tuple(made.values())
-
-
-@contextmanager
-def in_units_of(given: Sequence[SpreadInput]) -> Iterator[None]:
-    """Within it, a refusal of what a tolerance reaches has the unit in which the tolerance was typed."""
-    texts = {each.name: each.text for each in given}
-    try:
-        yield
-    except InvalidValue as error:
-        raise in_unit_of(error, texts.get(error.field, "")) from None

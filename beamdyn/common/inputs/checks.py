@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from beamdyn.common.words import Named, Words, worded
+from beamdyn.common.words import Named, Part, worded
 
 if TYPE_CHECKING:
     from typing import Self
@@ -83,12 +83,12 @@ class InvalidValue(ValueError):
     def __str__(self) -> str:
         return self.worded(str)
 
-    def worded(self, word: Callable[[Words], str]) -> str:
+    def worded(self, word: Callable[[Part], str]) -> str:
         """The message, with what a medium calls differently as it words that."""
         name = self.field and f"{self.field} = "
         return f"{name}{self.shown}{self.where}: {self.advice(word)}"
 
-    def advice(self, word: Callable[[Words], str]) -> str:
+    def advice(self, word: Callable[[Part], str]) -> str:
         """The bound and the remedy, as a medium words them."""
         remedy = self.remedy and f"; {worded(self.remedy, word)}"
         return self._filled(worded(self.bound, word) + remedy)

@@ -15,7 +15,6 @@ from beamdyn.common.words import Part, Words, worded
 if TYPE_CHECKING:
     from typing import Self
 
-    from beamdyn.common.words import Units
 
 # Kinds of statements that programs ask for.
 OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
@@ -53,7 +52,7 @@ class Speeds(Part):
         """The speeds, and the digits by name."""
         return self.values, {"digits": self.digits}
 
-    def in_units(self, units: Units) -> str:
+    def in_units(self, units: Any) -> str:
         """The speeds in a display unit."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
@@ -88,7 +87,7 @@ class InputValue(Part):
         """Name, value and unit, and the digits by name."""
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
-    def in_units(self, units: Units) -> str:
+    def in_units(self, units: Any) -> str:
         """The input with its value in a display unit, if it is a speed."""
         return f"{self.name} = {units.speed_unit().say(self.value)}" if self.unit == "rad/s" else str(self)
 
@@ -168,6 +167,6 @@ def joined(separator: str, texts: Iterable[str]) -> Words:
     return Words(*parts[1:])
 
 
-def said_in(units: Units, text: str) -> str:
+def said_in(units: Any, text: str) -> str:
     """A text with the speeds that it knows in a display unit."""
     return worded(text, lambda part: part.in_units(units))
