@@ -115,7 +115,7 @@ CAMBER = Effect(
     "sections camber freely, at the clamped root too",
     "camber",
     needs=("poissons_ratio",),
-    uncertainty=0.1,
+    uncertainty=0.05,
 )
 TORSION = Effect(
     "torsion",

@@ -19,7 +19,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
-_MOST_ACROSS = 40  # functions across the width of a plate
+_MOST_ACROSS = 16  # functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 

@@ -180,10 +180,11 @@ def sections_at(
         corners = planes == 2 and rectangle is not None
         signs = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]] if corners else [[-1, 0], [1, 0]])
         at_stations = signs * np.nan_to_num(half)[:, None]
-    curvature = _curvature(beam, xi, planes)
+    curvature = of_free = _curvature(beam, xi, planes)
     if scene.physics.camber:
         assert rectangle is not None, "a scene with camber has a section"
         curvature = _with_camber(curvature, rectangle, beam.length, xi)
+        of_free = np.concatenate([of_free, np.zeros((*of_free.shape[:2], 1))], axis=2)
     modulus = np.nan if rectangle is None else rectangle.youngs_modulus
     if youngs_modulus is not None:
         modulus = positive("youngs_modulus", youngs_modulus, "Pa")
@@ -191,14 +192,17 @@ def sections_at(
     axial = np.zeros((len(xi), 1, loads))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
-    strain = axial - np.einsum("spi,sik->spk", at_stations[..., :planes], curvature)
+    # The stress is in balance with the moment, also where the clamp hinders the strain.
+    strain, strain_by_stress = (
+        axial - np.einsum("spi,sik->spk", at_stations[..., :planes], each) for each in (curvature, of_free)
+    )
     unchanged = np.broadcast_to(np.eye(loads), (len(xi), loads, loads))
     parts = (
         unchanged[:, : 1 + planes],
         unchanged[:, 1 + planes : 1 + 2 * planes],
         curvature,
         strain,
-        modulus * strain,
+        modulus * strain_by_stress,
     )
     outputs = StationOutputs(np.concatenate(parts, axis=1), tuple(part.shape[1] for part in parts))
     lacks_axial = beam.axial_stiffness is None and at_stations.shape[1]

@@ -30,6 +30,7 @@ from beamdyn.modes.critical_search import (
 )
 from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
+    PLATE_TARGET,
     TOLERANCES,
     DiscretizationChoice,
     affordable_target,
@@ -280,7 +281,7 @@ def _warnings(
         return
     if tolerance is not None:
         yield from warn_of_missed_tolerance(found.error, tolerance)
-    elif found.error > 1e-6:
+    elif found.error > (PLATE_TARGET if scene.models_width else 1e-6):
         said = f"the estimated relative error of the critical speed is {found.error:.1g}"
         quantity = "estimated relative error"
         yield Statement(said, kind=TOLERANCE, quantity=quantity, value=found.error, limit=1e-6)

@@ -112,7 +112,7 @@ class Beam(FieldsOnly, OneLine):
             set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
         if self.section is not None:
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
-            if any(getattr(self, name) != made for name, made in self.section.properties.items()):
+            if not all(_alike(getattr(self, name), made) for name, made in self.section.properties.items()):
                 set_fields(self, section=None)  # a property was replaced
 
     def with_section(self, section: Rectangle) -> Beam:
@@ -352,6 +352,13 @@ class Beam(FieldsOnly, OneLine):
     def tip_twist(self) -> float:
         """Angle by which the section at the tip is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
+
+
+def _alike(given: Profile | None, made: Profile | None) -> bool:
+    """Whether a property is that of a section, perhaps on more segments."""
+    return given == made or (
+        given is not None and made is not None and given == made.split(given.breakpoints)
+    )
 
 
 PROPERTY_UNITS = {  # all that varies along a beam, but for its twist

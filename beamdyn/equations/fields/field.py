@@ -90,6 +90,11 @@ class SectionFunctions(Protocol):
     """Functions of a field that deform the sections of a strip: deflections that vary over its width."""
 
     @property
+    def of_each(self) -> int:
+        """Number of coordinates of each function across; those of the last come last."""
+        ...
+
+    @property
     def corner(self) -> np.ndarray:
         """Deflection at the corner of the tip in the direction across (n,), to any scale."""
         ...

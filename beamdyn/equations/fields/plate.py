@@ -54,6 +54,7 @@ from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
+_HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)  # at the root, as bending is
 _SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all terms
 _ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
 
@@ -264,6 +265,11 @@ class StackedSpace:
         return self.along.size * len(self.numbers)
 
     @property
+    def of_each(self) -> int:
+        """Number of coordinates of each function across."""
+        return self.along.size
+
+    @property
     def corner(self) -> np.ndarray:
         """Deflection at the corner eta = 1 of the tip (n,)."""
         return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
@@ -315,10 +321,10 @@ class SectionField(Field):
         """Assemble the energy of the plate, with what couples it to bending."""
         strip = Strip(scene, spaces)
         numbers = tuple(self.numbers(spaces.across))
-        space = StackedSpace(spaces.functions(CLAMPED), numbers, len(self.numbers(spaces.fewer_across)))
+        space = StackedSpace(spaces.functions(_HELD), numbers, len(self.numbers(spaces.fewer_across)))
         if not numbers:
             return FieldEquations(space, (), ())
-        own = strip.functions(self, numbers, CLAMPED)
+        own = strip.functions(self, numbers, _HELD)
         terms = [*self._terms(strip, own, own), *self._of_body(strip, own, space.along)]
         coupling = [t for t in self._coupling(strip, own) if t.matrix.any()]
         mirrored = [replace(t, rows=t.columns, columns=t.rows, matrix=t.matrix.T) for t in coupling]

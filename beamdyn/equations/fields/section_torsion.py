@@ -49,6 +49,11 @@ class TurnedSections:
     along: Space
 
     @property
+    def of_each(self) -> int:
+        """Number of coordinates of each function across."""
+        return self.along.size
+
+    @property
     def corner(self) -> np.ndarray:
         """Twist at the tip (n,), as which a corner deflects."""
         return self.along.end(0)

@@ -239,7 +239,7 @@ def _first_ritz(
 ) -> Discretization:
     """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
     if scene.models_width:
-        return Ritz(max(5, int(np.ceil(2 + modes - np.log10(target)))))
+        return Ritz(min(max(5, int(np.ceil(2 + modes - np.log10(target)))), MOST_FUNCTIONS))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT

@@ -13,6 +13,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
+from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
@@ -103,6 +104,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         if order is not None:
             before = coarse**2 - _coarsest_squares(model, speeds, compared)
             truncation = _mesh_error(model, fine, squared, distance, before)
+            truncation = truncation + _error_across(model, speeds, s**2)
         else:
             truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
@@ -136,6 +138,18 @@ def _mesh_error(
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
     return np.maximum(truncation, np.maximum.accumulate(of_lower, axis=1))
+
+
+def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
+    """Relative truncation error (S, k) by the functions across the width, which are those of every mesh."""
+    if not model.scene.models_width:
+        return 0.0
+    kept = np.ones(model.equations.size, dtype=bool)
+    for name, functions in model.equations.sections:  # the last function across comes last
+        end = model.equations.blocks[name].stop
+        kept[end - functions.of_each : end] = False
+    fewer = solver_of(model.equations, np.flatnonzero(kept)).eigenvalues(speeds, squared.shape[1])
+    return BASES_OF_PLATES.factor * np.abs(squared - fewer**2) / (2 * np.abs(squared))
 
 
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from beamdyn.common.inputs.checks import set_fields
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, joined
@@ -46,6 +47,9 @@ class UnlistedMode:
     effect: str
     frequency: np.ndarray
     assumed: str = ""
+
+    def __post_init__(self) -> None:
+        set_fields(self, frequency=np.asarray(self.frequency, dtype=float))
 
     def span(self) -> str:
         """Its frequency to three digits; over several speeds from the least to the largest."""

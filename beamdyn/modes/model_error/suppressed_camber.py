@@ -1,12 +1,13 @@
 """Suppressed camber: a strip that is bent far cannot camber, and is as stiff as a plate that is held flat.
 
 A strip of width b and thickness t under the curvature kappa cambers while b^2 kappa/t (Searle's parameter) is
-small.  Beyond 1 its middle stays flat, as camber would stretch it: with theta = (3 (1 - nu^2))^(1/4) b
-(kappa/t)^(1/2) the moment is
+small.  Beyond 1 its middle stays flat, as camber would stretch it.  With theta = (3 (1 - nu^2))^(1/4) b
+(kappa/t)^(1/2) its energy per length, of bending and of the stress that camber causes along it, is
 
-    M = E I kappa (1 - nu^2 f)/(1 - nu^2),    f = 2 (cosh theta - cos theta)/(theta (sinh theta + sin theta)),
+    U = E I kappa^2 (1 - nu^2 f)/(2 (1 - nu^2)),    f = 2 h/theta,
+    h = (cosh theta - cos theta)/(sinh theta + sin theta),
 
-and the stiffness of small vibrations dM/dkappa.
+and the stiffness of small vibrations d^2 U/dkappa^2.
 
 References
 ----------
@@ -31,11 +32,13 @@ _STATIONS = 101
 
 
 def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
-    """Stiffness dM/dkappa over E I of a strip under a curvature, by theta > 0 and Poisson's ratio."""
+    """Stiffness d^2 U/dkappa^2 over E I of a strip under a curvature, by theta > 0 and Poisson's ratio."""
     wide = np.minimum(theta, _WIDEST)
-    difference, total = np.cosh(wide) - np.cos(wide), np.sinh(wide) + np.sin(wide)
-    f = 2 * difference / (theta * total)
-    tangent = f / 2 + 1 - difference * (np.cosh(wide) + np.cos(wide)) / total**2
+    total, rate = np.sinh(wide) + np.sin(wide), np.cosh(wide) + np.cos(wide)
+    h, e = (np.cosh(wide) - np.cos(wide)) / total, rate / total
+    first = 1 - h * e  # derivatives of h by theta
+    second = -first * e - h * ((np.sinh(wide) - np.sin(wide)) / total - e**2)
+    tangent = 5 / 4 * first + wide / 4 * second + 3 / 4 * h / theta
     return (1 - nu**2 * tangent) / (1 - nu**2)
 
 
