@@ -210,7 +210,7 @@ def _sum(*terms: float) -> float:
 
 def _inward(scene: Scene) -> float:
     """Distance a of the root from the axis of rotation, against the direction of the beam [m]."""
-    return scene.mount.radius * exact_cos_sin(scene.mount.setting_angle)[0]
+    return scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[0]
 
 
 def _least_turning(scene: Scene) -> float:

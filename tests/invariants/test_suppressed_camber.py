@@ -14,7 +14,7 @@ def by_cross_section(searle, nu):
     """U/(E I kappa^2/2) of a unit strip by the equation of its cross-section, with free edges.
 
     D d4w/dy4 + E t kappa^2 w = 0, at the edges d2w/dy2 = -nu kappa and d3w/dy3 = 0; by collocation with
-    polynomials.
+    Chebyshev polynomials.
     """
     kappa, n, D = searle, 60, 1 / (12 * (1 - nu**2))
     basis = [np.polynomial.Chebyshev.basis(k, domain=[-0.5, 0.5]) for k in range(n)]
