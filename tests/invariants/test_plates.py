@@ -308,3 +308,38 @@ def test_rotation_does_not_twist_a_square_section():
         rigid = equations.blocks["torsion"].start + np.arange(space.size)  # of the first function across
         loads.append(np.abs(equations.steady().f2[rigid]).max())
     assert loads[0] < 1e-12 * loads[1]  # rounding
+
+
+def test_stress_along_the_span_is_in_balance_with_the_moment():
+    """Where the clamp hinders camber the strain is less, but not the stress: M c/I at every station."""
+    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), bd.Mount(0.0, OUT), gravity=9.81, physics=PLATE)
+    found = bd.static_loads(scene, 0.0, at=[0.0, 0.005, 0.0475])
+    by_moment = found.moment[0, :, 0] * 0.0001 / (0.01 * 0.0002**3 / 12)
+    pull = found.force[0, :, 0] / (0.01 * 0.0002)
+    assert found.stress[0, :, 1] == pytest.approx(pull - by_moment, rel=1e-9)  # a sum
+    assert abs(found.strain[0, 0, 1] * 200e9 / found.stress[0, 0, 1]) == pytest.approx(0.91, rel=5e-3)
+
+
+@pytest.mark.parametrize("elements", [40, 80])
+def test_stated_errors_of_elements_count_the_functions_across(elements):
+    scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), bd.Mount(0.215), physics=PLATE)
+    true = bd.natural_modes(scene, 20.0, 4, discretization=bd.Ritz(18)).frequency
+    found = bd.natural_modes(scene, 20.0, 4, discretization=bd.Fem(elements))
+    assert (np.abs(found.frequency / true - 1) <= found.error).all() and (found.error < 1e-3).all()
+
+
+def test_a_fast_outward_strip_keeps_its_section():
+    """Layers at the root split its properties, which are still those of the rectangle."""
+    tape = strip((0.5, 0.02, 0.0001), 0.3)
+    scene = bd.Scene(tape, bd.Mount(0.1, OUT), physics=PLATE)
+    assert bd.natural_modes(scene, 80.0).frequency[0] > bd.natural_modes(scene, 40.0).frequency[0]
+    plain = bd.natural_modes(replace(scene, physics=bd.Physics()), 80.0)
+    assert plain.left_out["camber of sections"][0] > 0
+
+
+def test_modes_that_are_not_listed_are_said_of_loaded_results_too(tmp_path):
+    modes = bd.natural_modes(bd.Scene(strip((0.05, 0.01, 0.0002), 0.3)))
+    said = modes.left_out_effects.sentence()
+    assert "modes not listed: torsion 656 Hz" in said
+    modes.save(tmp_path / "modes.json")
+    assert bd.load(tmp_path / "modes.json").left_out_effects.sentence() == said
