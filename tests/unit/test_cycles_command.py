@@ -122,7 +122,7 @@ def test_turning_points_are_found_between_the_samples_of_a_run(exponent):
         (("--cycles", "strain", "--woehler", "five"), 'give numbers, such as "3, 5, 10"'),
         (
             ("--cycles", "strain", "--woehler", "3, -5"),
-            '--woehler = "3, -5": it must be gr',
+            "--woehler = -5: it must be greater than 0",
         ),
         (
             ("--cycles", "strain", "--woehler", "3", "--equivalent-cycles", "0"),
