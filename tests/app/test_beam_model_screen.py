@@ -21,7 +21,12 @@ from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
 
 pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
-AT_45 = {"mount.setting_angle": "45 deg", "options.top_speed": "100 rad/s", "options.modes": "1"}
+AT_45 = {
+    "beam.poissons_ratio": "0",
+    "mount.setting_angle": "45 deg",
+    "options.top_speed": "100 rad/s",
+    "options.modes": "1",
+}
 LINEAR, TRUE = 55.62, 60.66  # Hz, at 100 rad/s: of the straight beam, and in fact; printed to 0.01
 
 
