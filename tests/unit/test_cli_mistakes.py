@@ -127,7 +127,8 @@ def test_a_second_file_is_one_word_too_many(refused):
 )
 def test_values_that_an_option_does_not_take_are_refused_in_plain_words(refused, options, words):
     said = refused("modes", TYRE, *options)
-    assert words in said and "See beamdyn modes --help." in said
+    assert words.replace('"', "") in said.replace('"', "")  # cyclopts 4.1 quotes the option, too
+    assert "See beamdyn modes --help." in said
 
 
 def test_help_on_an_unknown_command_is_that_of_the_program(refused):
