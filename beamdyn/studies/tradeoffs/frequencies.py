@@ -30,10 +30,12 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Family, Setting, mea
 Mesh = Literal["graded", "uniform"]
 
 _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
+_MOST_ACROSS = 14  # functions along a beam that has functions across its width, too
 _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
 _REFERENCES = (40, 80, 160)  # numbers of functions of the reference, tried in turn
+_REFERENCES_ACROSS = (12, 16, 20)  # ... where each has its own functions across the width
 _RESOLVED = 1e-10  # relative error of a reference that is accurate enough
 
 
@@ -98,12 +100,13 @@ def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
 
 def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes, with as many Ritz functions as resolve them."""
+    *coarser, finest = _REFERENCES_ACROSS if scene.models_width else _REFERENCES
     segments = _segments(scene)
-    for functions in _REFERENCES[:-1]:
+    for functions in coarser:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
         if solution.error.max() <= _RESOLVED:
             return solution
-    return _solve_by_ritz(scene, speeds, modes, _REFERENCES[-1] // segments)
+    return _solve_by_ritz(scene, speeds, modes, finest // segments)
 
 
 def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
@@ -157,7 +160,7 @@ def _basis_settings(
     return tuple(
         Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes))
         for n in sizes
-        if n >= -(-modes // per_segment)
+        if -(-modes // per_segment) <= n <= (_MOST_ACROSS if scene.models_width else max(sizes))
     )
 
 
