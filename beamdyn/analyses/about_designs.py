@@ -93,7 +93,7 @@ def sensitivities(
         each; all if not given.
     tolerance
         Largest relative error of a frequency or critical speed: the cheapest discretization that
-        meets it is chosen; 1e-11 if not given.
+        meets it is chosen; if not given, 1e-11, or 1e-4 where a rectangular section cambers or twists.
     """
     check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     named, count = inputs or None, 3 if modes is None else modes

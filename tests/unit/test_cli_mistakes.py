@@ -61,8 +61,9 @@ def test_a_missing_motion_is_missing_in_the_file(refused, command):
 @pytest.mark.parametrize("option", [("--method", "ritz"), ("--method=fem",)])
 def test_an_unknown_option_is_known_by_its_word(refused, option):
     assert "Unknown option: --method. Did you mean --discretization?" in refused("modes", BLADE, *option)
-    said = refused("modes", BLADE, "--mode", "3").replace('"', "")  # quoted in cyclopts 4.1
-    assert "Did you mean --modes?" in said
+    for short, meant in (("--mode", "--modes"), ("--pl", "--plot")):
+        said = refused("modes", BLADE, short, "3").replace('"', "")  # quoted in cyclopts 4.1
+        assert f"Did you mean {meant}? See beamdyn modes --help." in said
 
 
 @pytest.mark.parametrize(
@@ -122,13 +123,11 @@ def test_a_second_file_is_one_word_too_many(refused):
     [
         (("--tolerance", "abc"), '--tolerance: "abc" is not a number.'),
         (("--force=maybe",), '--force: "maybe" is not a value of a switch.'),
-        (("--pl", "x"), "Did you mean --plot?"),
     ],
 )
 def test_values_that_an_option_does_not_take_are_refused_in_plain_words(refused, options, words):
     said = refused("modes", TYRE, *options)
-    assert words.replace('"', "") in said.replace('"', "")  # cyclopts 4.1 quotes the option, too
-    assert "See beamdyn modes --help." in said
+    assert words in said and "See beamdyn modes --help." in said
 
 
 def test_help_on_an_unknown_command_is_that_of_the_program(refused):

@@ -30,12 +30,12 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Family, Setting, mea
 Mesh = Literal["graded", "uniform"]
 
 _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
-_MOST_ACROSS = 14  # functions along a beam that has functions across its width, too
+_MOST_ACROSS = 14  # of them on a segment where there are functions across the width, too
 _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
-_REFERENCES = (40, 80, 160)  # numbers of functions of the reference, tried in turn
-_REFERENCES_ACROSS = (12, 16, 20)  # ... where each has its own functions across the width
+_REFERENCES = (40, 80, 160)  # numbers of functions of the reference on all segments, tried in turn
+_REFERENCE_ACROSS = (60,)  # where there are functions across the width, which never reach `_RESOLVED`
 _RESOLVED = 1e-10  # relative error of a reference that is accurate enough
 
 
@@ -100,7 +100,7 @@ def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
 
 def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes, with as many Ritz functions as resolve them."""
-    *coarser, finest = _REFERENCES_ACROSS if scene.models_width else _REFERENCES
+    *coarser, finest = _REFERENCE_ACROSS if scene.models_width else _REFERENCES
     segments = _segments(scene)
     for functions in coarser:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
@@ -157,10 +157,11 @@ def _basis_settings(
     """Computations by a Ritz basis, the fewest functions first: of Legendre functions on each segment."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
+    least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
     return tuple(
         Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes))
         for n in sizes
-        if -(-modes // per_segment) <= n <= (_MOST_ACROSS if scene.models_width else max(sizes))
+        if least <= n <= most
     )
 
 
