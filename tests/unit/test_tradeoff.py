@@ -301,6 +301,17 @@ def test_plot_has_a_panel_a_diagram_and_a_line_a_family(still):
     assert (first.get_xscale(), first.get_yscale()) == ("log", "log")
 
 
+def test_a_legend_below_the_axes_leaves_their_label_free(still):
+    figure = still.plot().figure
+    figure.draw_without_rendering()
+    below = [
+        ax for ax in figure.axes if ax.get_legend() and ax.get_legend().get_window_extent().y1 < ax.bbox.y0
+    ]
+    assert below
+    for ax in below:
+        assert not ax.get_legend().get_window_extent().overlaps(ax.xaxis.label.get_window_extent())
+
+
 @pytest.mark.parametrize("budget", [0.0, -1.0, 1e-4, 1e9, float("nan"), "soon"])
 def test_bad_budgets_are_refused(budget):
     with pytest.raises(ValueError, match="budget"):

@@ -102,7 +102,8 @@ def add_legend(ax: Axes) -> Axes:
     labels = ax.get_legend_handles_labels()[1]
     place: dict[str, Any] = {"loc": "best"}
     if max(map(len, labels), default=0) > _LONGEST_INSIDE:
-        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
+        # Below the label of the axis, which takes four sizes of the font, however high the axes are.
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 4.2, "ncols": 2}
     elif len(labels) > _MOST_INSIDE:
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
     ax.legend(fontsize=10, **place)
