@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program
 
 MISSING = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
+_LARGEST_PORT = 65535
 
 
 def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
@@ -55,6 +56,8 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
         browser
             Open the browser.
         """
+        if not 1 <= port <= _LARGEST_PORT:
+            raise ValueError(f"--port = {port}: give a port from 1 to {_LARGEST_PORT}")
         try:
             from beamdyn.common.screens.server import serve
         except ModuleNotFoundError:

@@ -42,10 +42,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     Raises
     ------
     ValueError
-        If the port is none or taken.
+        If the address is unknown or cannot be listened on, as where the port is taken.
     """
-    if not 1 <= port <= 65535:
-        raise ValueError(f"--port = {port}: give a port from 1 to 65535")
     _check_free(host, port)
     made, processes = program(), Processes(program)
     app.add_middleware(RequestGuard, host=host)
