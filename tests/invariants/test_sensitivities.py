@@ -142,7 +142,9 @@ def test_elements_agree():
 
 # Near the critical speed; a damper, a mass, a spring; nearer; a stiff spring and a soft hinge, over whose
 # places and stiffness 1 % of the length is a long step.
-@pytest.mark.parametrize("seed", [10, 11, 46, 149, 171])
+@pytest.mark.parametrize(
+    "seed", [10, 11, 46, pytest.param(149, marks=pytest.mark.slow), pytest.param(171, marks=pytest.mark.slow)]
+)
 def test_random_scenes(seed):
     (case,) = measure(seed)
     assert max(case.errors) < 1e-8

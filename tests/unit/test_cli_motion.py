@@ -166,7 +166,8 @@ def test_sweep_is_stored_and_resumed(run, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("ending", "workers"), [(signal.SIGINT, 1), (signal.SIGTERM, 1), (signal.SIGTERM, 2)]
+    ("ending", "workers"),
+    [(signal.SIGINT, 1), pytest.param(signal.SIGTERM, 1, marks=pytest.mark.slow), (signal.SIGTERM, 2)],
 )
 def test_interrupted_sweep_says_how_to_go_on(tmp_path, ending, workers):
     store = tmp_path / "store"
