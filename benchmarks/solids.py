@@ -148,6 +148,9 @@ def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
 # Strips as plates beside them ---------------------------------------------------------------------
 
 
+_NARROW = 5.0  # thicknesses: narrower sections are no plates
+
+
 def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
     """Kind of each mode, and the relative difference of the richest model of the strip from the solid.
 
@@ -172,11 +175,22 @@ def kinds_of(modes: bd.Modes) -> np.ndarray:
 
 def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:
     """How far the strips as plates are from the solids, by kind of mode."""
-    pairs = [pair for each in references if not each.refusal for pair in compare_plate(each)]
+    solved = [each for each in references if not each.refusal]
+    found = [(_is_narrow(each.body()), *pair) for each in solved for pair in compare_plate(each)]
+    pairs = [(kind, difference) for _, kind, difference in found]
+    for words, wanted in ("from", False), ("below", True):
+        own = np.abs([difference for narrow, _, difference in found if narrow == wanted])
+        counted = f"richest model beside solids: width {words} {_NARROW:g} thicknesses, {len(own)} modes"
+        largest = ", ".join(f"{size:.1e}" for size in (np.quantile(own, 0.95), own.max())) if len(own) else ""
+        yield f"{counted}: 95 %, largest", largest, ""
     for kind in (BENDING, TORSION, OTHER):
         own = np.abs([difference for name, difference in pairs if name == kind])
         found = f"{np.sqrt(np.mean(own**2)):.1e}, {own.max():.1e}" if len(own) else "none"
         yield f"richest model beside solids: {kind}, {len(own)} modes: rms, largest", found, ""
+
+
+def _is_narrow(strip: Strip) -> bool:
+    return strip.width < _NARROW * strip.thickness
 
 
 _FITTED = 63  # cases before are those to which warping was fitted

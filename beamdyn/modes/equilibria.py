@@ -16,6 +16,7 @@ from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
+from beamdyn.common.words import Words
 from beamdyn.modes.modal.continuation import (
     NotConverged,
     Point,
@@ -33,6 +34,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
@@ -172,10 +174,12 @@ def equilibrium(
     q = solver.equilibria(speeds)[0]
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
+    at = Words("at ", Speeds(float(speeds[0])))
+    flat = warn_of_suppressed_camber(scene, solution.model.equations, q[None], lambda _: at)
     remedy = 'branch="bent" asks for the stable one beside it'
     unstable = Statement(
-        "the equilibrium is unstable at ",
-        Speeds(float(speeds[0])),
+        "the equilibrium is unstable ",
+        at,
         f": a small motion grows at {growth:.3g} 1/s; {remedy}",
         kind=GROWING,
         quantity="growth rate [1/s]",
@@ -191,7 +195,7 @@ def equilibrium(
         error=float(error) + _ROUNDING * scene.beam.length,
         stable=growth <= 0,
         growth_rate=max(growth, 0.0),
-        warnings=() if growth <= 0 else (unstable,),
+        warnings=(*(() if growth <= 0 else (unstable,)), *flat),
         provenance=provenance_of(solution, start),
         scene=scene,
         model=solution.model,

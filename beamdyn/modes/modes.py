@@ -20,6 +20,7 @@ from beamdyn.common.results.one_line import error_at_most, listed, states, warne
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement
+from beamdyn.common.words import Words
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
@@ -367,10 +368,15 @@ def warn_of_modes(
         )
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
-        # It is imported here for the time that it takes to import.
+        # They are imported here for the time that it takes to import them.
+        from beamdyn.modes.modal.equilibrium import DeflectedSolver
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
-        yield from warn_of_suppressed_camber(model, speeds)
+        assert isinstance(model.solver, DeflectedSolver)
+        bent = model.solver.equilibria(speeds)
+        yield from warn_of_suppressed_camber(
+            scene, model.equations, bent, lambda k: Words("at ", Speeds(speeds[k]))
+        )
     else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
         yield from warn_of_straight(deflection, speeds, model)

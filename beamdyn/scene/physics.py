@@ -225,8 +225,8 @@ class PhysicsChoice:
         each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
             beyond = (
-                f"; short thick sections, and strain by rotation, may change the answer by "
-                f"{_say_size(self.beyond_models)} more"
+                "; what its theories leave out, most of it in short thick sections, and strain "
+                f"by rotation may change the answer by {_say_size(self.beyond_models)} more"
             )
             yield Statement(
                 f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "

@@ -8,10 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, refuse
+from beamdyn.common.results.digits import percent
 from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,
     LIMITS,
+    MODEL_ERROR,
     OUTSIDE,
     Speeds,
     Statement,
@@ -23,6 +25,10 @@ from beamdyn.scene.scene import Scene
 LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
+_NARROW = 5.0  # thicknesses: a narrower section is no plate
+_WORTH_OF_NARROW = 0.01  # largest difference of such sections' frequencies from solids: benchmarks.solids
+_ROUNDING_OF_SIDES = 1e-9  # relative: a width that is no nearer to a bound is at it
+_STATIONS = 257  # places at which a section is looked at
 _MOST_RANGES = 4  # ranges of speeds in a sentence
 FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
@@ -47,11 +53,29 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
     }
+    yield from _warn_of_narrow_section(scene)
     for name, is_given in given.items():
         if is_given and scene.physics.planes == 1:
             remedy = Words(Setting("physics", planes=2), " models it")
             said = f"{name} is given, but physics.planes is 1: it is left out; "
             yield Statement(said, remedy, kind=INPUT, quantity=name, remedy=remedy)
+
+
+def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
+    """Yield a warning if the width is modelled of a section that is too narrow for a plate."""
+    section = scene.beam.section
+    if section is None or not scene.models_width:
+        return
+    xi = np.linspace(0, 1, _STATIONS)
+    narrowest = float((section.width(xi) / section.thickness(xi)).min())
+    if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
+        said = f"the section is {narrowest:.2g} thicknesses wide: below {_NARROW:g} it is no plate, and what "
+        worth = (
+            f"camber and torsion change is fitted to solid bodies, from which frequencies differ by up to "
+            f"{percent(_WORTH_OF_NARROW)} (docs/solids.md)"
+        )
+        quantity = "width over thickness"
+        yield Statement(said, worth, kind=MODEL_ERROR, quantity=quantity, value=narrowest, limit=_NARROW)
 
 
 def warn_of_strain(strain: float) -> Iterator[Statement]:

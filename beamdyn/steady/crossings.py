@@ -18,6 +18,7 @@ from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.unlisted_modes import find_unlisted
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 
@@ -213,7 +214,8 @@ def left_out_of_crossings(
         return (size * np.take_along_axis(change, nearest, axis=1)).sum(axis=1) / detuning
 
     changes = {name: of_speeds(change) for name, change in effects.changes.items()}
-    return replace(effects, changes=changes, shape=speeds.shape)
+    unlisted = tuple(find_unlisted(model, speeds, here[:, :modes]))
+    return replace(effects, changes=changes, shape=speeds.shape, unlisted=unlisted)
 
 
 def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:

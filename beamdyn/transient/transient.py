@@ -24,6 +24,7 @@ from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.elastica_system import AnySystem
@@ -360,7 +361,12 @@ class TransientRequest(TransientProblem):
         scene, largest = self.scene, solution.largest
         yield from warn_of_left_out(scene)
         yield from warn_of_peak(scene, largest)
-        if not scene.physics.large_deflection:
+        if scene.physics.large_deflection:
+            t, q, _ = solution.path.samples
+            yield from warn_of_suppressed_camber(
+                scene, solution.system.equations, q, lambda k: f"at {t[k]:.4g} s"
+            )
+        else:
             yield from warn_of_deflection(np.array([largest]), scene.beam.length)
         road = self.motion.at(np.linspace(0, self.t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
         yield from warn_of_road(np.array([np.abs(road).max()]))

@@ -47,10 +47,14 @@ def test_limits_are_the_beam_and_the_plate():
     assert ends[1] == pytest.approx((1 - 0.09 * 0.75 / 1e3) / (1 - 0.09), rel=1e-9)  # h is 1
 
 
-def bent(width, nu=0.3):
+def scene(width, nu=0.3, **more):
     beam = bd.Beam.rectangular(0.05, width, 0.0002, 200e9, 7850.0, poissons_ratio=nu)
     mount = bd.Mount(0.215, math.radians(45))
-    return bd.natural_modes(bd.Scene(beam, mount, physics=bd.Physics(large_deflection=True)), 100.0)
+    return bd.Scene(beam, mount, physics=bd.Physics(large_deflection=True), **more)
+
+
+def bent(width, nu=0.3):
+    return bd.natural_modes(scene(width, nu), 100.0)
 
 
 def said(modes):
@@ -64,8 +68,21 @@ def test_the_published_strip_says_what_it_is_worth():
     assert "8.3 % stiffer, its frequencies up to 4.1 % higher" in warning and "assumed" not in warning
 
 
+def test_the_equilibrium_says_the_same():
+    assert said(bd.equilibrium(scene(0.01), 100.0)) == said(bent(0.01))
+
+
+def test_a_transient_says_it_of_the_time_at_which_it_is_bent_most():
+    """Released straight, the beam swings past the equilibrium, about twice as far."""
+    wheel = bd.RollingWheel(0.3, 100.0)
+    (warning,) = said(bd.simulate(scene(0.01, motion=wheel), 0.02, tolerance=1e-3))
+    assert warning.startswith("at 0.0") and " s the strip is bent to" in warning
+    assert 1.2 * 13.7 < warning.value < 3 * 13.7
+
+
 def test_a_narrow_strip_says_nothing():
     assert not said(bent(0.001))
+    assert not said(bd.equilibrium(scene(0.001), 100.0))
 
 
 def test_a_strip_that_does_not_camber_says_nothing():

@@ -67,7 +67,7 @@ def test_camber_of_steel_is_added_and_what_models_miss_of_it_is_said() -> None:
         assert (modes.model_error <= 1e-3).all()
         size = choice_of(modes).effects[0].size
         assert 0.05 * size <= choice_of(modes).beyond_models < 0.1 * size
-    assert any("is not met" in text and "short thick sections" in text for text in fine.warnings)
+    assert any("is not met" in text and "strain by rotation may change" in text for text in fine.warnings)
     assert choice_of(coarse).is_met
     assert not coarse.warnings
 

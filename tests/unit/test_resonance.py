@@ -309,3 +309,14 @@ def test_speeds_ascend(speeds: list) -> None:
 def test_settings(wrong: dict) -> None:
     with pytest.raises(ValueError, match=next(iter(wrong))):
         bd.steady_response(ROLLING, [50.0], **wrong)
+
+
+def test_modes_of_the_body_that_are_not_sought_are_named() -> None:
+    """A line may meet the first mode of torsion of the strip of steel, which no beam that only bends has."""
+    beam = bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(beam, bd.Mount(0.215), motion=bd.RollingWheel(0.3, 30.0, bd.RoadWave(0.1, 0.01)))
+    two, three = (bd.resonance_speeds(scene, 120.0, modes=n).left_out_effects for n in (2, 3))
+    assert two.unlisted == ()
+    (torsion,) = three.unlisted
+    assert torsion.kind == "torsion" and np.nanmax(torsion.frequency) == pytest.approx(656, rel=0.03)
+    assert "modes not listed: torsion 6" in three.sentence()

@@ -16,15 +16,16 @@ Searle (1908), Experimental Elasticity; Ashwell (1950), Journal of the Royal Aer
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from beamdyn.common.results.digits import percent
-from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement
-from beamdyn.modes.modal.equilibrium import DeflectedSolver
-from beamdyn.modes.modal.model import Model
+from beamdyn.common.results.statements import MODEL_ERROR, Statement
+from beamdyn.common.words import Words
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
+from beamdyn.scene.scene import Scene
 
 _FLAT = 1.0  # Searle's parameter from which camber is suppressed
 _WIDEST = 50.0  # theta beyond which its functions have their limits
@@ -42,13 +43,18 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
     return (1 - nu**2 * tangent) / (1 - nu**2)
 
 
-def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Statement]:
-    """Yield a warning if large deflection bends a strip so far at a speed [rad/s] that it cannot camber."""
-    section, solver = model.scene.beam.section, model.solver
-    if section is None or section.poissons_ratio == 0 or not isinstance(solver, DeflectedSolver):
+def warn_of_suppressed_camber(
+    scene: Scene, equations: Equations, coordinates: np.ndarray, say_when: Callable[[int], Words | str]
+) -> Iterator[Statement]:
+    """Yield a warning if large deflection bends a strip so far that it cannot camber.
+
+    The coordinates (k, n) are those of the equations, at k speeds or times; `say_when` says which.
+    """
+    section = scene.beam.section
+    if section is None or section.poissons_ratio == 0:
         return  # without Poisson's ratio there is no camber to suppress
-    nu, length, xi = section.poissons_ratio, model.scene.beam.length, np.linspace(0, 1, _STATIONS)
-    curvature = np.abs(solver.equilibria(speeds) @ model.equations.deflection(xi, order=2)) / length**2
+    nu, length, xi = section.poissons_ratio, scene.beam.length, np.linspace(0, 1, _STATIONS)
+    curvature = np.abs(coordinates @ equations.deflection(xi, order=2)) / length**2
     b, t = section.width(xi), section.thickness(xi)
     searle = b**2 * curvature / t
     if not searle.max(initial=0.0) > _FLAT:
@@ -66,8 +72,7 @@ def warn_of_suppressed_camber(model: Model, speeds: np.ndarray) -> Iterator[Stat
     )
     quantity = "Searle's parameter b^2 kappa/t"
     yield Statement(
-        "at ",
-        Speeds(speeds[at]),
+        say_when(int(at)),
         where,
         worth,
         kind=MODEL_ERROR,

@@ -44,11 +44,14 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
     The parameters are those of `left_out_of_modes`.
     """
     found = left_out_of_modes(model, speeds, eigenvalue)
-    return replace(found, unlisted=tuple(_find_unlisted(model, speeds, eigenvalue)))
+    return replace(found, unlisted=tuple(find_unlisted(model, speeds, eigenvalue)))
 
 
-def _find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
-    """Yield the modes that a model does not have, below the highest that it lists at some speed."""
+def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
+    """Yield the modes that a model does not have, below the highest that it lists at some speed.
+
+    The eigenvalues (S, m) are those listed at the speeds (S,) [rad/s].
+    """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene = without_large_deflection(model).scene
     for effect, fields in _ADDED.items():
