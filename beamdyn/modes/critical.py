@@ -259,7 +259,8 @@ def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
     provenance = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
     speed = np.inf if buckling.speed is None else buckling.speed
     none_below = buckling.none_below or speed
-    return CriticalPoint(speed, 0.0, none_below, buckling.why, (), provenance, scene, None)
+    warnings = tuple(warn_of_left_out(scene))
+    return CriticalPoint(speed, 0.0, none_below, buckling.why, warnings, provenance, scene, None)
 
 
 def _warnings(
@@ -270,6 +271,8 @@ def _warnings(
     discretization: DiscretizationChoice,
     tolerance: float | None,
 ) -> Iterator[str]:
+    """Yield what limits a critical speed that was found, or that none was."""
+    yield from warn_of_left_out(scene)
     if discretization == "fem" and found.model.discretization.order is None:
         said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
         yield Statement(said, kind=INPUT, quantity="discretization")
@@ -318,8 +321,7 @@ def _find_with_chosen_physics(
         return 1 if found is None else found.solver.size
 
     chosen = choose_by(scene, judge, count, tolerance, np.array([]))
-    point = find(chosen)
-    return replace(point, scene=chosen, warnings=(*point.warnings, *warn_of_left_out(chosen)))
+    return replace(find(chosen), scene=chosen)
 
 
 def _change(without: CriticalPoint, within: CriticalPoint) -> float:

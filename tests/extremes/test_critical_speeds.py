@@ -16,7 +16,7 @@ import pytest
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.common.results.statements import OUTSIDE, kind_of
+from beamdyn.common.results.statements import INPUT, OUTSIDE, kind_of
 from beamdyn.modes.bounds import bound_critical_speed
 from beamdyn.modes.buckling import decide_buckling
 from beamdyn.modes.modal.model import Model
@@ -82,6 +82,11 @@ def mounted_at_random(rng: np.random.Generator) -> bd.Scene:
 
 # Some of the seeds to 400 with a critical speed that a basis of ten functions does not see or understates.
 HARD = (40, 149, 169, 225, 244, 326, 369)
+
+
+def doubts(point: bd.CriticalPoint) -> list[str]:
+    """Warnings of a critical speed, but for those of what is given and not modelled."""
+    return [said for said in point.warnings if kind_of(said) != INPUT]
 
 
 def assert_within_errors(seed: int, discretization: str, tolerances: Sequence[float]) -> None:
@@ -209,7 +214,7 @@ def test_the_argument_agrees_beyond_slender_beams(beam, springs, physics) -> Non
         scene = bd.Scene(beam, bd.Mount(1.0, mount.setting_angle, 0.4, *springs), physics=physics)
         found = bd.critical_point(scene)
         inward = mount is INWARD
-        assert not found.warnings
+        assert not doubts(found)
         assert math.isfinite(found.speed) is inward and found.error < 1e-9
         assert math.isfinite(Model(scene, bd.Ritz(24)).solver.critical_speed) is inward
 
@@ -286,7 +291,7 @@ def test_rotary_inertia_buckles_no_ordinary_blade(twisted: bool, physics: bd.Phy
     twist = TWISTED.twist if twisted else None
     mount = bd.Mount(0.2, math.pi, math.pi / 2, *springs)
     point = bd.critical_point(bd.Scene(replace(SLENDER_STEEL, twist=twist), mount, physics=physics))
-    assert math.isinf(point.speed) and point.error == 0 and not point.warnings
+    assert math.isinf(point.speed) and point.error == 0 and not doubts(point)
     assert "rotary inertia" in point.reason
     assert math.sqrt(2 * 0.01 * 210e9 / 7850) < point.none_below < math.inf
 

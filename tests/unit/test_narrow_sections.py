@@ -45,6 +45,8 @@ def test_no_last_digit_decides_it(near: float) -> None:
 def test_responses_and_transients_say_it_too() -> None:
     narrow = scene(3.0, CAMBER)
     assert said(bd.frequency_response(narrow, 50.0, [10.0, 20.0], modes=2).warnings)
+    assert said(bd.critical_point(narrow).warnings)  # an argument says that there is none
+    assert said(bd.critical_point(replace(narrow, mount=bd.Mount(0.2))).warnings)
     rolling = replace(narrow, motion=bd.RollingWheel(0.3, 50.0))
     assert said(bd.simulate(rolling, 0.01, tolerance=1e-2).warnings)
 
