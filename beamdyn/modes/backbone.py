@@ -122,7 +122,7 @@ def backbone(
     check_scene(scene)
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
-    scene = replace(scene.undamped, physics=replace(scene.physics, large_deflection=True))
+    scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
     solution = solve_to_tolerance(scene, discretization, speeds, mode)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):

@@ -209,7 +209,7 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
     if branch is not None:
         one_of("branch", branch, ("straight", "bent"))
     chosen = {} if branch is None else {"branch": branch}
-    return replace(scene, physics=replace(scene.physics, large_deflection=True, **chosen))
+    return replace(scene, physics=scene.physics.with_large_deflection(**chosen))
 
 
 def _solver(model: Model) -> DeflectedSolver:

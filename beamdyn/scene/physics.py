@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal
 
 from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, set_fields
@@ -87,6 +87,20 @@ class Physics:
         one_of("physics.branch", self.branch, ("straight", "bent"))
         if self.large_deflection:
             self._check_combination()
+
+    def with_large_deflection(self, **chosen: Any) -> Physics:
+        """The physics of an analysis that models large deflection in any case, with what else is chosen.
+
+        Raises
+        ------
+        InvalidValue
+            If an effect that is included cannot be combined with it.
+        """
+        try:
+            return replace(self, large_deflection=True, **chosen)
+        except InvalidValue as refusal:
+            bound = "this analysis models large deflection, with which it cannot be combined"
+            raise replace(refusal, bound=bound, remedy="leave it out") from None
 
     def _check_combination(self) -> None:
         """Refuse what the elastica is not combined with."""

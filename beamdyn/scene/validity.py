@@ -69,7 +69,7 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
     xi = np.linspace(0, 1, _STATIONS)
     narrowest = float((section.width(xi) / section.thickness(xi)).min())
     if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
-        said = f"the section is {narrowest:.2g} thicknesses wide: below {_NARROW:g} it is no plate, and what "
+        said = f"width/thickness is {narrowest:.2g}: below {_NARROW:g} a section is no plate, and what "
         worth = (
             f"camber and torsion change is fitted to solid bodies, from which frequencies differ by up to "
             f"{percent(_WORTH_OF_NARROW)} (docs/solids.md)"

@@ -11,6 +11,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import DONE, NO_ANSWER, main
+from beamdyn.common.inputs.checks import InvalidValue
 from benchmarks.cases.elastica import harvester_at
 
 BENT = bd.Physics(large_deflection=True)
@@ -137,3 +138,13 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "0.8503" in capsys.readouterr().out
     assert main(["equilibrium", str(file), "--speed", "100 rad/s", "--branch", "bent"]) == NO_ANSWER
     assert "no equilibrium beside" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("ask", [bd.equilibrium, bd.equilibrium_branches, bd.backbone])
+def test_an_effect_that_large_deflection_excludes_is_refused_without_a_word_on_what_was_not_set(ask):
+    strip = bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(strip, bd.Mount(0.2), physics=bd.Physics(camber=True))
+    with pytest.raises(
+        InvalidValue, match=r"camber = True: this analysis models large deflection.*; leave it out"
+    ):
+        ask(scene, 50.0)
