@@ -115,6 +115,7 @@ CAMBER = Effect(
     "sections camber freely, at the clamped root too",
     "camber",
     needs=("poissons_ratio",),
+    taken_out="camber",
     uncertainty=0.05,
 )
 TORSION = Effect(
@@ -122,6 +123,7 @@ TORSION = Effect(
     "the beam is rigid against torsion",
     "torsion",
     needs=("torsion_stiffness", "poissons_ratio"),
+    taken_out="torsion",
 )
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True

@@ -16,8 +16,8 @@ _TIE = 1e-9  # relative difference of kinetic energies below which the first kin
 def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
     """Kind of modes (S, n, k): what has most of their kinetic energy, in a word each (S, k).
 
-    Of bending in both directions, torsion and camber it is the first that is within 1e-9 of the largest.
-    None where a model has neither torsion nor camber, so that all modes are of bending.
+    Of bending in both directions, torsion and camber it is the first that is within 1e-9 of the largest; the
+    energy of stretch is not compared.  None where a model has neither torsion nor camber.
     """
     own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
     if not own:

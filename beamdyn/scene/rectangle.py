@@ -41,7 +41,7 @@ class Rectangle:
     density : float
         Density [kg/m3].
     poissons_ratio : float, optional
-        Poisson's ratio; None without shear stiffness.
+        Poisson's ratio; None without shear stiffness, camber and torsion.
     """
 
     width: Profile
@@ -83,9 +83,9 @@ class Rectangle:
 
     @cached_property
     def camber_ratio(self) -> Profile:
-        """Poisson's ratio of a plate whose clamped root stiffens bending as that of this section does.
+        """Effective Poisson's ratio for camber, less than nu in thick sections.
 
-        In thick sections the clamp stiffens less than in a plate: see `_THICK_CAMBER`.
+        It is nu (1 - 0.975 r + 0.826 r^2)^(1/2), r = t/b, as fitted to solids: docs/conventions.md.
         """
         nu = self.poissons_ratio or 0.0
 
@@ -109,7 +109,8 @@ class Rectangle:
     def stiffening_across(self, length: float) -> Profile:
         """Stiffness of bending in the direction of the width at a clamped root, over that of a free section.
 
-        It is 1 + nu^2 (1 - x/c)^2 within the reach c of the clamp, on a beam of the given length [m].
+        It is 1 + nu^2 (1 - x/c)^2 within the reach c of the clamp, at most 0.7 of the given length [m] of the
+        beam, by the sides at the root.  The profile is one over x/L.
         """
         nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
         within = tuple(nu**2 * part for part in (1 / 3, -1 / 2, 1 / 6))  # Legendre series of (1 - x/c)^2
@@ -117,14 +118,18 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant of the section over b^3 t^3/144, that of a thin one."""
+        """Warping constant over that of a thin section, b^3 t^3/144, divided by 1 + 7 (t/b)^2: fitted to solids."""
         return combine(_warping_factor, self.width, self.thickness)[0]
+
+    def sides(self) -> tuple[np.ndarray, np.ndarray]:
+        """Width and thickness (n,) [m] at places along the beam, among them both sides of each breakpoint."""
+        ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
+        xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
+        return self.width(xi), self.thickness(xi)
 
     def check_thickness(self, length: float) -> None:
         """Refuse a thickness that exceeds the length [m] of the beam, or the width anywhere."""
-        ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
-        xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
-        b, h = self.width(xi), self.thickness(xi)
+        b, h = self.sides()
         bound, advice = "it exceeds length = {limit}", "are the two swapped, or the units?"
         refuse(h.max() > length, "thickness", h.max(), "m", bound, advice, limit=length)
         bound = "it exceeds width = {limit}, but the beam bends in the direction of its thickness"
@@ -145,6 +150,8 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
     """The mean square of the warping function of sides (c, n) with b >= t, over b^2 t^2/144: (1, c, n).
+
+    It is divided by 1 + 7 (t/b)^2, which was fitted to solids.
 
     With y along the width and z along the thickness, Saint-Venant's warping function is y z minus
     8 t^2/pi^3 sum over odd n of (-1)^((n-1)/2) sin(n pi z/t) sinh(n pi y/t)/(n^3 cosh(n pi b/2t)).

@@ -28,7 +28,6 @@ STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses c
 _NARROW = 5.0  # thicknesses: a narrower section is no plate
 _WORTH_OF_NARROW = 0.01  # largest difference of such sections' frequencies from solids: benchmarks.solids
 _ROUNDING_OF_SIDES = 1e-9  # relative: a width that is no nearer to a bound is at it
-_STATIONS = 257  # places at which a section is looked at
 _MOST_RANGES = 4  # ranges of speeds in a sentence
 FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
@@ -40,7 +39,8 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning for what is given for a second plane that is not modelled, or what a choice leaves."""
+    """Yield warnings of what is given and not modelled, of a narrow section, and of what a choice leaves."""
+    yield from _warn_of_narrow_section(scene)
     if scene.physics_choice is not None:
         yield from scene.physics_choice.warnings()
         return
@@ -53,7 +53,6 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
         "twist": scene.beam.twist is not None,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
     }
-    yield from _warn_of_narrow_section(scene)
     for name, is_given in given.items():
         if is_given and scene.physics.planes == 1:
             remedy = Words(Setting("physics", planes=2), " models it")
@@ -66,8 +65,8 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
     section = scene.beam.section
     if section is None or not scene.models_width:
         return
-    xi = np.linspace(0, 1, _STATIONS)
-    narrowest = float((section.width(xi) / section.thickness(xi)).min())
+    width, thickness = section.sides()
+    narrowest = float((width / thickness).min())
     if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
         said = f"width/thickness is {narrowest:.2g}: below {_NARROW:g} a section is no plate, and what "
         worth = (

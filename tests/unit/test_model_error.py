@@ -370,7 +370,7 @@ def test_commands_say_it_below_the_table_and_in_json(
     assert found["not_modelled"] == list(NEVER)
     if command[0] != "critical":
         assert "modes not listed: edge" in printed
-        assert {mode["kind"] for mode in found["unlisted"]} == {"edge", "torsion"}
+        assert {mode["kind"] for mode in found["unlisted_modes"]} == {"edge", "torsion"}
         assert "with Poisson's ratio 0.3 assumed" in printed
         assert "exceeds 1 %: shear deformation, left out, changes the answer by" in said.err
         assert "[physics] shear = true includes it, with shear_stiffness or poissons_ratio" in said.err

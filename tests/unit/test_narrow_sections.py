@@ -58,3 +58,14 @@ def test_the_worst_of_the_solids_lie_within_it() -> None:
     assert len(worst) == 4 and min(differences) > 0.003 and max(differences) < 0.0105
     assert all(each.body().width < 5 * each.body().thickness for each in worst)
     assert np.isfinite(differences).all()
+
+
+def test_a_chosen_physics_says_it_too() -> None:
+    modes = bd.natural_modes(replace(scene(2.0, CAMBER), physics="auto"), 50.0, tolerance=2e-4)
+    assert modes.scene.physics.camber and said(modes.warnings)
+
+
+def test_a_short_narrow_part_is_seen() -> None:
+    width = bd.Table([0.0, 0.5, 0.5001, 0.5002, 1.0], [0.01, 0.01, 0.003, 0.01, 0.01])
+    beam = bd.Beam.rectangular(0.05, width, 1e-3, 200e9, 7850.0, poissons_ratio=0.3)
+    assert any("is 3: " in each for each in bd.natural_modes(bd.Scene(beam, physics=CAMBER)).warnings)

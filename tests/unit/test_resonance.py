@@ -315,8 +315,12 @@ def test_modes_of_the_body_that_are_not_sought_are_named() -> None:
     """A line may meet the first mode of torsion of the strip of steel, which no beam that only bends has."""
     beam = bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0, poissons_ratio=0.3)
     scene = bd.Scene(beam, bd.Mount(0.215), motion=bd.RollingWheel(0.3, 30.0, bd.RoadWave(0.1, 0.01)))
-    two, three = (bd.resonance_speeds(scene, 120.0, modes=n).left_out_effects for n in (2, 3))
+    found = [bd.resonance_speeds(scene, 120.0, modes=n) for n in (2, 3)]
+    two, three = (each.left_out_effects for each in found)
     assert two.unlisted == ()
     (torsion,) = three.unlisted
     assert torsion.kind == "torsion" and np.nanmax(torsion.frequency) == pytest.approx(656, rel=0.03)
     assert "modes not listed: torsion 6" in three.sentence()
+    written = found[1].to_dict()
+    assert [mode["kind"] for mode in written["unlisted_modes"]] == ["torsion"]
+    assert written["unlisted"] == found[1].unlisted  # crossings of the next order, a number

@@ -18,11 +18,11 @@ the unit vector a adds
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
-where T is the tension of the beam per width, and a1, a2 are the components of a in the directions of bending
-and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y pulls the
-width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also twists the
-strip, by the load omega^2 a1 a2 rho t y per area, less what the inertia of the thickness resists.  In a
-tapered strip d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions
+of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
+N_y pulls the width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
+also twists the strip, by the load -omega^2 a1 a2 rho t y per area, less what the inertia of the thickness
+resists.  In a tapered strip d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
 a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and

@@ -158,7 +158,7 @@ class LeftOutEffects:
         return Words(*begin, ": ", joined("; ", parts))
 
     def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
-        """The speeds at which a change is not known; empty if these are not given, or none is known."""
+        """The speeds at which a change is not known; empty if these are not given, or it is known at all."""
         change = self.changes.get(name)
         if speeds is None or change is None or not len(speeds):
             return ""
@@ -305,7 +305,7 @@ class StatesModelError(OfChosenPhysics):
         values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
         judged = {"model_error": self.model_error, "left_out": effects.changes}
         named = {"not_known": effects.not_known, "assumed": effects.assumed}
-        named |= {"not_modelled": effects.not_modelled, "unlisted": effects.unlisted}
+        named |= {"not_modelled": effects.not_modelled, "unlisted_modes": effects.unlisted}
         return values | plain(judged | named)
 
 

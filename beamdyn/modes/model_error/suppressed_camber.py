@@ -1,7 +1,8 @@
-"""Suppressed camber: a strip that is bent far cannot camber, and is as stiff as a plate that is held flat.
+"""Suppressed camber: a strip that is bent far cannot camber freely, and is nearly as stiff as one held flat.
 
-A strip of width b and thickness t under the curvature kappa cambers while b^2 kappa/t (Searle's parameter) is
-small.  Beyond 1 its middle stays flat, as camber would stretch it.  With theta = (3 (1 - nu^2))^(1/4) b
+A strip of width b and thickness t under the curvature kappa cambers freely while b^2 kappa/t (Searle's
+parameter) is small.  From about 1 on its camber is suppressed more and more, half of it at 10, as it would
+stretch the strip.  With theta = (3 (1 - nu^2))^(1/4) b
 (kappa/t)^(1/2) its energy per length, of bending and of the stress that camber causes along it, is
 
     U = E I kappa^2 (1 - nu^2 f)/(2 (1 - nu^2)),    f = 2 h/theta,
@@ -27,7 +28,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 
-_FLAT = 1.0  # Searle's parameter from which camber is suppressed
+_CAMBER_DECLINES = 1.0  # Searle's parameter from which camber is suppressed
 _WIDEST = 50.0  # theta beyond which its functions have their limits
 _STATIONS = 101
 
@@ -46,7 +47,7 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
 def warn_of_suppressed_camber(
     scene: Scene, equations: Equations, coordinates: np.ndarray, say_when: Callable[[int], Words | str]
 ) -> Iterator[Statement]:
-    """Yield a warning if large deflection bends a strip so far that it cannot camber.
+    """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
 
     The coordinates (k, n) are those of the equations, at k speeds or times; `say_when` says which.
     """
@@ -57,7 +58,7 @@ def warn_of_suppressed_camber(
     curvature = np.abs(coordinates @ equations.deflection(xi, order=2)) / length**2
     b, t = section.width(xi), section.thickness(xi)
     searle = b**2 * curvature / t
-    if not searle.max(initial=0.0) > _FLAT:
+    if not searle.max(initial=0.0) > _CAMBER_DECLINES:
         return
     at, place = np.unravel_index(searle.argmax(), searle.shape)
     ratio = ASSUMED_POISSONS_RATIO if nu is None else nu
@@ -67,8 +68,8 @@ def warn_of_suppressed_camber(
     bent = f"b^2 kappa/t = {searle[at, place]:.2g} (Searle's parameter) at x/L = {xi[place]:.2g}"
     where = f" the strip is bent to {bent}"
     worth = (
-        f": past 1 it cannot camber, and is up to {percent(stiffer)} stiffer, its frequencies up to "
-        f"{percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
+        f": past 1 its camber is suppressed in part: it is up to {percent(stiffer)} stiffer, its frequencies "
+        f"up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
     )
     quantity = "Searle's parameter b^2 kappa/t"
     yield Statement(
@@ -78,5 +79,5 @@ def warn_of_suppressed_camber(
         kind=MODEL_ERROR,
         quantity=quantity,
         value=searle[at, place],
-        limit=_FLAT,
+        limit=_CAMBER_DECLINES,
     )

@@ -1,7 +1,8 @@
 """Modes of the body below the highest that a model lists, of kinds that the model does not have.
 
-A beam that bends in one plane, and does not twist, has no modes of the other direction and of torsion.  Of a
-beam whose data are known these are found with shear and the rotary inertia of sections, as far as those are.
+A beam that bends in one plane, and neither twists nor stretches, has no modes of the other direction, of
+torsion and of stretch.  They are found where the beam has the data; those of the other direction with shear
+and the rotary inertia of sections, as far as there are data of these.
 """
 
 from __future__ import annotations
@@ -50,7 +51,8 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
 def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
     """Yield the modes that a model does not have, below the highest that it lists at some speed.
 
-    The eigenvalues (S, m) are those listed at the speeds (S,) [rad/s].
+    A margin of 3 % above it is what the frequencies of these modes are known to.  The eigenvalues (S, m)
+    are those listed at the speeds (S,) [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene = without_large_deflection(model).scene
