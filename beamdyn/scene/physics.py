@@ -93,7 +93,7 @@ class Physics:
 
         Raises
         ------
-        InvalidValue
+        ValueError
             If an effect that is included cannot be combined with it.
         """
         try:

@@ -118,7 +118,7 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over that of a thin section, b^3 t^3/144, divided by 1 + 7 (t/b)^2: fitted to solids."""
+        """Warping constant over b^3 t^3/144, that of a thin one; fitted to solids by 1/(1 + 7 (t/b)^2)."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def sides(self) -> tuple[np.ndarray, np.ndarray]:

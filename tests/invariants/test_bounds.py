@@ -24,7 +24,7 @@ from benchmarks.cases.scenes import HARVESTER
 
 
 @pytest.mark.parametrize(
-    "seed", [s if s < 20 else pytest.param(s, marks=pytest.mark.slow) for s in range(60)]
+    "seed", [s if s < 10 else pytest.param(s, marks=pytest.mark.slow) for s in range(60)]
 )
 def test_bounds_enclose_the_exact_frequencies(seed: int) -> None:
     case = random_nondimensional_scene(np.random.default_rng(seed))
