@@ -341,6 +341,7 @@ def test_nothing_topples_below_the_bound() -> None:
     assert closest < 5  # the bounds are not empty
 
 
+@pytest.mark.slow
 def test_none_below_of_two_planes_apart_is_the_lower_of_both() -> None:
     tip = bd.TipMass(1e-3, -1e-9)  # topples in a layer too thin for any basis
     beam = replace(HARVESTER.beam, tip=tip)

@@ -74,9 +74,7 @@ def _split(scene: bd.Scene, speed: float, moments: int) -> tuple[CoupledEnclosur
     return CoupledEnclosure(scaled, moments, speed * time, (first, second)), time
 
 
-@pytest.mark.parametrize(
-    "seed", [s if s < 16 else pytest.param(s, marks=pytest.mark.slow) for s in range(50)]
-)
+@pytest.mark.parametrize("seed", [s if s < 8 else pytest.param(s, marks=pytest.mark.slow) for s in range(50)])
 def test_bounds_of_random_twisted_blades_enclose_the_second_method(seed: int) -> None:
     scene, speed = _random_blade(seed)
     found = frequency_bounds(scene, speed, 3)

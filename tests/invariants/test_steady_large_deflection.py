@@ -49,6 +49,7 @@ def test_against_a_transient_of_large_deflection(bending_angle: float) -> None:
     np.testing.assert_allclose(response.tip(phase)[0], run.deflection(t), atol=3e-5 * response.amplitude[0])
 
 
+@pytest.mark.slow
 def test_speeds_without_an_equilibrium_have_a_status_of_their_own() -> None:
     bent = replace(LARGE, branch="bent")
     response = bd.steady_response(_at(5.0, physics=bent), [100.0, 190.0, 200.0])

@@ -298,6 +298,7 @@ def test_numbers_of_the_motion_are_refused_in_a_sentence(what, name, values, sai
         bd.study(rolling(), {name: values}, what, speed=30.0)
 
 
+@pytest.mark.slow
 def test_a_spread_takes_numbers_of_the_motion():
     scene = bd.Scene(SCENE.beam, SCENE.mount, bd.RollingWheel(0.3, 40.0, ROAD))
     found = bd.spread(scene, {"motion.road.velocity_amplitude": "+-2%"}, "amplitude", samples=128)
