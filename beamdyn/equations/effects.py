@@ -57,7 +57,7 @@ class Effect:
 
     def is_left_out(self, scene: Scene) -> bool:
         """Whether the model of a scene lacks the effect: the twist only of a beam that has one."""
-        return not self.is_in(scene) and (self is not TWIST or scene.beam.twist is not None)
+        return not self.is_in(scene) and (self is not TWIST or scene.beam.is_twisted)
 
     def reason(self, scene: Scene) -> str:
         """Say what the model of a scene assumes in place of the effect, and how to include that."""
@@ -71,11 +71,23 @@ class Effect:
     def _how_to_include(self, scene: Scene) -> str:
         if scene.physics.large_deflection and not self.bends:
             return EXCLUSIVE
+        if (refused := self._why_refused(scene)) is not None:
+            return refused
         lacking = [name for name in self.needs[:1] if _lacks(scene.beam, name)]
         data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
         others = [e.taken_out for e in EFFECTS if e.taken_out and e.is_in(scene)]
         without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
         return Words(Setting("physics", **{self.switch: self.value}), f" includes it{data}{without}")
+
+    def _why_refused(self, scene: Scene) -> str | None:
+        """Why no model has the effect of a beam with all data; None if one has, or data are lacking."""
+        if scene.physics.large_deflection or self is LARGE_DEFLECTION:
+            return None
+        try:
+            add_effects(scene, [self])
+        except InvalidValue as refusal:
+            return None if refusal.other else refusal.bound
+        return None
 
 
 def _lacks(beam: Beam, name: str) -> bool:

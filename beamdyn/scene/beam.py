@@ -20,6 +20,7 @@ from beamdyn.scene.profile import Profile, Property, as_profile, check_positive,
 from beamdyn.scene.rectangle import Rectangle
 
 _ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
+_STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes nothing by more than 1e-18
 
 
 @dataclass(frozen=True)
@@ -342,6 +343,11 @@ class Beam(FieldsOnly, OneLine):
     def points(self) -> np.ndarray:
         """Positions x/L of point masses and point springs, at which the shear force jumps."""
         return np.concatenate([self.lumps[0], self.springs(0)[0], self.springs(1)[0]])
+
+    @cached_property
+    def is_twisted(self) -> bool:
+        """Whether a twist is given that turns any section by more than rounding, 1e-9 rad."""
+        return self.twist is not None and bool(np.abs(self.twist.series).sum(axis=0).max() > _STRAIGHT)
 
     @property
     def root_twist(self) -> float:

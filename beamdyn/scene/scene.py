@@ -317,8 +317,8 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
         remedy = Words(RECTANGULAR, given, " makes one of steel")
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
-    if beam.twist is not None:
-        bound, remedy = f"with {name} the beam must not be twisted", "leave one of the two out"
+    if beam.is_twisted:
+        bound, remedy = "camber and torsion of a twisted beam are not modelled", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
     if section is None:
         return
@@ -353,7 +353,7 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     """The beam without the properties that a model with this physics does not read."""
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
     unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
-    unread |= {"twist"} if physics.planes == 1 else set()
+    unread |= {"twist"} if physics.planes == 1 or not beam.is_twisted else set()
     unread |= set() if physics.torsion else {"warping_stiffness"}
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
     if _models_width(beam, physics):

@@ -50,7 +50,7 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
         said = f"physics.branch is {branch}, but physics.large_deflection is off: the beam is straight; "
         yield Statement(said, remedy, kind=INPUT, quantity="physics.branch", remedy=remedy)
     given = {
-        "twist": scene.beam.twist is not None,
+        "twist": scene.beam.is_twisted,
         "second_root_stiffness": scene.mount.second_root_stiffness != math.inf,
     }
     for name, is_given in given.items():

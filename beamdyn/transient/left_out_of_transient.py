@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modes.backbone import SMALL, FreeVibration
 from beamdyn.modes.modal.discretization_choice import ensure_size
@@ -51,7 +51,7 @@ def left_out_of_transient(
         without = _run_again(problem, straight.scene, window)
 
     def solve(scene: Scene, name: str) -> SolvedValues:
-        if scene.physics == straight.scene.physics:
+        if scene == straight.scene:
             return without
         if (shift := shifts.get(name)) is not None:
             return SolvedValues(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
@@ -108,5 +108,5 @@ def _run_again(problem: TransientProblem, scene: Scene, window: tuple[float, flo
     again = replace(problem, scene=scene, discretization=discretization, method="auto", t_eval=None)
     try:
         return SolvedValues(np.array(_peak(again.solve(), window)))
-    except (ArithmeticError, InvalidValue, np.linalg.LinAlgError) as error:
+    except (ArithmeticError, InvalidValue, NoModelAnswer, np.linalg.LinAlgError) as error:
         return SolvedValues(np.array(np.nan), reason_of(error))

@@ -119,7 +119,10 @@ def parse(text: str, source: str) -> dict[str, Any]:
             source, ["its lists or tables are nested too deeply; give a file of tables"]
         ) from None
     except tomllib.TOMLDecodeError as error:
-        remedy = 'give each key and each [table] once, and a quantity in quotes: length = "50 mm"'
+        remedy = (
+            "give each key and each [table] once, true and false in lower case, and a quantity in quotes: "
+            'length = "50 mm"'
+        )
         raise ConfigError(source, [f"not valid TOML: {error}; {remedy}"]) from None
     except ValueError:
         raise ConfigError(source, ["a number has thousands of digits; give at most 17"]) from None

@@ -11,6 +11,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.effects import (
     CAMBER,
+    EXCLUSIVE,
     LARGE_DEFLECTION,
     SECOND_PLANE,
     SHEAR,
@@ -31,6 +32,7 @@ _ASSUMED_OF_SECTIONS = {
     CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
     TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
+_MOST_CAMBER = "as if no section cambered, which is the most"
 _RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
 
 
@@ -43,7 +45,7 @@ class Addition:
     effect : Effect
         The effect.
     scene : Scene
-        The scene that includes it.
+        The scene that includes it, or what bounds its change.
     assumed : str
         What was assumed about the beam to include it; empty if nothing.
     """
@@ -107,7 +109,9 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
         try:
             additions.append(add_effect(scene, effect))
         except InvalidValue as refusal:
-            not_known[effect.name] = f"give {refusal.other}" if refusal.other else str(refusal)
+            excluded = scene.physics.large_deflection and not effect.bends
+            why = EXCLUSIVE if excluded else str(refusal)
+            not_known[effect.name] = f"give {refusal.other}" if refusal.other else why
     not_modelled = [effect.name for effect in left_out if not effect.switch]
     if TORSION in left_out and not can_add(scene, TORSION):
         not_modelled.insert(0, TORSION.name)
@@ -116,6 +120,8 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
 
 def add_effect(scene: Scene, effect: Effect) -> Addition:
     """Add an effect that a scene leaves out, with an assumption about the beam if that does.
+
+    Where camber is not modelled, of a twisted beam and of a width that jumps, it is bounded.
 
     Raises
     ------
@@ -126,7 +132,22 @@ def add_effect(scene: Scene, effect: Effect) -> Addition:
     for given, assumed in assumptions:
         with suppress(InvalidValue):
             return Addition(effect, add_effects(given, [effect]), assumed)
-    return Addition(effect, add_effects(last[0], [effect]), last[1])
+    try:
+        return Addition(effect, add_effects(last[0], [effect]), last[1])
+    except InvalidValue:
+        if effect is not CAMBER or scene.beam.section is None or scene.physics.large_deflection:
+            raise
+    return Addition(CAMBER, _without_camber(last[0]), ", ".join(filter(None, [last[1], _MOST_CAMBER])))
+
+
+def _without_camber(scene: Scene) -> Scene:
+    """The scene with rectangular sections that nowhere camber: stiffer than with what a clamp hinders."""
+    beam = scene.beam
+    section, second = beam.section, beam.second_bending_stiffness
+    assert section is not None and second is not None, "a rectangular section has both stiffnesses"
+    flat = beam.bending_stiffness * section.camber_stiffening
+    across = second * section.stiffening_across(beam.length)
+    return replace(scene, beam=replace(beam, bending_stiffness=flat, second_bending_stiffness=across))
 
 
 def can_add(scene: Scene, effect: Effect) -> bool:

@@ -348,7 +348,8 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
         try:
             return found.add(largest, judge)
         except (InvalidValue, ArithmeticError) as error:
-            return found.without(largest, reason_of(error))
+            excluded = found.scene.physics.large_deflection and not NAMED[largest].bends
+            return found.without(largest, EXCLUSIVE if excluded else reason_of(error))
 
     def meets(found: _Candidate) -> bool:
         left = sizes(found).values()

@@ -16,8 +16,9 @@ import numpy as np
 from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.words import Setting, Words
-from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION, list_left_out
+from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.modes.kinds import BENDING, kinds_of_modes
 from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import Addition, list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
@@ -34,6 +35,7 @@ from beamdyn.scene.scene import Scene
 
 # Why large deflection cannot be added, by the field of the refusal where there is one.
 _TWO_PLANES = "it is solved in one plane of bending"
+_OF_BENDING = "it is solved of modes of bending"
 _HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 _REFUSED = {
     "mount.bending_angle": "it is solved where the bending angle is a multiple of 90 deg",
@@ -75,29 +77,36 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
         with it.
     """
-    base = BaseEquations.of(without_large_deflection(model), eigenvalue.shape[1])
-    references = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
+    modes = eigenvalue.shape[1]
+    base = BaseEquations.of(without_large_deflection(model), modes)
+    references, reversals = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)], {}
 
     def change(added: Addition) -> np.ndarray:
-        near, of_near = base, references
-        if added.effect is CAMBER:
-            near = BaseEquations.at_clamp(base.scene, added.scene, eigenvalue.shape[1])
+        near, of_near = base.suited_to(added.scene, modes), references
+        if near is not base:
             of_near = [near.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
         equations, each = near.extend(added.scene), zip(speeds.tolist(), of_near, strict=True)
-        return np.array(
-            [_change_of_frequencies(equations, w, s, near.embed(equations, v)) for w, (s, v) in each]
-        )
+        s = np.array([s for s, _ in of_near])
+        shifted = np.array([_shifted(equations, w, s, near.embed(equations, v)) for w, (s, v) in each])
+        reversals[added.name] = _say_reversal(s, shifted)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            known = vibrate(s) & vibrate(shifted)
+            return np.where(known, np.imag(shifted) / np.imag(s) - 1, np.nan)
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
-        bent, reason = _large_deflection_change(model, speeds, eigenvalue)
+        kinds = kinds_of_modes(base.equations, np.array([v for _, v in references]))
+        of_bending = np.ones(eigenvalue.shape, bool) if kinds is None else kinds == BENDING
+        bent, reason = _large_deflection_change(model, speeds, eigenvalue, of_bending)
         bent = np.where(vibrate(eigenvalue), bent, np.nan)
     found = _gather(model.scene, base.scene, change, bent, reason, eigenvalue.shape)
-    judged_on, not_known = np.array([vibrate(s) for s, _ in references]), found.not_known
-    for modes, why in ((judged_on, _LOST), (vibrate(eigenvalue) & ~judged_on, _UNSTABLE)):
-        lost = {name: why for name, change in found.changes.items() if np.isnan(change[modes]).any()}
+    judged_on = np.array([vibrate(s) for s, _ in references])
+    reversals = {name: why for name, why in reversals.items() if why}
+    not_known = reversals | found.not_known
+    for some, why in ((judged_on, _LOST), (vibrate(eigenvalue) & ~judged_on, _UNSTABLE)):
+        lost = {name: why for name, change in found.changes.items() if np.isnan(change[some]).any()}
         not_known = lost | not_known
-    return replace(found, not_known=not_known)
+    return replace(found, not_known=not_known, reversals=reversals)
 
 
 def vibrate(s: np.ndarray) -> np.ndarray:
@@ -105,26 +114,37 @@ def vibrate(s: np.ndarray) -> np.ndarray:
     return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))
 
 
-def _change_of_frequencies(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Relative changes (m,) of the frequencies of modes s (m,), v (n, m) by equations with an effect."""
-    known = vibrate(s)
+def _diverge(s: np.ndarray) -> np.ndarray:
+    """Whether modes grow without vibrating."""
+    return (np.imag(s) == 0) & (np.real(s) > 0)
+
+
+def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Eigenvalues (m,) by equations with an effect of the modes s (m,), v (n, m) that vibrate or diverge."""
+    known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
     if lost.any():  # a step of inverse iteration may lead to a neighbour
         shifted[lost] = match_modes(equations, speed, v[:, lost], _AMONG * len(s))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(vibrate(shifted), np.imag(shifted) / np.imag(s) - 1, np.nan)
+    return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # of a pair the one that is listed
+
+
+def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
+    """Whether an effect makes a mode diverge that vibrates, or vibrate that diverges; empty if neither."""
+    if (vibrate(s) & _diverge(shifted)).any():
+        return "with it a mode diverges that vibrates here"
+    return "with it a mode vibrates that diverges here" if (_diverge(s) & vibrate(shifted)).any() else ""
 
 
 def _large_deflection_change(
-    model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
+    model: Model, speeds: np.ndarray, eigenvalue: np.ndarray, of_bending: np.ndarray
 ) -> tuple[np.ndarray, str]:
     """Find what large deflection changes in frequencies (S, m), nan if it is not known, and why it is not.
 
     What it cannot be combined with is left out of both beams that are compared: the change is then to first
-    order.  Modes of a beam in one plane keep their order.  At rest, and where the straight beam is in
-    equilibrium, it changes nothing.
+    order, and that of modes which are not of bending (S, m) is not known.  Modes of a beam in one plane keep
+    their order.  At rest, and where the straight beam is in equilibrium, it changes nothing.
     """
     if not bends(model):
         unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
@@ -141,9 +161,11 @@ def _large_deflection_change(
     # not reach all speeds, none is kept, and each is sought by itself.
     with suppress(ArithmeticError, np.linalg.LinAlgError):
         bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
-    each = [_bent_change_at(straight, bent, *at) for at in zip(speeds.tolist(), eigenvalue, strict=True)]
-    reasons = dict.fromkeys(reason for _, reason in each if reason)
-    return np.array([change for change, _ in each]), next(iter(reasons), "")
+    change, reasons = unknown, dict.fromkeys([] if of_bending.all() else [_OF_BENDING])
+    for k, (speed, own) in enumerate(zip(speeds.tolist(), of_bending, strict=True)):
+        change[k, own], reason = _bent_change_at(straight, bent, speed, eigenvalue[k, own])
+        reasons |= {reason: None} if reason else {}
+    return change, next(iter(reasons), "")
 
 
 def _bent_change_at(
@@ -193,8 +215,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     base = BaseEquations.of(without_large_deflection(model), 1)
 
     def change(added: Addition) -> np.ndarray:
-        is_at_clamp = added.effect is CAMBER
-        near = BaseEquations.at_clamp(base.scene, added.scene, 1) if is_at_clamp else base
+        near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
         v = buckling_mode(pencil, critical)
         known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effect

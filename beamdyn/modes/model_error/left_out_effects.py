@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -91,6 +91,8 @@ class LeftOutEffects:
         Shape of the values, which each change has.
     unlisted : tuple of UnlistedMode
         Modes of the body that the model does not have, below the highest that it lists.
+    reversals : dict of str to str
+        Effects by which a mode that vibrates diverges, or the other way round, and which of the two.
     """
 
     changes: dict[str, np.ndarray]
@@ -100,6 +102,7 @@ class LeftOutEffects:
     reasons: dict[str, str]
     shape: tuple[int, ...] = ()
     unlisted: tuple[UnlistedMode, ...] = ()
+    reversals: dict[str, str] = field(default_factory=dict)
 
     @property
     def total(self) -> np.ndarray:
@@ -188,7 +191,7 @@ class LeftOutEffects:
         where: str = "",
         where_unknown: Callable[[str], str] = lambda name: "",
     ) -> Iterator[Statement]:
-        """Yield a warning if the changes exceed a tolerance, or 1 %, and if they may, being unknown.
+        """Yield a warning if the changes exceed a tolerance, or 1 %, or may, and of a verdict that they reverse.
 
         Parameters
         ----------
@@ -199,6 +202,10 @@ class LeftOutEffects:
         where_unknown : callable
             Where the change by an effect of a name is not known; empty if that is where the largest is.
         """
+        for name, how in self.reversals.items():
+            begin = (where_unknown(name), " ") if where_unknown(name) else ()
+            end = f"the model error decides on stability: {name} is left out, and {how}; "
+            yield Statement(*begin, end, self.reasons[name], kind=MODEL_ERROR, quantity="stability")
         limit = LARGE_MODEL_ERROR if tolerance is None else max(tolerance, _NEGLIGIBLE)
         at_least = float(self.total_of_known.max(initial=0.0))
         if at_least > limit:
@@ -207,13 +214,14 @@ class LeftOutEffects:
             size = f"{'at least ' if partial else ''}{say_size(at_least)}, exceeds {say_size(limit)}"
             largest = max(self.changes, key=lambda name: np.abs(np.nan_to_num(self.changes[name])).max())
             change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
-            said = f", {size}: {largest}, left out, changes the answer by {change}"
+            assumed = f" ({self.assumed[largest]})" if largest in self.assumed else ""
+            said = f", {size}: {largest}, left out, changes the answer by {change}{assumed}"
             data = {"quantity": "model error", "value": at_least, "limit": limit}
             yield Statement(*begin, said, *(("; ", how) if how else ()), kind=MODEL_ERROR, **data)
             return
         unknown: dict[tuple[str, str], list[str]] = {}
         for name, why in self.not_known.items():
-            if name in self.changes and np.isnan(self.changes[name]).any():
+            if name in self.changes and name not in self.reversals and np.isnan(self.changes[name]).any():
                 unknown.setdefault((where_unknown(name) or where, why), []).append(name)
         for (place, why), names in unknown.items():
             begin = (place, " the model error") if place else ("the model error",)

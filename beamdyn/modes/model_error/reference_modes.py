@@ -70,14 +70,15 @@ class BaseEquations:
             return cls(model.scene, spaces, model.equations)
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
-    @classmethod
-    def at_clamp(cls, scene: Scene, extended: Scene, modes: int) -> BaseEquations:
-        """Equations of a scene over spaces that resolve, for so many modes, what its clamp hinders.
+    def suited_to(self, extended: Scene, modes: int) -> BaseEquations:
+        """The equations over spaces that resolve, for so many modes, what a scene with an effect adds.
 
-        The scene with what is hindered, camber or torsion, has the breakpoints of these spaces.
+        A clamp hinders camber near the root, where the scene with camber has breakpoints.
         """
+        if not extended.physics.camber or self.scene.physics.camber:
+            return self
         spaces = clamp_spaces(extended, modes)
-        return cls(scene, spaces, assemble_over(scene, spaces))
+        return BaseEquations(self.scene, spaces, assemble_over(self.scene, spaces))
 
     def extend(self, scene: Scene) -> Equations:
         """The equations of the scene with an effect, over the same spaces."""

@@ -1,7 +1,7 @@
 """Modes of the body below the highest that a model lists, of kinds that the model does not have.
 
-A beam that bends in one plane, and neither twists nor stretches, has no modes of the other direction, of
-torsion and of stretch.  They are found where the beam has the data; those of the other direction with shear
+A beam that bends in one plane, and neither twists nor cambers nor stretches, has no modes of the other
+direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the other direction with shear
 and the rotary inertia of sections, as far as there are data of these.
 """
 
@@ -12,28 +12,31 @@ from dataclasses import replace
 
 import numpy as np
 
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.effects import (
+    CAMBER,
     ROTARY_INERTIA,
     SECOND_PLANE,
     SHEAR,
     STRETCH,
     TORSION,
     Effect,
+    add_effects,
     words_of_directions,
 )
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.uncoupled import solver_of_pencil
-from beamdyn.modes.model_error.additions import add_effect, can_add
+from beamdyn.modes.model_error.additions import Addition, add_effect, can_add
 from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, without_large_deflection
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedMode
 from beamdyn.modes.model_error.reference_modes import clamp_spaces
 from beamdyn.scene.scene import Scene
 
 # Effects that add modes, with the fields in which these move most: by how their names begin.
-_ADDED = {SECOND_PLANE: "second", TORSION: "torsion", STRETCH: "stretch"}
+_ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
 _REFINING = (SHEAR, ROTARY_INERTIA)
 _MARGIN = 1.03  # of the highest frequency listed: what the frequencies of these modes are known to
 _EXTRA = 2  # modes beyond as many as are listed
@@ -57,9 +60,8 @@ def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> I
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene = without_large_deflection(model).scene
     for effect, fields in _ADDED.items():
-        if effect.is_in(scene) or not can_add(scene, effect):
+        if effect.is_in(scene) or (added := _add(scene, effect)) is None:
             continue
-        added = add_effect(scene, effect)
         extended, count = added.scene, eigenvalue.shape[1] + _EXTRA
         if effect is SECOND_PLANE:
             extended = _refined(extended)
@@ -69,6 +71,16 @@ def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> I
             if np.isfinite(omega).any():
                 kind, frequency = _kind(effect, extended), omega / (2 * np.pi)
                 yield UnlistedMode(kind, k + 1, effect.name, frequency, added.assumed)
+
+
+def _add(scene: Scene, effect: Effect) -> Addition | None:
+    """The scene with an effect; with camber torsion too, which says what is assumed.  None if it has none."""
+    try:
+        added = add_effect(scene, TORSION if effect is CAMBER and not TORSION.is_in(scene) else effect)
+        extended = add_effects(added.scene, [effect])
+    except InvalidValue:
+        return None
+    return replace(added, effect=effect, scene=extended)
 
 
 def _refined(scene: Scene) -> Scene:
@@ -106,4 +118,4 @@ def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, coun
 
 def _kind(effect: Effect, scene: Scene) -> str:
     """Name of the modes that an effect adds."""
-    return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.name
+    return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.switch
