@@ -121,6 +121,11 @@ class Rectangle:
         """Warping constant over b^3 t^3/144, that of a thin one; fitted to solids by 1/(1 + 7 (t/b)^2)."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
+    def kinks_of_width(self, length: float) -> np.ndarray:
+        """Changes of the slope of the width at its inner breakpoints, for a length [m] of the beam."""
+        left, right = self.width.derivative().end_values()
+        return np.abs(left[1:] - right[:-1]) / length
+
     def sides(self) -> tuple[np.ndarray, np.ndarray]:
         """Width and thickness (n,) [m] at places along the beam, among them both sides of each breakpoint."""
         ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)

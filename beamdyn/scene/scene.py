@@ -304,6 +304,7 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
 # Length over the local width of the parts at a clamped root in which a plate's corners are resolved.
 _CORNERS = 0.2, 1.2
 _LAST_CORNER = 0.7  # of the length
+_SHARPEST = 1.0  # change of the slope of the width beyond which camber is several percent off
 _JUMP = 1e-9  # of the width: a smaller one is rounding
 
 
@@ -320,15 +321,22 @@ def _check_width(beam: Beam, physics: Physics) -> None:
     if beam.is_twisted:
         bound, remedy = "camber and torsion of a twisted beam are not modelled", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
-    if section is None:
+    if section is None or not physics.camber:
         return
     left, right = section.width.end_values()
     jumps = np.flatnonzero(np.abs(right[:-1] - left[1:]) > _JUMP * right[:-1])
+    kinks = section.kinks_of_width(beam.length)
+    if not jumps.size and kinks.max(initial=0.0) > _SHARPEST:
+        at = section.width.breakpoints[int(kinks.argmax()) + 1]
+        bound = "camber is modelled where the slope of the width changes by at most {limit}"
+        remedy, where = "taper it over a longer part, or leave camber out", f" at x/L = {at:.3g}"
+        raise InvalidValue("slope of width", float(kinks.max()), bound, remedy, "", _SHARPEST, where=where)
     if jumps.size:
         at = section.width.breakpoints[jumps[0] + 1]
-        bound = f"with {name} the width must not jump"
-        where = f" at x/L = {at:.3f}"
-        raise InvalidValue("width", float(left[jumps[0] + 1]), bound, "taper it", "m", where=where)
+        bound = "camber where the width jumps is not modelled"
+        where = f" at x/L = {at:.3f}, {float(right[jumps[0]]):.6g} m before it"
+        remedy = "leave one of the two out"
+        raise InvalidValue("width", float(left[jumps[0] + 1]), bound, remedy, "m", where=where)
 
 
 def _models_width(beam: Beam, physics: Physics) -> bool:

@@ -147,12 +147,13 @@ def surface(scene, space, q):
     beam = scene.beam
 
     def w(x, y):
-        eta = 2 * y / beam.section.width(x / beam.length)
+        local, at_tip = (beam.section.width(at) for at in (x / beam.length, np.ones(1)))
         total = np.zeros(np.broadcast(x, y).shape)
         phi = space.spaces(scene.modelled_beam).functions(CLAMPED).evaluate(np.ravel(x / beam.length))
         for name, block in equations.blocks.items():
             parts = q[block].reshape(-1, len(phi))
             numbers = {"bending": [0], "torsion": range(1, 40, 2), "camber": range(2, 40, 2)}[name]
+            eta = 2 * y / (at_tip if name == "torsion" else local)
             for k, part in zip(numbers, parts, strict=False):
                 total += (part @ phi) * np.sqrt(2 * k + 1) * np.polynomial.Legendre.basis(k)(eta)
         return total

@@ -138,3 +138,69 @@ def test_modes_are_positive_at_the_corner_of_the_tip_and_have_no_surface():
     assert twist[modes.kind == "torsion"] > 0
     with pytest.raises(ValueError, match="width of the sections is not known"):
         modes.surface([0.1], [0.0])
+
+
+def kinked(tip_width: float, rounding: float = 0.0) -> bd.Beam:
+    """A strip that tapers from the middle, where a parabola rounds the kink within x/L = 0.5 +- rounding."""
+    slope = (0.01 - tip_width) / 0.5
+
+    def width(xi: np.ndarray) -> np.ndarray:
+        within = np.clip((xi - 0.5 + rounding) / (2 * rounding), 0.0, 1.0)
+        return 0.01 - slope * np.where(xi > 0.5 + rounding, xi - 0.5, rounding * within**2)
+
+    sides = width if rounding else bd.Table([0.0, 0.5, 1.0], [0.01, 0.01, tip_width])
+    ends = (0.5 - rounding, 0.5 + rounding) if rounding else ()
+    return bd.Beam.rectangular(
+        0.05, sides, 0.0002, 200e9, 7850.0, breakpoints=ends, poissons_ratio=0.3
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("tip_width", [0.009, 0.006, 0.002])
+def test_torsion_of_a_width_with_a_kink_is_the_limit_of_rounded_ones(tip_width: float) -> None:
+    """What rounding changes falls with its square or faster; functions that are smooth at a kink miss 2 %."""
+    physics = bd.Physics(torsion=True)
+    beams = kinked(tip_width), kinked(tip_width, 0.1), kinked(tip_width, 0.02)
+    sharp, *rounded = (bd.natural_modes(bd.Scene(beam, physics=physics), modes=5) for beam in beams)
+    of_torsion = [modes.frequency[modes.kind == "torsion"][0] for modes in (sharp, *rounded)]
+    coarse, fine = (abs(each / of_torsion[0] - 1) for each in of_torsion[1:])
+    assert fine < 6e-4
+    assert coarse < 30 * fine + 1e-9
+    assert coarse > 5 * fine
+
+
+def test_torsion_of_a_stepped_strip_is_that_of_its_constants() -> None:
+    """Saint-Venant's beam with the stiffnesses of its parts, to what warping at the clamp changes."""
+    widths = bd.Table([0.0, 0.5, 0.5, 1.0], [0.01, 0.01, 0.006, 0.006])
+    strip = bd.Beam.rectangular(0.2, widths, 0.0005, 200e9, 7850.0, poissons_ratio=0.3)
+    properties = {
+        name: getattr(strip, name)
+        for name in ("second_bending_stiffness", "rotary_inertia", "second_rotary_inertia")
+    }
+    stiffness = bd.Table(
+        [0.0, 0.5, 0.5, 1.0], [torsional_stiffness(b, 0.0005) for b in (0.01, 0.01, 0.006, 0.006)]
+    )
+    constants = bd.Beam.from_stiffness(
+        0.2, strip.mass_per_length, strip.bending_stiffness, torsion_stiffness=stiffness, **properties
+    )
+    found = [
+        bd.natural_modes(bd.Scene(beam, physics=bd.Physics(torsion=True)), modes=8)
+        for beam in (strip, constants)
+    ]
+    first, second = (modes.frequency[modes.kind == "torsion"][0] for modes in found)
+    assert first == pytest.approx(second, rel=0.03)
+    assert first > second
+
+
+def torsional_stiffness(width: float, thickness: float) -> float:
+    """G J of a thin rectangle of steel [N m2]."""
+    return 200e9 / 2.6 * width * thickness**3 / 3 * (1 - 0.63 * thickness / width)
+
+
+def test_a_steep_width_is_refused_with_camber_and_a_kink_is_said() -> None:
+    steep = bd.Table([0.0, 0.5, 0.501, 1.0], [0.01, 0.01, 0.006, 0.006])
+    beam = bd.Beam.rectangular(0.05, steep, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    with pytest.raises(ValueError, match="slope of the width changes by at most 1"):
+        bd.Scene(beam, physics=bd.Physics(camber=True))
+    modes = bd.natural_modes(bd.Scene(kinked(0.006), physics=bd.Physics(camber=True)))
+    assert any("up to 0.64 % too high" in text for text in modes.warnings)
+    assert not bd.natural_modes(bd.Scene(kinked(0.0099), physics=bd.Physics(camber=True))).warnings

@@ -62,7 +62,9 @@ def test_large_deflection_changes_modes_of_bending_beside_those_of_torsion() -> 
         plate = bd.natural_modes(bd.Scene(STRIP, mount, physics=PLATE), speed=100.0, modes=6)
     of_bending = plate.kind == "bending"
     assert of_bending.sum() == 4
-    np.testing.assert_allclose(plate.left_out[BENT][of_bending], plain.left_out[BENT], rtol=1e-5)  # fewer functions
+    np.testing.assert_allclose(
+        plate.left_out[BENT][of_bending], plain.left_out[BENT], rtol=1e-5
+    )  # fewer functions
     assert np.isnan(plate.left_out[BENT][~of_bending]).all()
     assert plate.left_out_effects.not_known[BENT] == "it is solved of modes of bending"
 

@@ -22,7 +22,8 @@ where omega^2 T is the tension by rotation per width, and a1, a2 are the compone
 of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
 N_y pulls the width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
 also twists the strip, by the load -omega^2 a1 a2 rho t y per area, less what the inertia of the thickness
-resists.  In a tapered strip d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+resists.  In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where
+the width has a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
 a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and
@@ -31,6 +32,7 @@ tests/invariants/test_plates.py.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -56,6 +58,7 @@ from beamdyn.scene.scene import Scene
 
 _HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)  # at the root, as bending is
 _SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all terms
+_ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # of the derivatives along and across
 _ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
 
 _IS_OBLIQUE = Condition(
@@ -122,7 +125,9 @@ class WidthFunctions:
             "w_xx": [Derivative(ONE, 2, p)],
             "w_xy": [Derivative(half, 1, dp)],
         }
-        if section.width.degree:  # d/dx at constant y
+        if min(numbers) % 2 and not _is_uniform(section.width):
+            self.parts = _parts_over_fixed_width(section.width, tuple(numbers), eta)
+        elif section.width.degree:  # d/dx at constant y
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
             self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))
@@ -140,6 +145,42 @@ def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, lis
     edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
     eta, _ = gauss_rule(points)
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
+
+
+def _is_uniform(width: Profile) -> bool:
+    """Whether a width is the same all along."""
+    return not width.degree and len(width.breakpoints) == 2
+
+
+def over_tip(width: Profile) -> Profile:
+    """The width over that at the tip."""
+    return width.scaled(1 / float(width.end_values()[1][-1]))
+
+
+def _parts_over_fixed_width(
+    width: Profile, numbers: tuple[int, ...], eta: np.ndarray
+) -> dict[str, list[Derivative]]:
+    """Derivatives of p_k(2 y/b(L)) u_k, by powers of 2 y/b and of the width over that at the tip."""
+    r, dy = over_tip(width), 2 / float(width.end_values()[1][-1])
+    series = (np.sqrt(2 * k + 1) * legendre.leg2poly(np.eye(k + 1)[k]) for k in numbers)
+    coefficients = np.array([np.pad(c, (0, max(numbers) + 1 - len(c))) for c in series])
+    powers = [ONE]
+    while len(powers) <= max(numbers):
+        powers.append(powers[-1] * r)
+
+    def of(along: int, across: int) -> list[Derivative]:
+        """Parts of the derivative of an order along and one across."""
+        return [
+            Derivative(
+                powers[m - across].scaled(math.perm(m, across) * dy**across),
+                along,
+                coefficients[:, [m]] * eta ** (m - across),
+            )
+            for m in range(across, max(numbers) + 1)
+            if coefficients[:, m].any()
+        ]
+
+    return {"w" + ("_" + "x" * i + "y" * j if i + j else ""): of(i, j) for i, j in _ORDERS}
 
 
 @lru_cache(maxsize=64)
@@ -220,6 +261,22 @@ class Strip:
                     total = total + of_both.reshape(averages.shape[0] * along.shape[0], -1)
         return np.atleast_2d(total)
 
+    def load(
+        self,
+        weight: Profile,
+        rows: tuple[WidthFunctions, str],
+        along: Space,
+        across: np.ndarray | float = 1.0,
+    ) -> np.ndarray:
+        """Integrate over x a weight times the mean over the width of a derivative and a factor across."""
+        _, of_points = gauss_rule(self.points)
+        functions, name = rows
+        L, total = self.scene.beam.length, 0.0
+        for p in functions.parts[name]:
+            means = p.across @ (of_points / 2 * across)
+            total = total + np.kron(means, along.load((weight * p.factor).scaled(L)))
+        return np.atleast_1d(total)
+
     def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
         """Stiffness of the plate [N/m], with a factor of its bending along the beam by warping."""
         section, EI = self.section, self.scene.beam.bending_stiffness
@@ -253,11 +310,14 @@ class StackedSpace:
         Numbers k of the functions across.
     fewer : int
         How many of them the coarser discretization has.
+    stretch : Profile
+        Half the local width over that by which y is divided in the functions across.
     """
 
     along: Space
     numbers: tuple[int, ...]
     fewer: int
+    stretch: Profile = ONE
 
     @property
     def size(self) -> int:
@@ -277,8 +337,9 @@ class StackedSpace:
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Evaluate the deflections at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
         numbers = np.array(self.numbers)
-        across = legendre.legvander(eta, numbers.max())[:, numbers] * np.sqrt(2 * numbers + 1)
-        values = self.along.evaluate(xi)[:, :, None] * across.T[:, None, None, :]
+        places = np.multiply.outer(self.stretch(xi), eta)
+        across = legendre.legvander(places, numbers.max())[:, :, numbers] * np.sqrt(2 * numbers + 1)
+        values = self.along.evaluate(xi)[:, :, None] * np.moveaxis(across, 2, 0)[:, None]
         return values.reshape(self.size, len(xi), len(eta))
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
@@ -321,7 +382,9 @@ class SectionField(Field):
         """Assemble the energy of the plate, with what couples it to bending."""
         strip = Strip(scene, spaces)
         numbers = tuple(self.numbers(spaces.across))
-        space = StackedSpace(spaces.functions(_HELD), numbers, len(self.numbers(spaces.fewer_across)))
+        fewer, is_odd = len(self.numbers(spaces.fewer_across)), self.first % 2
+        stretch = over_tip(strip.section.width) if is_odd else ONE
+        space = StackedSpace(spaces.functions(_HELD), numbers, fewer, stretch)
         if not numbers:
             return FieldEquations(space, (), ())
         own = strip.functions(self, numbers, _HELD)
@@ -447,11 +510,10 @@ class Torsion(SectionField):
         c1, c2 = axis_in_section(strip.scene)
         if not c1 * c2:
             return
-        beam, width = strip.scene.beam, strip.section.width
-        of_first = along.load((beam.mass_per_length * width).scaled(beam.length / np.sqrt(12)))
-        of_tilt = along.load((strip.rotary_inertia * _inverse(width)).scaled(2 * beam.length))
-        vector = np.concatenate([of_first, np.zeros(along.size * (len(own.tip) - 1))])
-        vector = vector - np.kron(own.tip, of_tilt)  # as the thickness turns
+        eta, _ = gauss_rule(strip.points)
+        lever = (strip.scene.beam.mass_per_length * strip.section.width).scaled(1 / 2)
+        vector = strip.load(lever, (own, "w"), along, eta)
+        vector = vector - strip.load(strip.rotary_inertia, (own, "w_y"), along)  # as the thickness turns
         yield Load("twisting by rotation", self.name, vector, "speed_squared", -c1 * c2)
 
 

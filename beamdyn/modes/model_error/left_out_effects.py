@@ -191,7 +191,7 @@ class LeftOutEffects:
         where: str = "",
         where_unknown: Callable[[str], str] = lambda name: "",
     ) -> Iterator[Statement]:
-        """Yield a warning if the changes exceed a tolerance, or 1 %, or may, and of a verdict that they reverse.
+        """Yield warnings of changes past a tolerance, or 1 %, of unknown ones, and of verdicts they reverse.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
 """Modes of the body below the highest that a model lists, of kinds that the model does not have.
 
 A beam that bends in one plane, and neither twists nor cambers nor stretches, has no modes of the other
-direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the other direction with shear
-and the rotary inertia of sections, as far as there are data of these.
+direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the
+other direction with shear and the rotary inertia of sections, as far as there are data of these.
 """
 
 from __future__ import annotations
