@@ -201,7 +201,14 @@ class RectangularInput(_BeamInput):
     density: Annotated[float, Quantity("kg/m3", "rho", "density", above=0)]
     poissons_ratio: Annotated[
         float | None,
-        Quantity("", "nu", "Poisson's ratio, for shear", above=-1, most=0.5, remedy="steel has 0.3"),
+        Quantity(
+            "",
+            "nu",
+            "Poisson's ratio, for shear, camber and torsion",
+            above=-1,
+            most=0.5,
+            remedy="steel has 0.3",
+        ),
     ] = None
 
     @cached_property

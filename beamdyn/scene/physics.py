@@ -238,15 +238,16 @@ class PhysicsChoice:
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
         each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
+            left_out = f"what is left out is worth {_say_size(self.model_error)}"
             beyond = (
-                "; what its theories leave out, most of it in short thick sections, and strain "
+                "what its theories leave out, most of it in short thick sections, and strain "
                 f"by rotation may change the answer by {_say_size(self.beyond_models)} more"
             )
+            named = Words(left_out, ": ", joined("; ", each)) if large else left_out
+            parts = (named, self.model_error), (beyond, self.beyond_models)
             yield Statement(
-                f"physics = auto: the tolerance {self.tolerance:g} is not met: what is left out is worth "
-                f"{_say_size(self.model_error)}",
-                *([": ", joined("; ", each)] if large else []),
-                beyond if self.beyond_models > _WORTH_SAYING * self.tolerance else "",
+                f"physics = auto: the tolerance {self.tolerance:g} is not met: ",
+                joined("; ", (text for text, share in parts if share > _WORTH_SAYING * self.tolerance)),
                 kind=TOLERANCE,
                 quantity="model error",
                 value=self.model_error + self.beyond_models,

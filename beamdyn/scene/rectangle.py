@@ -41,7 +41,7 @@ class Rectangle:
     density : float
         Density [kg/m3].
     poissons_ratio : float, optional
-        Poisson's ratio; None without shear stiffness, camber and torsion.
+        Poisson's ratio, for shear stiffness, camber and torsion; None without these.
     """
 
     width: Profile

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, refuse
-from beamdyn.common.results.digits import percent
+from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,
@@ -72,7 +72,8 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
     width, thickness = section.sides()
     narrowest = float((width / thickness).min())
     if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
-        said = f"width/thickness is {narrowest:.2g}: below {_NARROW:g} a section is no plate, and what "
+        ratio = told_from(narrowest, _NARROW)
+        said = f"width/thickness is {ratio}: below {_NARROW:g} a section is no plate, and what "
         worth = (
             f"camber and torsion change is fitted to solid bodies, from which frequencies differ by up to "
             f"{percent(_WORTH_OF_NARROW)} (docs/solids.md)"

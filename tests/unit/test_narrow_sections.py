@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.common.results.digits import told_from
 from beamdyn.common.results.statements import MODEL_ERROR
 from benchmarks import solids
 
@@ -68,4 +69,13 @@ def test_a_chosen_physics_says_it_too() -> None:
 def test_a_short_narrow_part_is_seen() -> None:
     width = bd.Table([0.0, 0.5, 0.5001, 0.5002, 1.0], [0.01, 0.01, 0.003, 0.01, 0.01])
     beam = bd.Beam.rectangular(0.05, width, 1e-3, 200e9, 7850.0, poissons_ratio=0.3)
-    assert any("is 3: " in each for each in bd.natural_modes(bd.Scene(beam, physics=CAMBER)).warnings)
+    assert any(
+        "is 3: " in each
+        for each in bd.natural_modes(bd.Scene(beam, physics=bd.Physics(torsion=True))).warnings
+    )
+
+
+def test_a_number_beside_a_limit_has_the_digits_that_tell_it_from_that() -> None:
+    assert told_from(4.9999, 5.0) == "4.9999"
+    assert told_from(2.5, 5.0) == "2.5"
+    assert told_from(1.0000001, 1.0) == "1.0000001"

@@ -58,6 +58,12 @@ def _with_error(value: float, error: float) -> str:
     return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ").replace(".e", "e")
 
 
+def told_from(value: float, limit: float) -> str:
+    """A number with two digits, or as many as tell it from a limit that it is beside."""
+    texts = (f"{value:.{digits}g}" for digits in range(2, 18))
+    return next((text for text in texts if float(text) != limit), f"{value:g}")
+
+
 def percent(value: float, sign: str = "") -> str:
     """A relative number in percent with two digits, never with a positive exponent; a sign "+" is kept."""
     digits = f"{100 * value:{sign}.2g}"

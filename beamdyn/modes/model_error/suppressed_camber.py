@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamdyn.common.results.digits import percent
+from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import MODEL_ERROR, Statement
 from beamdyn.common.words import Words
 from beamdyn.equations.equations_of_motion import Equations
@@ -65,7 +65,8 @@ def warn_of_suppressed_camber(
     theta = (3 * (1 - ratio**2)) ** 0.25 * b[place] * np.sqrt(curvature[at, place] / t[place])
     stiffer = float(tangent_stiffening(theta, ratio)) - 1
     assumed = "" if nu is not None else f", with Poisson's ratio {ratio:g} assumed"
-    bent = f"b^2 kappa/t = {searle[at, place]:.2g} (Searle's parameter) at x/L = {xi[place]:.2g}"
+    parameter = told_from(float(searle[at, place]), _CAMBER_DECLINES)
+    bent = f"b^2 kappa/t = {parameter} (Searle's parameter) at x/L = {xi[place]:.2g}"
     where = f" the strip is bent to {bent}"
     worth = (
         f": past 1 its camber is suppressed in part: it is up to {percent(stiffer)} stiffer, its frequencies "
