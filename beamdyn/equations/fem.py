@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
-from beamdyn.common.inputs.checks import count, one_of, set_fields
+from beamdyn.common.inputs.checks import count, one_of, refuse, set_fields
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.discretization import HINGED, RootConditions
 from beamdyn.equations.quadrature import Cells
@@ -21,6 +21,9 @@ from beamdyn.scene.sections import weight_degree
 _ACROSS = 8  # functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest number accepted
 MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
+_SHORTEST = 1e-5 * (
+    1 - 1e-9
+)  # shortest segment, as a fraction of the beam: rounding leaves shorter ones no digit
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
 # Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
@@ -83,7 +86,7 @@ class Fem:
 
     def nodes(self, beam: Beam) -> np.ndarray:
         """Positions x/L of the nodes: each segment has elements in proportion to its length."""
-        ends = np.array(beam.breakpoints)
+        ends = _meshable(np.array(beam.breakpoints))
         g = 0.0 if self.mesh == "uniform" else _GRADING
         # A mesh that is uniform over s is seven times as fine at the root as at the tip, over x/L.
         over_s = (np.sqrt(1 + 4 * g * (1 + g) * ends) - 1) / (2 * g) if g else ends
@@ -117,6 +120,15 @@ class Fem:
     def fits(self, modes: int) -> bool:
         """Whether the coarser mesh has functions enough for a number of modes."""
         return 2 * self.coarser().elements >= modes
+
+
+def _meshable(ends: np.ndarray) -> np.ndarray:
+    """Return the ends x/L of segments; refuse a segment on which elements lose all digits."""
+    lengths = np.diff(ends)
+    bound = "a segment between breakpoints must be at least 1e-5 of the length for finite elements"
+    remedy = "let the section jump there, or take discretization='ritz'"
+    refuse(lengths < _SHORTEST, "breakpoints: difference of x/L", lengths, "", bound, remedy)
+    return ends
 
 
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:

@@ -100,9 +100,12 @@ class CriticalPoint(StatesModelError):
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
-        found = np.isfinite(self.speed)
-        yield self.say_speed(self.speed) if found else f"none below {self.say_speed(self.none_below)}"
-        yield error_at_most(self.error) if found else ""
+        if np.isfinite(self.speed):
+            yield self.say_speed(self.speed)
+            yield error_at_most(self.error)
+        else:
+            bounded = np.isfinite(self.none_below)
+            yield f"none below {self.say_speed(self.none_below)}" if bounded else "none"
         yield self.reason
 
     @cached_property

@@ -104,6 +104,18 @@ class Beam(FieldsOnly, OneLine):
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
             said: dict[str, Any] = {"other": other, "where": " at the tip"}
             raise InvalidValue("twist", self.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
+        if self.warping_stiffness is not None and self.torsion_stiffness is None:
+            bound, remedy = "warping needs {other} as well", "give both, or neither"
+            value = float(self.warping_stiffness(0.0))
+            raise InvalidValue(
+                "warping_stiffness",
+                value,
+                bound,
+                remedy,
+                "N m4",
+                other="torsion_stiffness",
+                where=" at the root",
+            )
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
         if self.tip is not None and self.length + self.tip.offset < 0:

@@ -293,12 +293,16 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
 
 
 def _check_properties(beam: Beam, physics: Physics) -> None:
-    """Refuse physics for which the beam lacks a property."""
-    for name, effect in _needed_properties(beam, physics).items():
-        if getattr(beam, name) is None:
-            remedy = _REMEDIES[name if name in _REMEDIES else name.removeprefix(_SECOND)]
-            given = getattr(physics, effect)
-            raise InvalidValue(f"physics.{effect}", given, "it needs {other}", remedy, other=name)
+    """Refuse physics for which the beam lacks properties: name all of them that one effect needs."""
+    needed = _needed_properties(beam, physics)
+    lacking = [name for name in needed if getattr(beam, name) is None]
+    if not lacking:
+        return
+    first, effect = lacking[0], needed[lacking[0]]
+    others = [name for name in lacking[1:] if needed[name] == effect]
+    remedy = _REMEDIES[first if first in _REMEDIES else first.removeprefix(_SECOND)]
+    bound = ", ".join(["it needs {other}", *others])
+    raise InvalidValue(f"physics.{effect}", getattr(physics, effect), bound, remedy, other=first)
 
 
 # Length over the local width of the parts at a clamped root in which a plate's corners are resolved.

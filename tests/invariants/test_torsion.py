@@ -116,7 +116,15 @@ def test_static_twist_by_rotation():
 )
 def test_what_torsion_lacks_is_said(lacking, said):
     with pytest.raises(ValueError, match=rf"physics\.torsion = True: it needs {said}; give it"):
-        bd.Scene(flat(**{lacking: None}), physics=TORSION)
+        bd.Scene(flat(**{lacking: None, "warping_stiffness": None}), physics=TORSION)
+
+
+def test_all_that_torsion_lacks_is_said_at_once():
+    said = "it needs torsion_stiffness, rotary_inertia, second_rotary_inertia; give it to"
+    with pytest.raises(ValueError, match=said):
+        bd.Scene(bd.Beam.from_stiffness(0.5, 1.0, 10.0), physics=TORSION)
+    with pytest.raises(ValueError, match=r"warping needs torsion_stiffness as well; give both, or neither"):
+        flat(torsion_stiffness=None)
 
 
 def test_a_twisted_beam_is_refused():

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
+from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import SteadyRotation
 from beamdyn.scene.mount import Mount
@@ -372,3 +373,14 @@ def test_a_taper_to_a_point_is_refused_whatever_rounding_makes_of_its_end(polyno
             Beam.from_stiffness(1.0, 1.0, thickness)
     assert len(said) == 1 and said.pop().startswith("thickness = 0 at x/L = 1.000")
     Beam.rectangular(1.0, 0.1, 0.01 * Polynomial(polynomial) + 1e-6, 200e9, 7850.0)
+
+
+def test_elements_refuse_a_segment_too_short_for_their_digits():
+    def frequencies(length, discretization="fem"):
+        width = Table([0.0, 0.5, 0.5 + length, 1.0], [0.04, 0.04, 0.02, 0.02])
+        beam = Beam.rectangular(1.0, width, 0.005, 210e9, 7850.0)
+        return natural_modes(Scene(beam), discretization=discretization).frequency
+
+    with pytest.raises(ValueError, match=r"at least 1e-5 of the length.*discretization='ritz'"):
+        frequencies(1e-6)
+    assert frequencies(1e-3) == pytest.approx(frequencies(1e-3, "ritz"), rel=4e-6)  # stated
