@@ -229,7 +229,10 @@ def _refuse_uncovered(scene: Scene) -> None:
     bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
     if scene.physics.camber and scene.beam.section is not None and scene.beam.section.width.degree:
         of_width = "loads along the span are known with it where the width is constant"
-        raise InvalidValue("physics.camber", True, of_width, remedy)
+        instead = 'it was chosen by "auto": give the physics without it'
+        raise InvalidValue(
+            "physics.camber", True, of_width, remedy if scene.physics_choice is None else instead
+        )
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):
