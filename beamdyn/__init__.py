@@ -60,10 +60,11 @@ if TYPE_CHECKING:
         PointForce,
         StrainAtRoot,
     )
-    from beamdyn.linear.matrices import Matrices, matrices, state_space
+    from beamdyn.linear.matrices import Matrices, matrices
     from beamdyn.linear.mean_square import ParametricTerm
     from beamdyn.linear.random_response import RandomResponse, random_response
     from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness
+    from beamdyn.linear.state_space import state_space
     from beamdyn.loads.cycles import LoadCycles, count_cycles
     from beamdyn.loads.load_statistics import RandomStatistics
     from beamdyn.loads.random_loads import RandomLoads, random_loads

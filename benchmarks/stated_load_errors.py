@@ -91,7 +91,7 @@ def measure_cycles(number: int, seed: int) -> list[Case]:
     exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
     error = loads.run.time_error / (loads.run.largest or 1.0) * float(np.abs(values).max())
     stated, true, over = {}, {}, {}
-    for found in cycles.equivalents(_EXPONENTS, 1.0, error):
+    for found in cycles.equivalents(_EXPONENTS, 1.0):
         size = exact.equivalent_range(found.exponent) or 1.0
         name = f"equivalent-ranges, exponent {found.exponent:g}"
         stated[name] = found.error / size

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -285,6 +285,6 @@ def _in_transient(
     place = result.largest(counting.cycles, None, *ends)
     cycles = bd.count_cycles(result, counting.cycles, result.station_of(place), place.component, *ends)
     counting.write(cycles)
-    equivalents = cycles.equivalents(counting.exponents, counting.number, place.error)
-    result = replace(result, equivalent_ranges=equivalents)
+    equivalents = cycles.equivalents(counting.exponents, counting.number)
+    result = result.with_equivalent_ranges(equivalents)
     return result, tables + counting.tables(cycles, equivalents)

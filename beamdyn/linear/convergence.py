@@ -18,7 +18,7 @@ from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     check_discretization,
-    choose_model,
+    model_to_tolerance,
     most_modes,
 )
 from beamdyn.modes.modal.model import Model
@@ -62,9 +62,15 @@ def with_forces(scene: Scene, inputs: Sequence[Excitation]) -> Scene:
 
 
 def model_at_speed(
-    scene: Scene, speed: float, modes: int | None, discretization: DiscretizationChoice
+    scene: Scene,
+    speed: float,
+    modes: int | None,
+    discretization: DiscretizationChoice,
+    tolerance: float | None = None,
 ) -> ModelAtSpeed:
     """The linear equations of a scene in as many modes; functions are chosen for modes without damping.
+
+    The tolerance is that of `natural_modes`.
 
     Raises
     ------
@@ -74,7 +80,8 @@ def model_at_speed(
     if modes is None and not isinstance(discretization, str):
         check_discretization(discretization)
         return ModelAtSpeed(Model(scene, discretization), speed, None)
-    chosen = choose_model(scene.undamped, discretization, np.array([speed]), modes or _MODES)
+    speeds = np.array([speed])
+    chosen = model_to_tolerance(scene.undamped, discretization, speeds, modes or _MODES, tolerance)
     return ModelAtSpeed(chosen.of(scene), speed, modes)
 
 

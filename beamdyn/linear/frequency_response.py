@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, with_forces
 from beamdyn.linear.inputs_outputs import Excitation, Observation, as_excitation, as_observation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
@@ -22,6 +22,7 @@ from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
 from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
+from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
@@ -34,11 +35,14 @@ _DIRECT = 300  # functions up to which all are kept: some milliseconds a frequen
 
 
 @dataclass(frozen=True)
-class FrequencyResponse(Result):
+class FrequencyResponse(JudgedByRepeating):
     """Response to a harmonic excitation at a steady speed, over frequency.
 
     An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
     the rotation, of n turns per second: one, h = 0, unless the excitation has a fixed direction.
+
+    `error` is that of the numbers; `model_error` and `left_out`, computed when asked for, are what the
+    physics left out would change in the largest response, peaks included.
 
     Parameters
     ----------
@@ -105,6 +109,10 @@ class FrequencyResponse(Result):
         size, at = max(found)
         return float(at), float(size)
 
+    def judged(self, found: FrequencyResponse) -> np.ndarray:
+        """The largest response, peaks included, of which the model error is stated: shape ()."""
+        return np.array(found.peak[1])
+
     def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies of the excitation, given and at the peaks of a harmonic, and magnitudes there."""
         own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
@@ -121,6 +129,7 @@ class FrequencyResponse(Result):
         return plot_frequency_response(curves, value, labels, ax)
 
 
+@repeatable
 @announced_of_plain_beam
 def frequency_response(
     scene: Scene,

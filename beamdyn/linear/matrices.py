@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, several
-from beamdyn.common.results.announced import announce, announced_of_plain_beam
+from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, error_at_most, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
@@ -22,31 +23,29 @@ from beamdyn.linear.free_motion import free_motion
 from beamdyn.linear.inputs_outputs import (
     BaseMotion,
     Excitation,
-    Observation,
     PointForce,
-    StrainAtRoot,
     as_excitation,
-    as_observation,
 )
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed, pole_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
-if TYPE_CHECKING:
-    from scipy.signal import StateSpace
-
 _NODAL = 1e-9  # difference from 1 that a nodal value may have
-_FEW = 5  # modes, of which the lowest loses its stability first
+MOST_JUDGED = 5  # modes, of which the lowest loses its stability first, and is changed by effects left out
 
 
 @dataclass(frozen=True)
-class Matrices(Result):
+class Matrices(StatesModelError):
     """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
 
-    Rotating axes, a fixed centre of the carrier, and no gravity.
+    Rotating axes, a fixed centre of the carrier, and no gravity.  `error` is that of the numbers;
+    `model_error` (m,) and `left_out`, computed when asked for, are what the physics left out would change in
+    the lowest natural frequencies.
 
     Parameters
     ----------
@@ -134,6 +133,11 @@ class Matrices(Result):
         """
         return free_motion(self.mass, self.damping + self.gyroscopic, self.stiffness).poles
 
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the lowest natural frequencies, of as many modes as coordinates or five: shape (m,)."""
+        return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
+
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
 
@@ -159,6 +163,7 @@ def matrices(
     modes: int | None = None,
     discretization: DiscretizationChoice = "ritz",
     inputs: Sequence[Excitation | str] | None = None,
+    tolerance: float | None = None,
 ) -> Matrices:
     """Give the matrices of the equations of motion at a steady speed.
 
@@ -176,6 +181,9 @@ def matrices(
     inputs : sequence of BaseMotion, PointForce or str, optional
         Columns of the input matrix: see `frequency_response`.  If not given, the acceleration of the base
         and a force at the tip in each direction in which the beam bends.
+    tolerance : float, optional
+        As for `natural_modes`, for the natural frequencies at this speed: of as many modes as are asked for,
+        or else of five.
 
     Returns
     -------
@@ -201,7 +209,7 @@ def matrices(
     start = perf_counter()
     scene, speed = check_linear(scene, speed, modes)
     given = list_inputs(inputs, scene)
-    model = model_at_speed(with_forces(scene, given), speed, modes, discretization)
+    model = model_at_speed(with_forces(scene, given), speed, modes, discretization, tolerance)
     equations, pencil = model.equations, model.pencil
     kept = "all functions" if modes is None else f"{modes} modes at {speed:.6g} rad/s"
     axial = equations.matrices[0].get("root_axial", np.zeros_like(pencil.M))
@@ -231,7 +239,7 @@ def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
     yield from warn_of_left_out(model.scene)
     # How many of the lowest modes grow.
     solver = model.model.solver
-    found = solver.solve(np.array([model.speed]), min(model.modes or _FEW, solver.size))
+    found = solver.solve(np.array([model.speed]), min(model.modes or MOST_JUDGED, solver.size))
     growing = int((np.real(found.eigenvalue) > 0).sum())
     if growing:
         end = f": {growing} mode(s) grow; see poles"
@@ -293,103 +301,3 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
 def _is_nodal(values: np.ndarray) -> bool:
     """Whether a function is 1 at one node and 0 at the others."""
     return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1
-
-
-# State space --------------------------------------------------------------------------------------
-
-
-_MODES = 6  # number of modes by default
-_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
-
-
-def state_space(
-    scene: Scene,
-    speed: float,
-    inputs: Sequence[Excitation | str] | None = None,
-    outputs: Sequence[Observation | str] = ("tip",),
-    modes: int | None = _MODES,
-    discretization: DiscretizationChoice = "ritz",
-) -> StateSpace:
-    """Give the small motions at a steady speed as x' = A x + B u, y = C x + D u.
-
-    The states x are the coordinates of `matrices` with the same arguments, then their rates.  D holds what
-    the modes left out follow without delay, their residual flexibility, so that the response to a constant
-    input is that of the whole discretization: Craig and Kurdila, Fundamentals of Structural Dynamics (2006),
-    section 11.4.  The static deflection by the rotation itself is not in it.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its motion and gravity are not used.
-    speed : float
-        Speed [rad/s].
-    inputs : sequence of BaseMotion, PointForce or str, optional
-        As for `matrices`.
-    outputs : sequence of DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        As for `frequency_response`.
-    modes : int or None
-        Number of modes at this speed of each set of coupled fields; None keeps all functions.
-    discretization : {"ritz", "fem"} or Discretization
-        As for `natural_modes`.
-
-    Returns
-    -------
-    scipy.signal.StateSpace
-        With one more attribute, `error`, shape (2 n,): the estimated relative error of each pole, in
-        ascending order of magnitude, as that of `matrices`.  A system that is made of it has none.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
-        mass.
-
-    References
-    ----------
-    Craig and Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
-
-    Examples
-    --------
-    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
-    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
-    >>> system = bd.state_space(scene, 50.0, inputs=["bending"], outputs=["tip"], modes=2)
-    >>> system.A.shape, system.C.shape
-    ((4, 4), (1, 4))
-    """
-    from scipy.signal import StateSpace  # here, because it is slow to import
-
-    scene, speed = check_linear(scene, speed, modes)
-    excitations = list_inputs(inputs, scene)
-    model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization)
-    announce((*warn_of_model(model),), "")
-    drives = [steady_drive(model, each) for each in excitations]
-    observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
-    _refuse_delayed_strain(scene, observed)
-    M, n = _with_mass(model), model.equations.size
-    loads = np.column_stack([drive.load for drive in drives])
-    of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)
-    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), of_state])
-    B = np.vstack([np.zeros_like(of_load), of_load])
-    rows = [model.row(each) for each in observed]
-    C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
-    correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
-    system = StateSpace(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
-    vars(system)["error"] = pole_errors(model)
-    return system
-
-
-def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:
-    """Refuse the strain of a material that damps: it follows the moment with a delay, a further state."""
-    factor = scene.damping.stiffness_factor
-    if factor and any(isinstance(each, StrainAtRoot) for each in observed):
-        bound = "the strain of a material that damps is not a function of the moment alone"
-        raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
-
-
-def _with_mass(model: ModelAtSpeed) -> np.ndarray:
-    """The mass; refused if a coordinate has none, as bending and shear without rotary inertia."""
-    values = np.linalg.eigvalsh(model.M)
-    if values[0] < _MASSLESS * values[-1]:
-        bound = "some functions have no mass of their own, and no rates as states"
-        raise InvalidValue("modes", model.modes, bound, "give a number of modes")
-    return model.M

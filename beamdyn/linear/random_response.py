@@ -15,7 +15,7 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.inputs_outputs import (
     AccelerationAt,
@@ -45,6 +45,7 @@ from beamdyn.linear.spectra import (
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
+from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
@@ -59,11 +60,14 @@ _SEVERAL = 3.0  # standard deviations that a deflection rarely passes
 
 
 @dataclass(frozen=True)
-class RandomResponse(Result):
+class RandomResponse(JudgedByRepeating):
     """Response to a random input at a steady speed.
 
     Where the excitation has a fixed direction, the statistics vary within a turn, and these are their means
     over a turn: the density of the input appears shifted by the speed, upwards and downwards.
+
+    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in
+    `rms`.
 
     Parameters
     ----------
@@ -121,6 +125,10 @@ class RandomResponse(Result):
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
 
+    def judged(self, found: RandomResponse) -> np.ndarray:
+        """The root mean square, of which the model error is stated: shape ()."""
+        return np.array(found.rms)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the density over frequency, both logarithmic."""
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
@@ -128,6 +136,7 @@ class RandomResponse(Result):
         return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
 
 
+@repeatable
 @announced_of_plain_beam
 def random_response(
     scene: Scene,

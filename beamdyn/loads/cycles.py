@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, kind, positive
 from beamdyn.common.plots.curves import plot_exceedance
-from beamdyn.common.results.one_line import number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.loads.stations import UNITS
 from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads, window_in
+from beamdyn.modes.model_error.left_out_changes import SolvedValues
+from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -25,8 +29,11 @@ TURNING_POINTS = 1e-6  # error of the values at turning points that are found, o
 
 
 @dataclass(frozen=True)
-class LoadCycles(Result):
+class LoadCycles(JudgedByRepeating):
     """Cycles of a quantity at one station, by rainflow counting.
+
+    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
+    largest range.
 
     Parameters
     ----------
@@ -48,6 +55,8 @@ class LoadCycles(Result):
         Limits of the answer.
     provenance : Provenance
         How it was computed.
+    error : float
+        Estimated error of each range: twice that of the values at turning points [unit of the quantity].
 
     Examples
     --------
@@ -69,12 +78,25 @@ class LoadCycles(Result):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+    error: float = field(default=math.nan, metadata=ADDED_LATER)
+
+    loads: ClassVar[TransientLoads | None] = None  # of a result that was not loaded from a file
 
     def headline(self) -> Iterator[str]:
         """Number of cycles, their place and largest range in one line; see `Result.headline`."""
         yield f"{number(self.counts.sum())} of {self.quantity} at {self.say_length(self.x)}"
         yield f"largest range {number(self.ranges.max(initial=0.0), UNITS[self.quantity])}"
+        yield error_at_most(self.error, UNITS[self.quantity])
         yield warned(self.warnings)
+
+    def judged(self, found: LoadCycles) -> np.ndarray:
+        """The largest range, of which the model error is stated: shape ()."""
+        return np.array(found.ranges.max(initial=0.0))
+
+    def solve(self, scene: Scene, name: str) -> SolvedValues:
+        """Largest range with an effect: by another run, or as its largest deflection changes."""
+        known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
+        return known or super().solve(scene, name)
 
     def equivalent_range(self, exponent: float, cycles: float = 1.0) -> float:
         """Range of so many equal cycles that do the damage of these, by Miner's rule.
@@ -97,19 +119,15 @@ class LoadCycles(Result):
             return 0.0
         return largest * float((self.counts * (self.ranges / largest) ** m).sum() / number) ** (1 / m)
 
-    def equivalents(
-        self, exponents: Sequence[float], cycles: float, error: float
-    ) -> tuple[EquivalentRange, ...]:
-        """Ranges of equal cycles for several exponents, with their errors by that of the quantity [its unit].
+    def equivalents(self, exponents: Sequence[float], cycles: float) -> tuple[EquivalentRange, ...]:
+        """Ranges of equal cycles for several exponents, with their errors.
 
-        Each range counted is off by twice the error of the values at most, which is larger by a millionth
-        of the largest range at turning points; Minkowski's inequality adds them up.
+        Each range counted is off by `error` at most; Minkowski's inequality adds them up.
         """
-        at_turn = error + TURNING_POINTS * float(self.ranges.max(initial=0.0))
         found = []
         for m in exponents:
             value = self.equivalent_range(m, cycles)
-            of_range = 2 * at_turn * (float(self.counts.sum()) / cycles) ** (1 / m)
+            of_range = self.error * (float(self.counts.sum()) / cycles) ** (1 / m)
             place = self.quantity, self.component, self.x, self.start, self.end
             found.append(EquivalentRange(*place, m, cycles, value, of_range))
         return tuple(found)
@@ -120,6 +138,7 @@ class LoadCycles(Result):
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)
 
 
+@repeatable
 def count_cycles(
     loads: TransientLoads,
     quantity: str = "strain",
@@ -182,7 +201,9 @@ def count_cycles(
     index = loads.path.outputs.places[quantity].start + chosen
     values = loads.path.turning_values(place, index, first, last)
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3)
-    return LoadCycles(
+    of_values = float(loads.error_of(quantity)[place, chosen])
+    of_turning_points = TURNING_POINTS * float(counted[:, 0].max(initial=0.0))
+    made = LoadCycles(
         quantity=quantity,
         component=chosen,
         x=float(loads.x[place]),
@@ -194,4 +215,7 @@ def count_cycles(
         warnings=loads.warnings,
         provenance=Provenance(__version__, "rainflow counting (ASTM E1049)", "", perf_counter() - begin),
         scene=loads.scene,
+        error=2 * (of_values + of_turning_points),
     )
+    vars(made)["loads"] = loads
+    return made

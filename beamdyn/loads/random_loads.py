@@ -29,6 +29,7 @@ from beamdyn.loads.span_loads import AskedLoads, LoadCase, SpanLoads, with_unit
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
@@ -183,6 +184,7 @@ class RandomLoads(SpanLoads):
         return values[:, self.outputs.places[quantity]]
 
 
+@repeatable
 @announced_of_plain_beam
 def random_loads(
     scene: Scene,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -13,7 +13,7 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.plots.curves import plot_along_span
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.loads.stations import (
     UNITS,
@@ -24,16 +24,21 @@ from beamdyn.loads.stations import (
     sections_at,
     stations_at,
 )
+from beamdyn.modes.repeated import JudgedByRepeating
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_elastic_limit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+STRAIGHT = "loads along the span of a beam with large deflection are not computed"
 REMEDIES = {
     "strain": "give the beam an outer_fibre, or points of the section",
     "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
 }
+
+
+_JUDGED = "strain", "moment", "force"
 
 
 class LoadCase(NamedTuple):
@@ -86,12 +91,15 @@ class LargestLoad:
 
 
 @dataclass(frozen=True)
-class SpanLoads(Result):
+class SpanLoads(JudgedByRepeating):
     """Forces, moments, curvatures, strains and stresses at stations along the span.
 
     C is the number of times or speeds, S that of stations, d that of modelled planes of bending (1 or 2), P
     that of points of the section.  Loads are those of the part outboard of a station on the part inboard,
     about its deflected axis; they follow from the loads and the inertia outboard, not from a curvature.
+
+    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
+    largest value of the `judged_quantity`.
 
     Parameters
     ----------
@@ -157,6 +165,26 @@ class SpanLoads(Result):
                 yield f"{name} to {number(np.nanmax(size), UNITS[name])}"
                 yield error_at_most(self.error_of(name), UNITS[name])
         yield warned(self.warnings)
+
+    @property
+    def judged_quantity(self) -> str:
+        """The quantity of which the model error is stated: the first of these that is not 0 or unknown."""
+        sizes = {name: np.nanmax(np.abs(self.values(name)), initial=0.0) for name in _JUDGED}
+        return next((name for name, size in sizes.items() if size), _JUDGED[-1])
+
+    def judged(self, found: SpanLoads) -> np.ndarray:
+        """The largest value of the `judged_quantity`: shape ()."""
+        return np.array(abs(found.largest(self.judged_quantity).value))
+
+    @property
+    def as_far_as_judged(self) -> Mapping[str, Any]:
+        """The station of the largest value, with both of its sides."""
+        return {"at": [self.largest(self.judged_quantity).x] * 2}
+
+    @property
+    def bending_speed(self) -> float:
+        """Speed [rad/s] at which large deflection is judged: that of the largest value."""
+        return self.largest(self.judged_quantity).case
 
     @property
     def cases(self) -> np.ndarray:
@@ -297,7 +325,6 @@ class AskedLoads:
         warnings: Iterable[str],
         method: str,
         compared_with: str,
-        first: tuple[str, ...] = (),
     ) -> dict[str, Any]:
         """Fields of a `SpanLoads`, with values and errors of the outputs (..., S, K)."""
         by_quantity = self.outputs.split(values)
@@ -309,7 +336,7 @@ class AskedLoads:
             "scene": self.scene,
             **by_quantity,
             **self.outputs.split(errors, "_error"),
-            "warnings": (*first, *self.notes, *warnings, *beyond),
+            "warnings": (*self.notes, *warnings, *beyond),
             "provenance": Provenance(__version__, method, compared_with, perf_counter() - self.start),
         }
 
@@ -317,6 +344,5 @@ class AskedLoads:
 def refuse_large_deflection(scene: Scene) -> None:
     """Refuse a scene of large deflection, to which virtual work on the straight beam does not apply."""
     if scene.physics.large_deflection:
-        bound = "loads along the span of a beam with large deflection are not computed"
         remedy = "leave large_deflection out where the deflection is small"
-        raise InvalidValue("physics.large_deflection", True, bound, remedy)
+        raise InvalidValue("physics.large_deflection", True, STRAIGHT, remedy)

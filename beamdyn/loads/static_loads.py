@@ -4,20 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
-from beamdyn.common.inputs.checks import ascending, real
+from beamdyn.accuracy.refinement import refine
+from beamdyn.common.inputs.checks import ascending, real, within
 from beamdyn.common.results.announced import announced
 from beamdyn.loads.load_rows import span_rows
-from beamdyn.loads.span_loads import SPEEDS, AskedLoads, LoadCase, SpanLoads, refuse_large_deflection
-from beamdyn.loads.stations import Positions, SectionPoints
-from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
+from beamdyn.loads.span_loads import (
+    SPEEDS,
+    STRAIGHT,
+    AskedLoads,
+    LoadCase,
+    SpanLoads,
+    refuse_large_deflection,
+)
+from beamdyn.loads.stations import Positions, SectionPoints, StationOutputs
+from beamdyn.modes.modal.discretization_choice import (
+    TOLERANCES,
+    DiscretizationChoice,
+    model_to_tolerance,
+    refine_model,
+    warn_of_missed_tolerance,
+)
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.model import Model, static_load
-from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
+from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
@@ -57,6 +72,7 @@ class StaticLoads(SpanLoads):
     case: ClassVar[LoadCase] = SPEEDS
 
 
+@repeatable
 @announced
 def static_loads(
     scene: Scene,
@@ -66,6 +82,7 @@ def static_loads(
     angle: float = 0.0,
     youngs_modulus: float | None = None,
     discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
 ) -> StaticLoads:
     """Compute the loads along the span in equilibrium at steady speeds, about a fixed centre.
 
@@ -88,6 +105,9 @@ def static_loads(
         Young's modulus [Pa] for the stress; known of beams made by `Beam.rectangular`.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        Allowed error, relative to the largest of each quantity along the span, from 1e-14 to 0.1: the
+        smallest model that meets it is chosen.  By default models are chosen as for `natural_modes`.
 
     Returns
     -------
@@ -116,18 +136,50 @@ def static_loads(
     """
     check_scene(scene)
     refuse_large_deflection(scene)
-    scene, of_plain = plain_physics(scene), tuple(warn_of_plain(scene))
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    scene = choose_physics(scene, speeds, _MODES, tolerance, straight=STRAIGHT)
     asked = AskedLoads.of(scene, at, points, youngs_modulus)
-    model = choose_model(scene.undamped, discretization, speeds, _MODES)
-    (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
-    rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-    error = BASES_OF_STATIC_LOADS.factor * np.abs(found - coarse) + rounding
-    names = str(model.discretization), str(model.coarser.discretization)
-    made = asked.result(found, error, _warnings(scene, model, speeds, tip), *names, first=of_plain)
-    return StaticLoads(**made, speeds=speeds, angle=theta, tip=tip)
+
+    def solved(model: Model) -> _Solved:
+        (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
+        rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
+        error = BASES_OF_STATIC_LOADS.factor * np.abs(found - coarse) + rounding
+        return _Solved(model, found, error, tip)
+
+    def finer(found: _Solved) -> _Solved | None:
+        model = refine_model(found.model) if isinstance(discretization, str) else None
+        return None if model is None else solved(model)
+
+    model = model_to_tolerance(scene.undamped, discretization, speeds, _MODES, tolerance)
+    best = refine(
+        solved(model),
+        finer,
+        lambda found: tolerance is None or found.relative_error(asked.outputs) <= tolerance,
+    )
+    names = str(best.model.discretization), str(best.model.coarser.discretization)
+    warnings = [*_warnings(scene, best.model, speeds, best.tip)]
+    if tolerance is not None:
+        warnings += warn_of_missed_tolerance(best.relative_error(asked.outputs), tolerance)
+    made = asked.result(best.value, best.error, warnings, *names)
+    return StaticLoads(**made, speeds=speeds, angle=theta, tip=best.tip)
+
+
+class _Solved(NamedTuple):
+    """Outputs (C, S, K) and their errors by a model, and the deflection of the tip (C, d)."""
+
+    model: Model
+    value: np.ndarray
+    error: np.ndarray
+    tip: np.ndarray
+
+    def relative_error(self, outputs: StationOutputs) -> float:
+        """Largest error over the largest value, of the quantity where that is largest."""
+        values, errors = (outputs.split(np.nan_to_num(np.abs(each))) for each in (self.value, self.error))
+        sizes = {name: each.max(initial=0.0) for name, each in values.items()}
+        return max((errors[name].max() / size for name, size in sizes.items() if size), default=0.0)
 
 
 def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -> Iterator[str]:

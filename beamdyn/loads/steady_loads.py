@@ -28,6 +28,7 @@ from beamdyn.loads.stations import (
     mode_error,
     with_neighbours,
 )
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.motion import Line
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases
@@ -119,6 +120,7 @@ class SteadyLoads(SpanLoads):
         return lines_of_response(self.response, stations, self.outputs).amplitude
 
 
+@repeatable
 def steady_loads(
     response: SteadyResponse,
     at: Positions | None = None,

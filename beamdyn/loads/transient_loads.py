@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.plots.curves import plot_load_over_time
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.span_loads import (
     AskedLoads,
@@ -20,11 +22,16 @@ from beamdyn.loads.span_loads import (
     with_unit,
 )
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints
+from beamdyn.modes.model_error.left_out_changes import SolvedValues, nothing_known
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.repeated import BY_FREQUENCY, repeatable
+from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_BY_DEFLECTION = "as of the largest deflection"
 _MOST_TIMES = 2000  # times of the result by default
 
 
@@ -102,6 +109,30 @@ class TransientLoads(SpanLoads):
         """The transient."""
         return self.path.run
 
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the largest value; not known where the run began at coordinates of its own model."""
+        from_rest = isinstance(self.run.request.initial, str)
+        return super().left_out_effects if from_rest else nothing_known(self.scene)
+
+    def solve(self, scene: Scene, name: str) -> SolvedValues:
+        """Largest value with an effect: by another run, or as its largest deflection changes."""
+        return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
+
+    def as_deflection(self, value: np.ndarray, name: str) -> SolvedValues | None:
+        """A value with an effect that changes the run little, or large deflection; None with another."""
+        of_run = self.run.left_out_effects
+        if name != LARGE_DEFLECTION.name and of_run.assumed.get(name) != BY_FREQUENCY:
+            return None
+        reason = of_run.not_known.get(name, "")
+        return SolvedValues(value * (1 + of_run.changes[name]), reason, _BY_DEFLECTION)
+
+    def with_equivalent_ranges(self, found: tuple[EquivalentRange, ...]) -> TransientLoads:
+        """Copy with ranges of equal cycles, which can be judged as this one."""
+        copy = replace(self, equivalent_ranges=found)
+        vars(copy)["again"] = self.again
+        return copy
+
     def at(self, quantity: str, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """A quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
         self.check_component(quantity, None)
@@ -171,6 +202,7 @@ class TransientLoads(SpanLoads):
         return plot_load_over_time(self.t, values, labels, label, ax)
 
 
+@repeatable
 def transient_loads(
     run: Transient,
     at: Positions | None = None,

@@ -10,27 +10,33 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, count, real
+from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import error_at_most, number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.equations.elastica import DeflectedState
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
+from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import provenance_of
+from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
 
 @dataclass(frozen=True)
-class Backbone(Result):
+class Backbone(StatesModelError):
     """Frequency of a free vibration over its amplitude a, to first order: f = f0 (1 + k (a/L)^2).
+
+    `error` is that of the coefficient k; `model_error` and `left_out`, computed when asked for, are what the
+    physics left out would change in the frequency f0.
 
     Parameters
     ----------
@@ -75,13 +81,23 @@ class Backbone(Result):
             warned(self.warnings),
         )
 
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the frequency of small vibration by the effects left out, of shape ()."""
+        effects = left_out_of_frequencies(self.scene, self.speed, self.mode)
+        return replace(effects, unlisted=()).at(self.mode - 1)
+
     def at(self, amplitude: np.ndarray | float) -> np.ndarray:
         """Frequency [Hz] at amplitudes of the tip [m]."""
         return self.frequency * (1 + self.coefficient * (np.asarray(amplitude) / self.scene.beam.length) ** 2)
 
 
 def backbone(
-    scene: Scene, speed: float = 0.0, mode: int = 1, discretization: DiscretizationChoice = "ritz"
+    scene: Scene,
+    speed: float = 0.0,
+    mode: int = 1,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
 ) -> Backbone:
     """Compute how the frequency of a mode depends on its amplitude, to first order.
 
@@ -95,6 +111,8 @@ def backbone(
         Number of the mode, from 1.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`, for the frequency of small vibration; the coefficient has an error of its own.
 
     Returns
     -------
@@ -123,7 +141,8 @@ def backbone(
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
-    solution = solve_to_tolerance(scene, discretization, speeds, mode)
+    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):
         bound = f"it does not vibrate about the equilibrium at {speeds[0]:g} rad/s"

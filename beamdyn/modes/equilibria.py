@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,8 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.scene import Scene, check_scene
@@ -45,12 +48,16 @@ if TYPE_CHECKING:
 _FINE = 0.05  # arc length of a step, for smooth curves in a picture
 _MOST_POINTS = 2000  # points of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
+_UNSTABLE = "the straight beam, of which effects are judged, is unstable"
 _ROUNDING = 1e-13  # error of a position over the length
 
 
 @dataclass(frozen=True)
-class Equilibrium(Result):
+class Equilibrium(StatesModelError):
     """Equilibrium of a beam at a steady speed, of any deflection.
+
+    `error` is that of the numbers; `model_error` and `left_out`, computed when asked for, are what the
+    physics left out would change in the deflection of the tip, as far as it is small.
 
     Parameters
     ----------
@@ -101,6 +108,17 @@ class Equilibrium(Result):
         yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
         yield error_at_most(self.error * unit.per_si, unit.name)
         yield from ("stable" if self.stable else "unstable", warned(self.warnings))
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the deflection of the tip by the effects left out, as of the straight beam: shape ()."""
+        return left_out_by_solving(self.scene, self._solve_static)
+
+    def _solve_static(self, scene: Scene, _: str) -> SolvedValues:
+        """Static deflection of the tip of a straight beam with an effect."""
+        speeds = np.array([self.speed])
+        tip = np.linalg.norm(choose_model(scene.undamped, "ritz", speeds, 1).static_tips(speeds))
+        return SolvedValues(np.asarray(tip), _UNSTABLE if np.isnan(tip) else "")
 
     def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
         """Positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import eigh
@@ -14,25 +15,30 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
 from beamdyn.common.words import Named, Words
-from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
-from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
+from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
+_LINEAR = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
 _ROUNDING = 1e-12  # rounding of an angle [rad]: the cosine of a limit is a quotient of small differences
 
 
 @dataclass(frozen=True)
-class SettingAngleLimits(Result):
+class SettingAngleLimits(JudgedByRepeating):
     """Setting angles between which the first frequency rises and then falls with speed; unpacks as two.
 
     Below `first` it falls from rest on; between the two it rises and then falls below the top speed;
     above `second` it rises up to the top speed.
+
+    `model_error` (2,) and `left_out`, computed when asked for, are what the physics left out would change in
+    the two angles.
 
     Parameters
     ----------
@@ -64,6 +70,18 @@ class SettingAngleLimits(Result):
     static_deflection: float
     warnings: tuple[str, ...]
     provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    follows_stiffness: ClassVar[bool] = False
+
+    def judged(self, found: SettingAngleLimits) -> np.ndarray:
+        """The two angles, of which the model error is stated: shape (2,)."""
+        return np.array([*found])
+
+    @property
+    def bending_speed(self) -> float:
+        """Speed [rad/s] at which large deflection is judged."""
+        return self.top_speed
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
@@ -74,9 +92,13 @@ class SettingAngleLimits(Result):
         return iter((self.first, self.second))
 
 
+@repeatable
 @announced_of_plain_beam
 def setting_angle_limits(
-    scene: Scene, top_speed: float, discretization: DiscretizationChoice = "ritz"
+    scene: Scene,
+    top_speed: float,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
 ) -> SettingAngleLimits:
     """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
 
@@ -84,11 +106,13 @@ def setting_angle_limits(
     ----------
     scene : Scene
         The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
-        frequency is the lowest of both.  Physics "auto" is the plain beam.
+        frequency is the lowest of both.
     top_speed : float
         Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`, for the first frequency at the top speed.
 
     Returns
     -------
@@ -113,10 +137,9 @@ def setting_angle_limits(
     start = perf_counter()
     check_scene(scene)
     if scene.physics.large_deflection:
-        bound = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
         locus = Named("frequency_locus", "beamdyn locus")
         remedy = Words("leave it out, or ask ", locus, " for the locus at a setting angle")
-        raise InvalidValue("physics.large_deflection", True, bound, remedy)
+        raise InvalidValue("physics.large_deflection", True, _LINEAR, remedy)
     for name in ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]:
         if getattr(scene.mount, name) == 0:
             bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
@@ -131,11 +154,11 @@ def setting_angle_limits(
         )
         top_speed = positive("top_speed", top_speed, "rad/s", remedy)
         check_speeds(top_speed, "top_speed")
-    unresolved, scene = scene, plain_physics(scene)
-    scene = replace(scene.undamped, physics=replace(scene.physics, stretch=False))
     speeds = np.array([top_speed if bounded else 0.0])
+    chosen = choose_physics(scene, speeds, 1, tolerance, straight=_LINEAR)
+    scene = replace(chosen.undamped, physics=replace(chosen.physics, stretch=False))
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
-    model = choose_model(tangential, discretization, speeds, 1)
+    model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)
     first, second = _limits(model, top_speed)
     error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are those of the given basis
     if bounded:
@@ -152,10 +175,11 @@ def setting_angle_limits(
         error=error if model.exceeds_coarser else np.inf,
         top_speed=top_speed,
         static_deflection=deflection,
-        warnings=(*warn_of_plain(unresolved), *_limit_warnings(first, second, deflection)),
+        warnings=tuple(_limit_warnings(first, second, deflection)),
         provenance=Provenance(
             __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
         ),
+        scene=chosen,
     )
 
 

@@ -14,7 +14,12 @@ from beamdyn.common.inputs.checks import InvalidValue, count, positive
 from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
-from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
+from beamdyn.modes.modal.discretization_choice import (
+    DiscretizationChoice,
+    choose_model,
+    model_to_tolerance,
+    warn_of_missed_tolerance,
+)
 from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
@@ -42,6 +47,7 @@ def resonance_speeds(
     modes: int = 3,
     order: int = 1,
     discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
 ) -> Crossings:
     """Find the speeds at which lines of the excitation equal natural frequencies.
 
@@ -65,6 +71,8 @@ def resonance_speeds(
         and differences of up to n lines of the stiffness.  The crossings of order n + 1 are counted.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    tolerance : float, optional
+        As for `natural_modes`, for the frequencies at rest and at the top speed.
 
     Returns
     -------
@@ -93,8 +101,8 @@ def resonance_speeds(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
-    scene = choose_physics(scene.undamped, [0.0, top], modes)
-    model = choose_model(scene, discretization, ends := np.array([0.0, top]), modes)
+    scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
+    model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
     sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
@@ -124,6 +132,7 @@ def resonance_speeds(
         warnings=(
             *(loci.describe_coincidence(*each) for loci, each in sought if loci.coincide(*each[1:])),
             *_warnings(model, discretization, (forced, parametric), crossings, order, top, critical),
+            *warn_of_missed_tolerance(max((c.error for c in crossings), default=0.0), tolerance or np.inf),
         ),
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,

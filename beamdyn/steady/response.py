@@ -26,6 +26,7 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import (
@@ -235,6 +236,7 @@ class SteadyResponse(StatesModelError):
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)
 
 
+@repeatable
 @announced
 def steady_response(
     scene: Scene,

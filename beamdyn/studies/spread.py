@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from os import PathLike
 from typing import Any, Literal
 
@@ -29,9 +30,12 @@ from beamdyn.common.spreading.tolerances import (
     without_unit,
 )
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.model_error.left_out_changes import nothing_known
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, with_numbers
 from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.one_by_one import left_out_of_design
 from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion
 from beamdyn.studies.result import Study
 from beamdyn.studies.sensitivities.result import numbers_of
@@ -96,6 +100,29 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 # Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
 
 
+@dataclass(frozen=True)
+class SceneSpread(Spread, StatesModelError):
+    """Ranges of k answers of a scene over the tolerances of d inputs.
+
+    The fields are those of `Spread`.  `model_error` (k,) and `left_out`, computed when asked for, are what
+    the physics left out would change in the answers of the nominal design.
+    """
+
+    question: StudyQuestion = field(repr=False)
+
+    judged_by_solving = True
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, with the nominal design."""
+        return self.question.scene
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the answers of the nominal design by the effects left out: shape (k,)."""
+        return left_out_of_design(self.question, self.scene, {}) or nothing_known(self.scene)
+
+
 _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius": Uniform(0.19, 0.21)}'
 
 
@@ -116,7 +143,7 @@ def spread(
     executor: Executor | None = None,
     store: str | PathLike[str] | None = None,
     progress: Callable[[int, int], object] | None = None,
-) -> Spread:
+) -> SceneSpread:
     """Find the ranges of an answer over tolerances of inputs, and the input that matters most.
 
     Inputs are independent of each other.  Worst cases have each at the end of its tolerance that makes the
@@ -145,6 +172,7 @@ def spread(
     Returns
     -------
     Spread
+        With `model_error` and `left_out` of the nominal design, computed when asked for.
 
     Raises
     ------
@@ -185,7 +213,9 @@ def spread(
     def derivatives() -> KnownDerivatives:
         return known_derivatives(replace(answers.first.question, speed=at), uncertain)
 
-    return solve_spread(what, uncertain, used, check_seed(seed), answers, derivatives, cautions)
+    found = solve_spread(what, uncertain, used, check_seed(seed), answers, derivatives, cautions)
+    values = {each.name: getattr(found, each.name) for each in fields(found)}
+    return SceneSpread(**values, question=replace(answers.first.question, speed=at))
 
 
 @dataclass

@@ -25,13 +25,13 @@ from beamdyn.modes.model_error.left_out_changes import (
     without_large_deflection,
 )
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.repeated import BY_FREQUENCY
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.problem import Solution, TransientProblem
 
 _MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
 _SHIFT, _PHASE = 1e-4, 1e-2  # relative change of a frequency, and of its phase at the end [rad], that matter
 _SHORT_RUN = 2000  # samples up to which a run is done with large deflection
-_BY_FREQUENCY = "by the first frequency"
 _BY_BACKBONE = (
     "roughly estimated by the static deflection and the backbone: "
     "where much of it vibrates, it may be off by a factor, or in sign"
@@ -54,7 +54,7 @@ def left_out_of_transient(
         if scene == straight.scene:
             return without
         if (shift := shifts.get(name)) is not None:
-            return SolvedValues(without.values * (1 + shift) ** -2, without.reason, _BY_FREQUENCY)
+            return SolvedValues(without.values * (1 + shift) ** -2, without.reason, BY_FREQUENCY)
         if name == LARGE_DEFLECTION.name and samples > _SHORT_RUN:
             return _estimate_bent(problem, largest, scene, speed)
         return _run_again(problem, scene, window)

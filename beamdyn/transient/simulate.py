@@ -14,6 +14,7 @@ from beamdyn.common.results.announced import announced
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range, given_basis
 from beamdyn.modes.model_error.effect_choice import bend_for_peak, choose_for_motion
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.transient.smallest_basis import run_smallest_basis
 from beamdyn.transient.step_size import TOLERANCES
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 
+@repeatable
 @announced
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def simulate(

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.accuracy.refinement import refine
-from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue, within
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.mass import axial_tension
@@ -76,7 +76,7 @@ def _solve_finer(
     found: EstimatedModes, speeds: np.ndarray, modes: int, extra: int = 0
 ) -> EstimatedModes | None:
     """The modes of the next finer model; None if there is none, or rounding of so many functions bars it."""
-    if (finer := _refine(found.model)) is None:
+    if (finer := refine_model(found.model)) is None:
         return None
     try:
         return solve_with_error(finer, speeds, modes, extra)
@@ -135,6 +135,20 @@ def choose_model(
     return _choose(scene, discretization, speeds, modes, target, cheapest)[0]
 
 
+def model_to_tolerance(
+    scene: Scene,
+    discretization: DiscretizationChoice,
+    speeds: np.ndarray,
+    modes: int,
+    tolerance: float | None,
+) -> Model:
+    """Find the model of `solve_to_tolerance`; without a tolerance that of `choose_model`."""
+    if tolerance is None:
+        return choose_model(scene, discretization, speeds, modes)
+    tolerance = within("tolerance", tolerance, *TOLERANCES)
+    return solve_to_tolerance(scene, discretization, speeds, modes, tolerance).model
+
+
 def _choose(
     scene: Scene,
     discretization: DiscretizationChoice,
@@ -155,7 +169,7 @@ def _choose(
     if not isinstance(discretization, str):
         return next(models), None
     # Some functions of a model may depend on others.
-    first = next(m for m in models if m.solver.size >= modes or _refine(m) is None)
+    first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
     reached = within_reach(first.discretization, target)
     at_ends = refine(
         solve_with_error(first, ends, modes),
@@ -211,10 +225,10 @@ def list_models(
 def _refinements(model: Model | None) -> Iterator[Model]:
     while model is not None:
         yield model
-        model = _refine(model)
+        model = refine_model(model)
 
 
-def _refine(model: Model) -> Model | None:
+def refine_model(model: Model) -> Model | None:
     """The next finer model; None if there is none that is affordable."""
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have their own limit

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, number, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
+from beamdyn.modes.repeated import JudgedByRepeating
 from beamdyn.scene.beam import PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
 from beamdyn.scene.profile import mean
@@ -166,8 +167,11 @@ def _room_of(beam: Beam, path: str) -> float:
 
 
 @dataclass(frozen=True)
-class Sensitivities(Result):
+class Sensitivities(JudgedByRepeating):
     """Derivatives of k answers by n numbers of a scene.
+
+    `model_error` (k,) and `left_out`, computed when asked for, are what the physics left out would change in
+    the derivative of each answer by the number that matters most to it.
 
     Parameters
     ----------
@@ -223,6 +227,28 @@ class Sensitivities(Result):
         It is 0 where the number is 0.
         """
         return self.derivative * np.array([each.value for each in self.inputs])[:, None] / self.value
+
+    follows_stiffness: ClassVar[bool] = False
+
+    @property
+    def most_important(self) -> tuple[str, ...]:
+        """Name of the number that matters most to each answer: shape (k,)."""
+        size = np.nan_to_num(np.abs(self.relative), nan=-1.0)
+        return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
+
+    def judged(self, found: Sensitivities) -> np.ndarray:
+        """Derivative of each answer by the number that matters most, of which the error is stated: (k,)."""
+        named = zip(self.most_important, self.answers, strict=True)
+        known = found.answers
+        values = (
+            found.by(name)[known.index(answer)] if answer in known else np.nan for name, answer in named
+        )
+        return np.array([*values])
+
+    @property
+    def as_far_as_judged(self) -> Mapping[str, Any]:
+        """The numbers that matter most, by which the analysis is repeated."""
+        return {"inputs": [*dict.fromkeys(self.most_important)]}
 
     def by(self, name: str) -> np.ndarray:
         """Derivatives by the number of a name, shape (k,).

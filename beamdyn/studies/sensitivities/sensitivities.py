@@ -22,6 +22,7 @@ from beamdyn.modes.critical import critical_point
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.numbers import SPEED
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
@@ -41,6 +42,7 @@ _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
 _HZ = 1 / (2 * np.pi)
 
 
+@repeatable
 def frequency_sensitivities(
     scene: Scene,
     speed: float = 0.0,
@@ -108,6 +110,7 @@ def frequency_sensitivities(
     return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
 
 
+@repeatable
 def critical_speed_sensitivities(
     scene: Scene,
     inputs: Sequence[str] | None = None,
@@ -162,6 +165,7 @@ def critical_speed_sensitivities(
     return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
 
 
+@repeatable
 def crossing_sensitivities(
     scene: Scene,
     top_speed: float,
@@ -169,6 +173,7 @@ def crossing_sensitivities(
     inputs: Sequence[str] | None = None,
     order: int = 1,
     discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
 ) -> Sensitivities:
     """Compute the derivatives of resonance speeds by the numbers of a scene; its motion is not varied.
 
@@ -182,7 +187,7 @@ def crossing_sensitivities(
         As for `resonance_speeds`.
     inputs : sequence of str, optional
         Numbers by their names in scene files; all if not given.
-    order, discretization
+    order, discretization, tolerance
         As for `resonance_speeds`.
 
     Returns
@@ -210,9 +215,9 @@ def crossing_sensitivities(
     """
     start, names = perf_counter(), check_names(inputs)
     with unannounced():
-        crossings = resonance_speeds(scene, top_speed, modes, order, discretization)
+        crossings = resonance_speeds(scene, top_speed, modes, order, discretization, tolerance)
         scene = crossings.scene.undamped
-        model = _linear(natural_modes(scene, top_speed, modes + 1, discretization).model)
+        model = _linear(natural_modes(scene, top_speed, modes + 1, discretization, tolerance).model)
     numbers = numbers_of(scene, names)
     changes = changes_of(model, numbers)
     none = np.zeros((len(numbers), 0))

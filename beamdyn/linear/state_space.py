@@ -1,0 +1,158 @@
+"""Small motions at a steady speed in state-space form, for control and simulation by scipy.signal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from scipy.signal import StateSpace, lti
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.announced import announce
+from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
+from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot, as_observation
+from beamdyn.linear.matrices import MOST_JUDGED, list_inputs, listed, steady_drive, warn_of_model
+from beamdyn.linear.model_at_speed import ModelAtSpeed, pole_errors
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.repeated import left_out_of_frequencies
+from beamdyn.scene.scene import Scene
+
+_MODES = 6  # number of modes by default
+_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
+
+
+class StateSpaceWithErrors(StateSpace, lti):
+    """A `scipy.signal.StateSpace` that states its errors; systems that scipy makes of it do not.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene.
+    speed : float
+        Speed [rad/s].
+    error : ndarray, shape (2 n,)
+        Estimated relative error of each pole, in ascending order of magnitude, as that of `Matrices`.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    >>> system = bd.state_space(bd.Scene(strip, bd.Mount(radius=0.215)), 50.0, inputs=["bending"], modes=2)
+    >>> bool(0.01 < system.model_error[0] < 0.03)  # the section is clamped, and its camber hindered
+    True
+    """
+
+    scene: Scene
+    speed: float
+    error: np.ndarray
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the lowest natural frequencies by effects left out, as those of `Matrices`."""
+        modes = min(len(self.A) // 2, MOST_JUDGED)
+        return left_out_of_frequencies(self.scene, self.speed, modes)
+
+    @property
+    def left_out(self) -> Mapping[str, np.ndarray]:
+        """Relative change of the lowest natural frequencies by each effect that the model leaves out."""
+        return self.left_out_effects.changes
+
+    @property
+    def model_error(self) -> np.ndarray:
+        """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
+        return self.left_out_effects.total
+
+
+def state_space(
+    scene: Scene,
+    speed: float,
+    inputs: Sequence[Excitation | str] | None = None,
+    outputs: Sequence[Observation | str] = ("tip",),
+    modes: int | None = _MODES,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> StateSpaceWithErrors:
+    """Give the small motions at a steady speed as x' = A x + B u, y = C x + D u.
+
+    The states x are the coordinates of `matrices` with the same arguments, then their rates.  D holds what
+    the modes left out follow without delay, their residual flexibility, so that the response to a constant
+    input is that of the whole discretization: Craig and Kurdila, Fundamentals of Structural Dynamics (2006),
+    section 11.4.  The static deflection by the rotation itself is not in it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion and gravity are not used.
+    speed : float
+        Speed [rad/s].
+    inputs : sequence of BaseMotion, PointForce or str, optional
+        As for `matrices`.
+    outputs : sequence of DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
+        As for `frequency_response`.
+    modes : int or None
+        Number of modes at this speed of each set of coupled fields; None keeps all functions.
+    discretization : {"ritz", "fem"} or Discretization
+        As for `natural_modes`.
+    tolerance : float, optional
+        As for `matrices`.
+
+    Returns
+    -------
+    scipy.signal.StateSpace
+        With `error`, shape (2 n,), the estimated relative error of each pole in ascending order of magnitude;
+        `model_error` and `left_out` are those of `matrices`.  A system that is made of it has none.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
+        mass.
+
+    References
+    ----------
+    Craig and Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> system = bd.state_space(scene, 50.0, inputs=["bending"], outputs=["tip"], modes=2)
+    >>> system.A.shape, system.C.shape
+    ((4, 4), (1, 4))
+    """
+    scene, speed = check_linear(scene, speed, modes)
+    excitations = list_inputs(inputs, scene)
+    model = model_at_speed(with_forces(scene, excitations), speed, modes, discretization, tolerance)
+    announce((*warn_of_model(model),), "")
+    drives = [steady_drive(model, each) for each in excitations]
+    observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
+    _refuse_delayed_strain(scene, observed)
+    M, n = _with_mass(model), model.equations.size
+    loads = np.column_stack([drive.load for drive in drives])
+    of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)
+    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), of_state])
+    B = np.vstack([np.zeros_like(of_load), of_load])
+    rows = [model.row(each) for each in observed]
+    C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
+    correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
+    system = StateSpaceWithErrors(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+    system.scene, system.speed, system.error = scene, speed, pole_errors(model)
+    return system
+
+
+def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:
+    """Refuse the strain of a material that damps: it follows the moment with a delay, a further state."""
+    factor = scene.damping.stiffness_factor
+    if factor and any(isinstance(each, StrainAtRoot) for each in observed):
+        bound = "the strain of a material that damps is not a function of the moment alone"
+        raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
+
+
+def _with_mass(model: ModelAtSpeed) -> np.ndarray:
+    """The mass; refused if a coordinate has none, as bending and shear without rotary inertia."""
+    values = np.linalg.eigvalsh(model.M)
+    if values[0] < _MASSLESS * values[-1]:
+        bound = "some functions have no mass of their own, and no rates as states"
+        raise InvalidValue("modes", model.modes, bound, "give a number of modes")
+    return model.M

@@ -1,0 +1,119 @@
+"""Model errors of results whose analysis is repeated with each effect that the model leaves out."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, ClassVar, ParamSpec, TypeVar
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
+from beamdyn.common.results.announced import unannounced
+from beamdyn.equations.effects import LARGE_DEFLECTION
+from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.modes import natural_modes
+from beamdyn.scene.scene import Scene
+
+Arguments = ParamSpec("Arguments")
+Answer = TypeVar("Answer")
+
+BY_FREQUENCY = "by the first frequency"
+
+
+class JudgedByRepeating(StatesModelError):
+    """Base of results whose model error is found by the same analysis of the scene with each effect.
+
+    A subclass has `judged`.  Its analysis is decorated by `repeatable`, or sets `again`.
+
+    Attributes
+    ----------
+    again : callable or None
+        The analysis with the arguments that gave this result, of another scene; None in a result that was
+        loaded from a file without its model error.
+    follows_stiffness : bool
+        Whether values grow as the compliance of the first mode does: so what large deflection changes in them
+        is estimated, where the analysis is one of the straight beam.
+    """
+
+    judged_by_solving = True
+    again: Callable[..., Any] | None = None
+    follows_stiffness: ClassVar[bool] = True
+
+    def judged(self, found: Any) -> np.ndarray:
+        """Values of a result of this kind, at the places that matter in this one."""
+        raise NotImplementedError
+
+    @property
+    def as_far_as_judged(self) -> Mapping[str, Any]:
+        """Arguments with which the analysis is repeated for no more than the values that are judged."""
+        return {}
+
+    @property
+    def bending_speed(self) -> float:
+        """Speed [rad/s] at which large deflection is judged."""
+        return getattr(self, "speed", 0.0)
+
+    @cached_property
+    def left_out_effects(self) -> LeftOutEffects:
+        """Changes of the values that are `judged`, by the effects left out."""
+        if self.again is None:
+            return nothing_known(self.scene)
+        return left_out_by_solving(self.scene, self.solve)
+
+    def solve(self, scene: Scene, name: str) -> SolvedValues:
+        """Values of a scene with the effect of a name; by large deflection as far as the analysis allows."""
+        own = self.judged(self)
+        if scene == self.scene or self.again is None:
+            return SolvedValues(own)
+        try:
+            with unannounced():
+                return SolvedValues(self.judged(self.again(scene, **self.as_far_as_judged)))
+        except (ArithmeticError, NoModelAnswer, np.linalg.LinAlgError) as error:
+            return SolvedValues(np.full(own.shape, np.nan), reason_of(error))
+        except InvalidValue as refusal:
+            if name == LARGE_DEFLECTION.name:
+                return self._by_frequency(own, refusal.bound)
+            return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
+
+    def _by_frequency(self, own: np.ndarray, reason: str) -> SolvedValues:
+        """Values with large deflection, by the first frequency: they are the same where nothing bends."""
+        effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
+        name = LARGE_DEFLECTION.name
+        change = float(effects.changes[name][0])
+        if change and not self.follows_stiffness:
+            return SolvedValues(np.full(own.shape, np.nan), reason)
+        note = BY_FREQUENCY if change else ""
+        return SolvedValues(own / (1 + change) ** 2, effects.not_known.get(name, ""), note)
+
+
+def left_out_of_frequencies(scene: Scene, speed: float, modes: int) -> LeftOutEffects:
+    """Changes of the lowest natural frequencies at a speed: shape (m,)."""
+    with unannounced():
+        return natural_modes(scene, speed, modes).left_out_effects
+
+
+def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
+    """Make an analysis of a scene, or of a repeatable result, keep in its result how it is done `again`."""
+    signature = inspect.signature(analysis)
+
+    @functools.wraps(analysis)
+    def repeatable_analysis(*given: Arguments.args, **named: Arguments.kwargs) -> Answer:
+        result = analysis(*given, **named)
+        (_, source), *others = signature.bind(*given, **named).arguments.items()
+        options = dict(others)
+        options |= options.pop("options", {})  # of `solve_ivp`
+        vars(result)["again"] = functools.partial(_repeat, repeatable_analysis, source, options)
+        return result
+
+    return repeatable_analysis
+
+
+def _repeat(
+    analysis: Callable[..., Any], source: Any, options: dict[str, Any], scene: Scene, **others: Any
+) -> Any:
+    """Do an analysis, with some other options, of another scene, or of its source's result of that."""
+    return analysis(scene if isinstance(source, Scene) else source.again(scene), **options | others)
