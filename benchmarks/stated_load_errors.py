@@ -22,6 +22,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.loads.cycles import TURNING_POINTS
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
 from beamdyn.transient.simulate import Transient
@@ -89,9 +90,10 @@ def measure_cycles(number: int, seed: int) -> list[Case]:
     values = np.concatenate([loads.at("moment", some)[:, 0, 0] for some in np.array_split(times, _PARTS)])
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).reshape(-1, 3).T
     exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
-    error = loads.run.time_error / (loads.run.largest or 1.0) * float(np.abs(values).max())
+    of_time = loads.run.time_error / (loads.run.largest or 1.0) * float(np.abs(values).max())
+    of_each = 2 * (of_time + TURNING_POINTS * float(cycles.ranges.max(initial=0.0)))
     stated, true, over = {}, {}, {}
-    for found in cycles.equivalents(_EXPONENTS, 1.0):
+    for found in replace(cycles, error=of_each).equivalents(_EXPONENTS, 1.0):
         size = exact.equivalent_range(found.exponent) or 1.0
         name = f"equivalent-ranges, exponent {found.exponent:g}"
         stated[name] = found.error / size

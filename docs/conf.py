@@ -29,6 +29,7 @@ extensions = [
     "repository_pages",
     "validation_pages",
     "analyses_page",
+    "errors_page",
     "file_keys",
 ]
 exclude_patterns = ["build", "_ext", "_templates", "**/GALLERY_HEADER.rst"]

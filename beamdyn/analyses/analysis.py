@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin,
 
 from cyclopts import Parameter
 
-from beamdyn.analyses.results.cautions import describe_choice, noted, warnings_of
+from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import program
 from beamdyn.common.edge.html_report import Question, Report
@@ -289,6 +289,7 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
         raise ValueError(f"--plot = {outputs.plot}: this result has no picture; give --json or --csv")
     draw = None if draw is None else noted(draw, result)
     tables = [*([tables_of(result)] if answer.tables is None else answer.tables), *describe_choice(result)]
+    tables += describe_left_out(result)
     warnings = warnings_of(result) if answer.warnings is None else answer.warnings
     refusals = [refusal] if refusal else []
     # The files of a long computation do not depend on who reads the tables.

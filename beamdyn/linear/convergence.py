@@ -16,6 +16,7 @@ from beamdyn.common.words import Named, Words
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
+    DEFAULT_TARGET,
     DiscretizationChoice,
     check_discretization,
     model_to_tolerance,
@@ -86,10 +87,14 @@ def model_at_speed(
 
 
 def model_of_few_modes(
-    scene: Scene, speed: float, few: int, discretization: DiscretizationChoice
+    scene: Scene,
+    speed: float,
+    few: int,
+    discretization: DiscretizationChoice,
+    tolerance: float | None = None,
 ) -> ModelAtSpeed:
     """Make the model of a few modes that nobody asked for: of fewer if the discretization has no more."""
-    return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization)
+    return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization, tolerance)
 
 
 # How many modes are needed ------------------------------------------------------------------------
@@ -100,8 +105,10 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
 _FIRST = 4  # modes of the first basis of "auto"
-_ACCURATE = 8  # modes for which its functions are chosen, at least
+_ACCURATE = 8  # modes for which its functions are chosen by default, at least
 _MOST = 40  # most modes of the last refinement
+_OF_FREQUENCIES = 0.01  # error of frequencies over that of a response, which a resonance magnifies
+_FINER = 1e-3  # of the target, where the response has not met its tolerance
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 _ROUNDING = 1e-12  # rounding error, over the largest value
 
@@ -120,6 +127,8 @@ class Refined:
         The value and its estimated error, of one shape.
     truncation : float
         Largest error by the modes left out.
+    discretization : ndarray
+        The part of the error that is of the discretization.
     method, compared_with : str
         The model, and those that the error was estimated by.
     """
@@ -129,6 +138,7 @@ class Refined:
     value: np.ndarray
     error: np.ndarray
     truncation: float
+    discretization: np.ndarray
     method: str
     compared_with: str
 
@@ -155,7 +165,7 @@ def evaluate_accurately(
         Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
         the tolerance; None: all functions.
     tolerance : float
-        Truncation error aimed at, relative to the largest value.
+        Error aimed at by "auto", relative to the largest value.
     evaluate : callable
         The value by a model.
     most : int
@@ -171,19 +181,38 @@ def evaluate_accurately(
         larger = _all_of(model, most) or _larger(model, discretization)
         return _with_error(model, evaluate(model), larger, evaluate)
 
-    # The model with functions for modes up to an angular frequency [rad/s], within limits.
+    def of_target(target: float) -> tuple[float, Refined]:
+        model = _model_up_to(scene, speed, top, discretization, target)
+        if (whole := _all_of(model, most)) is not None:
+            return target, _with_error(whole, evaluate(whole), None, evaluate)
+        few = replace(model, modes=min(_FIRST, model.modes or _FIRST))
+        return target, _add_modes(few, tolerance, discretization, evaluate)
+
+    def of_smaller_target(found: tuple[float, Refined]) -> tuple[float, Refined] | None:
+        smallest = not isinstance(discretization, str) or found[0] <= 1.001 * DEFAULT_TARGET
+        return None if smallest else of_target(_FINER * found[0])
+
+    def meets(found: tuple[float, Refined]) -> bool:
+        return bool(found[1].discretization.max() <= tolerance * np.abs(found[1].value).max())
+
+    return refine(of_target(_OF_FREQUENCIES * tolerance), of_smaller_target, meets)[1]
+
+
+def _model_up_to(
+    scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
+) -> ModelAtSpeed:
+    """The model with functions for modes up to an angular frequency [rad/s], to a target, within limits."""
+    tolerance = target if target > 1.001 * DEFAULT_TARGET else None
+
     def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
-        return modes, model_of_few_modes(scene, speed, modes, discretization)
+        return modes, model_of_few_modes(scene, speed, modes, discretization, tolerance)
 
     def of_more(found: tuple[int, ModelAtSpeed]) -> tuple[int, ModelAtSpeed] | None:
         largest = not isinstance(discretization, str) or found[0] >= _MOST
         return None if largest else of_modes(min(_MOST, 2 * found[0]))
 
-    model = refine(of_modes(_ACCURATE), of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
-    if (whole := _all_of(model, most)) is not None:
-        return _with_error(whole, evaluate(whole), None, evaluate)
-    few = replace(model, modes=min(_FIRST, model.modes or _FIRST))
-    return _add_modes(few, tolerance, discretization, evaluate)
+    first = of_modes(_ACCURATE if tolerance is None else _FIRST)
+    return refine(first, of_more, lambda found: np.sqrt(np.abs(found[1].K).max()) > top)[1]
 
 
 def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
@@ -268,4 +297,4 @@ def _with_error(
     kept = ("all functions",) if model.modes is None else (f"{model.modes} modes at ", Speeds(model.speed))
     method = Words(f"{model.discretization}, ", *kept)
     largest = float(np.max(truncation))
-    return Refined(model, larger, value, error + truncation, largest, method, ", ".join(compared))
+    return Refined(model, larger, value, error + truncation, largest, error, method, ", ".join(compared))

@@ -109,6 +109,8 @@ class FrequencyResponse(JudgedByRepeating):
         size, at = max(found)
         return float(at), float(size)
 
+    judged_value = "the largest response"
+
     def judged(self, found: FrequencyResponse) -> np.ndarray:
         """The largest response, peaks included, of which the model error is stated: shape ()."""
         return np.array(found.peak[1])
@@ -166,7 +168,7 @@ def frequency_response(
         discretization up to 300 of them, else the fewest modes with which the truncation error meets the
         tolerance; None keeps all functions.
     tolerance : float
-        Truncation error aimed at by "auto", relative to the largest response.
+        Error aimed at by "auto", relative to the largest response.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -208,6 +210,7 @@ def frequency_response(
     )
     check_stable(refined.model)
     harmonics, _ = transfer(refined.model, drive, seen, given[:1])
+    band = float(given[0]), float(given[-1])
     if not np.isfinite(refined.value).all():
         bad = given[~np.isfinite(refined.value).all(axis=1)][0]
         bound = "an undamped beam has no finite response at a natural frequency"
@@ -218,7 +221,7 @@ def frequency_response(
         response=refined.value,
         harmonics=harmonics,
         error=refined.error,
-        peaks=find_peaks(refined.model, refined.larger, drive, seen, (float(given[0]), float(given[-1]))),
+        peaks=find_peaks(refined.model, refined.larger, drive, seen, band, tolerance * (modes == "auto")),
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=f"{seen.unit or '1'} per {drive.unit}",

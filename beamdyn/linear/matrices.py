@@ -133,9 +133,12 @@ class Matrices(StatesModelError):
         """
         return free_motion(self.mass, self.damping + self.gyroscopic, self.stiffness).poles
 
+    judged_value = "the natural frequencies"
+    counted = "mode"
+
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies, of as many modes as coordinates or five: shape (m,)."""
+        """Changes of the lowest natural frequencies by effects left out, of five at most: shape (m,)."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
@@ -286,6 +289,7 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
     """Name the coordinates of a field: deflections and slopes at nodes, or else coefficients."""
     deflection = model.equations.deflections.get(field_name)
     nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
+    nodes = nodes if isinstance(nodes, np.ndarray) else None  # others than finite elements have nodes, too
     nodal: list[np.ndarray] = []
     if nodes is not None and deflection is not None:
         nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)]

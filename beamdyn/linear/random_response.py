@@ -125,6 +125,8 @@ class RandomResponse(JudgedByRepeating):
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
 
+    judged_value = "the root mean square"
+
     def judged(self, found: RandomResponse) -> np.ndarray:
         """The root mean square, of which the model error is stated: shape ()."""
         return np.array(found.rms)
@@ -175,7 +177,7 @@ def random_response(
         Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
         truncation error meets the tolerance.
     tolerance : float
-        Truncation error aimed at by "auto", relative to the root mean square.
+        Error aimed at by "auto", relative to the root mean square.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 

@@ -26,6 +26,7 @@ _DENSE = 0.1  # step of samples over the distance to the nearest pole
 _HALVINGS = 60  # halvings of an interval, to rounding
 _UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
 _ROUNDING = 1e-9  # relative, within which the numbers of a peak are found
+_SHARE = 0.1  # of the tolerance, to which the numbers of a peak are found
 _LEVEL = 1e-10  # relative, by which a peak stands above the minima beside it, or it is rounding
 _NOISE = 0.5  # relative distance of the sum from the equations' solution, where the response is rounding
 _STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is looked for
@@ -86,6 +87,7 @@ def find_peaks(
     drive: Excitation,
     seen: Observation,
     band: tuple[float, float],
+    tolerance: float = 0.0,
 ) -> ResonancePeaks:
     """Find the peaks of a response within a band of frequencies of the excitation [Hz].
 
@@ -99,27 +101,33 @@ def find_peaks(
         Input and output.
     band : tuple of float
         Lowest and highest frequency [Hz].
+    tolerance : float
+        Error aimed at, relative to the magnitude and to the width of a peak; to rounding if not given.
     """
+    share = max(_SHARE * tolerance, _ROUNDING)
     top = 2 * band[1] + abs(model.speed) / _TURN  # flanks reach out of the band
-    found = sorted(peak for peak in _peaks(model, drive, seen, top) if band[0] < peak.frequency < band[1])
+    found = sorted(
+        peak for peak in _peaks(model, drive, seen, top, share) if band[0] < peak.frequency < band[1]
+    )
     compared = list[tuple[float, list[Peak]]]()
     if found:
         coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
-        compared.append((LINEAR_MESHES.factor, [*_peaks(coarse, drive, seen, top)]))
+        compared.append((LINEAR_MESHES.factor, [*_peaks(coarse, drive, seen, top, share)]))
     if found and model.modes is not None:
-        compared.append((LINEAR_MODES.factor, [*_peaks(larger, drive, seen, top)] if larger else []))
-    errors = np.reshape([_error(each, compared) for each in found], (-1, 3))
+        compared.append((LINEAR_MODES.factor, [*_peaks(larger, drive, seen, top, share)] if larger else []))
+    errors = np.reshape([_error(each, compared, share) for each in found], (-1, 3))
     columns = [np.array(column) for column in zip(*found, strict=True)] or [np.zeros(0)] * 5
     frequency, size, bandwidth, harmonic, _ = columns
     return ResonancePeaks(frequency, size, bandwidth, harmonic.astype(int), *errors.T)
 
 
-def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
+def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -> np.ndarray:
     """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
     own = np.array(peak[:3])
     with np.errstate(invalid="ignore"):  # a magnitude may be inf
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
-        error = _ROUNDING * own + peak.rounding * np.array([width, peak.size, peak.bandwidth])
+        sizes = np.array([width, peak.size, peak.bandwidth])
+        error = _ROUNDING * own + (peak.rounding + np.array([share, share**2, share])) * sizes
         for margin, others in compared:
             same = (each for each in others if each.harmonic == peak.harmonic)
             near = min(same, key=lambda each: abs(each.frequency - peak.frequency), default=[np.inf] * 3)
@@ -127,8 +135,10 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]]) -> np.ndarray:
     return np.where(np.isfinite(own), error, np.nan)
 
 
-def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float) -> Iterator[Peak]:
-    """All peaks at frequencies of the excitation from 0 to a highest one [Hz]."""
+def _peaks(
+    model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float, share: float
+) -> Iterator[Peak]:
+    """All peaks at frequencies of the excitation from 0 to a highest one [Hz], to a share of their width."""
     drives = model.drives(drive)
     for h, total in modal_sums(model, drives, seen).items():
         magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)
@@ -139,7 +149,7 @@ def _peaks(model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float
             near, far = np.abs(magnitude.solved(np.array([place + step, place + 2 * step])))
             if near > 1.5 * far > 0:
                 yield Peak(place, np.inf, 0.0, magnitude.harmonic, 0.0)
-        yield from _damped_peaks(magnitude, top)
+        yield from _damped_peaks(magnitude, top, share)
 
 
 @dataclass(frozen=True)
@@ -219,7 +229,7 @@ class HarmonicMagnitude:
         return 1j * _TURN * (f + self.shift)
 
 
-def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
+def _damped_peaks(magnitude: HarmonicMagnitude, top: float, share: float) -> Iterator[Peak]:
     """Maxima of a finite magnitude, with the minima beside them."""
     f = magnitude.samples(top)
     rises = magnitude.rises(f)
@@ -227,7 +237,8 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
     singular = magnitude.places[magnitude.undamped]
     turns = turns[~((f[turns, None] < singular) & (singular < f[turns + 1, None])).any(axis=1)]
     rises_before = rises[turns]
-    at = _bisect(lambda x: magnitude.rises(x) == rises_before, f[turns], f[turns + 1])
+    low, high = f[turns], f[turns + 1]
+    at = _bisect(lambda x: magnitude.rises(x) == rises_before, low, high, 2 * low - high, share)
     limits = np.concatenate([[0.0], at, [top]])
     k = np.flatnonzero(rises_before)
     if not k.size:
@@ -237,7 +248,8 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
     rounding = magnitude.rounding(tops)
     # Widths between half-power frequencies [Hz] (p,); nan where a minimum beside a peak is not so low.
     level = np.tile(size / np.sqrt(2), 2)
-    ends = _bisect(lambda f: magnitude.size(f) > level, np.tile(tops, 2), sides.ravel()).reshape(2, -1)
+    twice = np.tile(tops, 2)
+    ends = _bisect(lambda f: magnitude.size(f) > level, twice, sides.ravel(), twice, share).reshape(2, -1)
     width = np.where((beside < size / np.sqrt(2)).all(axis=0), ends[1] - ends[0], np.nan)
     real = (size > (1 + _LEVEL) * beside.max(axis=0)) & (rounding < _NOISE)
     for j in np.flatnonzero(real).tolist():
@@ -245,10 +257,16 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float) -> Iterator[Peak]:
 
 
 def _bisect(
-    as_at_start: Callable[[np.ndarray], np.ndarray], start: np.ndarray, end: np.ndarray
+    as_at_start: Callable[[np.ndarray], np.ndarray],
+    start: np.ndarray,
+    end: np.ndarray,
+    origin: np.ndarray,
+    share: float,
 ) -> np.ndarray:
-    """Where what holds at the start of each interval (p,) ceases to hold, to rounding."""
+    """Where what holds at the start of each interval (p,) ceases to, to a share of the way from an origin."""
     for _ in range(_HALVINGS):
+        if (np.abs(end - start) <= share * np.abs(end - origin)).all():
+            break
         middle = (start + end) / 2
         same = as_at_start(middle)
         start, end = np.where(same, middle, start), np.where(same, end, middle)

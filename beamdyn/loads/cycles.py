@@ -89,6 +89,8 @@ class LoadCycles(JudgedByRepeating):
         yield error_at_most(self.error, UNITS[self.quantity])
         yield warned(self.warnings)
 
+    judged_value = "the largest range"
+
     def judged(self, found: LoadCycles) -> np.ndarray:
         """The largest range, of which the model error is stated: shape ()."""
         return np.array(found.ranges.max(initial=0.0))

@@ -221,7 +221,7 @@ def random_loads(
     modes
         As for `random_response`.
     tolerance : float
-        Truncation error aimed at by "auto", relative to the largest of each component along the span.
+        Error aimed at by "auto", relative to the largest of each component along the span.
     discretization
         As for `random_response`.
 

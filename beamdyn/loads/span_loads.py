@@ -172,6 +172,11 @@ class SpanLoads(JudgedByRepeating):
         sizes = {name: np.nanmax(np.abs(self.values(name)), initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 
+    @property
+    def judged_value(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """The largest value of which quantity the model error is stated, in words."""
+        return f"the largest {self.judged_quantity}"
+
     def judged(self, found: SpanLoads) -> np.ndarray:
         """The largest value of the `judged_quantity`: shape ()."""
         return np.array(abs(found.largest(self.judged_quantity).value))

@@ -39,6 +39,7 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 
 _MODES = 3  # modes of which the model is accurate: loads in equilibrium need no more
 _SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
+_ALONG = 0.25  # least share of the largest distance of two models along the span
 _ROUNDING = 1e-12  # relative to the largest along the span
 
 
@@ -146,7 +147,9 @@ def static_loads(
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        error = BASES_OF_STATIC_LOADS.factor * np.abs(found - coarse) + rounding
+        distance = np.abs(found - coarse)  # by chance it is small at a station or other
+        distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
+        error = BASES_OF_STATIC_LOADS.factor * distance + rounding
         return _Solved(model, found, error, tip)
 
     def finer(found: _Solved) -> _Solved | None:

@@ -109,6 +109,8 @@ class Equilibrium(StatesModelError):
         yield error_at_most(self.error * unit.per_si, unit.name)
         yield from ("stable" if self.stable else "unstable", warned(self.warnings))
 
+    judged_value = "the deflection of the tip"
+
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the deflection of the tip by the effects left out, as of the straight beam: shape ()."""

@@ -12,7 +12,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 from beamdyn.common.results.announced import unannounced
-from beamdyn.equations.effects import LARGE_DEFLECTION
+from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION
+from beamdyn.modes.model_error.additions import MOST_CAMBER, without_camber
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import natural_modes
@@ -77,6 +78,8 @@ class JudgedByRepeating(StatesModelError):
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
                 return self._by_frequency(own, refusal.bound)
+            if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound it
+                return self.solve(without_camber(self.scene), name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
 
     def _by_frequency(self, own: np.ndarray, reason: str) -> SolvedValues:

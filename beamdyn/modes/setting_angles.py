@@ -73,6 +73,8 @@ class SettingAngleLimits(JudgedByRepeating):
     scene: Scene = field(repr=False)
 
     follows_stiffness: ClassVar[bool] = False
+    judged_value = "the setting angles"
+    counted = "limit"
 
     def judged(self, found: SettingAngleLimits) -> np.ndarray:
         """The two angles, of which the model error is stated: shape (2,)."""

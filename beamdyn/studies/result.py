@@ -129,7 +129,7 @@ class Study(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes by effects left out, at the designs of `left_out_places`: shape (p, m)."""
+        """Changes of the answer by effects left out, at the designs of `left_out_places`: shape (p, m)."""
         return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
 
     @cached_property

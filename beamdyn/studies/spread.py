@@ -111,6 +111,8 @@ class SceneSpread(Spread, StatesModelError):
     question: StudyQuestion = field(repr=False)
 
     judged_by_solving = True
+    judged_value = "the nominal design"
+    counted = "answer"
 
     @property
     def scene(self) -> Scene:

@@ -85,8 +85,7 @@ def test_equivalent_ranges_of_several_exponents_are_printed(run, loads):
 
 def test_no_digit_of_an_equivalent_range_is_beyond_its_error(run, loads):
     cycles = bd.count_cycles(loads, "strain", start=0.1, end=0.3)
-    error = loads.largest("strain", 0, 0.1, 0.3).error
-    (found,) = cycles.equivalents([5.0], 1.0, error)
+    (found,) = cycles.equivalents([5.0], 1.0)
     _, out, _ = run("--cycles", "strain", "--woehler", "5")
     (value,) = (line.split()[1] for line in out.splitlines() if line.split()[:1] == ["5"])
     assert 1e-6 * 10.0 ** -len(value.partition(".")[2]) > found.error / 2
@@ -104,8 +103,9 @@ def test_turning_points_are_found_between_the_samples_of_a_run(exponent):
     values = loads.at("moment", np.linspace(0, 0.5, 200_001))[:, 0, 0]
     counted = np.array([cycle[:3] for cycle in extract_cycles(values)]).T
     exact = replace(cycles, ranges=counted[0], means=counted[1], counts=counted[2])
-    (found,) = cycles.equivalents([exponent], 1.0, 0.0)
     of_each = 2e-6 * cycles.ranges.max()  # both ends are known to a millionth of the largest range
+    assert cycles.error == pytest.approx(of_each + 2 * loads.moment_error[0, 0])
+    (found,) = replace(cycles, error=of_each).equivalents([exponent], 1.0)
     assert found.error == pytest.approx(of_each * cycles.counts.sum() ** (1 / exponent))
     assert abs(found.range - exact.equivalent_range(exponent)) <= found.error
 

@@ -37,6 +37,15 @@ def test_nodal_coordinates_are_deflections_and_slopes_where_they_say():
     assert "slope by x/L" in M.coordinates[-1]
 
 
+def test_a_beam_of_many_stations_has_matrices():
+    places = np.linspace(0, 1, 12)
+    width = bd.Table(places, 0.01 + 0.002 * np.cos(20 * places))
+    beam = bd.Beam.rectangular(0.5, width, 0.002, 200e9, 7850.0)
+    found = bd.matrices(bd.Scene(beam, bd.Mount(radius=0.2)), 5.0)
+    assert found.coordinates[0].endswith("coefficient of function 1 [m]")
+    assert found.error[0] < 1e-9
+
+
 def test_stiffness_by_axial_acceleration_is_what_gravity_adds():
     # The hub radius r is a steady acceleration -omega^2 r along an outward beam, whose tension stiffens it.
     with_hub, without = (

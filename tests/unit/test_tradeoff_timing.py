@@ -175,3 +175,28 @@ def test_what_a_family_leaves_goes_to_the_next(clock):
 def test_errors_are_not_below_what_is_resolved_and_never_nan(clock):
     found, _ = run(clock, clock.case("a", 1.0, 1e-15), clock.case("b", 1.0, float("nan")))
     assert [m.error for m in found] == [1e-12, inf]
+
+
+# Ties ---------------------------------------------------------------------------------------------
+
+
+def test_times_within_twice_their_scatter_are_ties():
+    each = [(1.0, 0.0), (1.05, 0.03), (1.2, 0.03), (1.5, 0.3)]
+    measured = [Measurement("F", f"{i}", i, 0.05, t, scatter) for i, (t, scatter) in enumerate(each)]
+    (digit,) = cost_per_digit(measured)
+    assert (digit.advice, digit.ties) == ("F, 0", ("F, 1", "F, 3"))
+
+
+def test_contenders_run_again_in_turns(clock, monkeypatch):
+    """So that a drift of the machine does not decide between them; what is far slower does not run again."""
+    ran = []
+    monkeypatch.setattr(timing, "RUNS", 2)
+
+    def setting(name, takes):
+        case = clock.case(name, takes, answer=0.01)
+        return Setting(name, 1.0, lambda deadline: (ran.append(name), case.run(deadline))[1])
+
+    names = "a", "b", "slow"
+    families = [Family(n, (setting(n, t),)) for n, t in zip(names, (0.1, 0.11, 0.5), strict=True)]
+    measure_families(families, float, 1e-12, 10.0)
+    assert ran == ["a", "a", "b", "b", "slow", "slow", "a", "b", "a", "b"]

@@ -47,6 +47,14 @@ def describe_choice(result: Result) -> list[str]:
     return [] if choice is None else [choice.sentence()]
 
 
+def describe_left_out(result: Result) -> list[str]:
+    """The line on what is left out, below tables that do not say it themselves."""
+    if not isinstance(result, StatesModelError) or not result.judged_value:
+        return []
+    said = result.left_out_effects.sentence(result.counted, f"of {result.judged_value}")
+    return [said_in(result.display_units, said)]
+
+
 def notes_of(result: Any) -> list[str]:
     """Notes for a picture or a file of numbers: that deflection is large, or which effects are left out."""
     scene = getattr(result, "scene", None)

@@ -155,13 +155,30 @@ def sensitivities_csv(result: Sensitivities) -> Columns:
 # Trade-offs -------------------------------------------------------------------------------------------
 
 
+_TIES = 3  # ties that are named
+
+
 def diagram_table(diagram: Diagram) -> Group:
     """Cost of each digit, the Pareto front, and the reference of the errors."""
     rows = [
-        (f"{d.error:.0e}", d.family, d.setting, f"{1e3 * d.time:.3g}", "" if i == 0 else f"{d.ratio:.2f}")
+        (
+            f"{d.error:.0e}",
+            d.family,
+            d.setting,
+            f"{1e3 * d.time:.3g}",
+            "" if i == 0 else f"{d.ratio:.2f}",
+            "; ".join(d.ties[:_TIES]) + f"; {len(d.ties) - _TIES} more" * (len(d.ties) > _TIES),
+        )
         for i, d in enumerate(diagram.per_digit)
     ]
-    heads = ("error", "cheapest", "setting", "time [ms]", "over the digit before")
+    heads = (
+        "error",
+        "cheapest",
+        "setting",
+        "time [ms]",
+        "over the digit before",
+        "as fast, within the scatter",
+    )
     sentences = (
         f"Pareto front: {diagram.summary}.",
         f"Error: of {diagram.error_of}.",
@@ -170,7 +187,7 @@ def diagram_table(diagram: Diagram) -> Group:
         "",
     )
     title = diagram.title[:1].upper() + diagram.title[1:]
-    return Group(table(title, heads, rows, (1, 2)), *map(Text, sentences))
+    return Group(table(title, heads, rows, (1, 2, 5)), *map(Text, sentences))
 
 
 def diagram_csv(diagram: Diagram) -> Columns:

@@ -32,7 +32,7 @@ _ASSUMED_OF_SECTIONS = {
     CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
     TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
-_MOST_CAMBER = "as if no section cambered, which is the most"
+MOST_CAMBER = "as if no section cambered, which is the most"
 _RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
 
 
@@ -137,10 +137,10 @@ def add_effect(scene: Scene, effect: Effect) -> Addition:
     except InvalidValue:
         if effect is not CAMBER or scene.beam.section is None or scene.physics.large_deflection:
             raise
-    return Addition(CAMBER, _without_camber(last[0]), ", ".join(filter(None, [last[1], _MOST_CAMBER])))
+    return Addition(CAMBER, without_camber(last[0]), ", ".join(filter(None, [last[1], MOST_CAMBER])))
 
 
-def _without_camber(scene: Scene) -> Scene:
+def without_camber(scene: Scene) -> Scene:
     """The scene with rectangular sections that nowhere camber: stiffer than with what a clamp hinders."""
     beam = scene.beam
     section, second = beam.section, beam.second_bending_stiffness

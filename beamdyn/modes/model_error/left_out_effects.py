@@ -269,11 +269,20 @@ class StatesModelError(OfChosenPhysics):
     """Base of results that say what the effects left out of their model would change; see `OfChosenPhysics`.
 
     A subclass has the cached property `left_out_effects`, which is computed when asked for.
+
+    Attributes
+    ----------
+    judged_by_solving : bool
+        Whether the model error takes longer than the answer.
+    judged_value, counted : str
+        The values of which it is the error, and what each of several is, where a line says so below a table.
     """
 
     kept = ("left_out_effects",)
     left_out_effects: Any
-    judged_by_solving: ClassVar[bool] = False  # whether the model error takes longer than the answer
+    judged_by_solving: ClassVar[bool] = False
+    judged_value: str = ""
+    counted: ClassVar[str] = ""
 
     def without_waiting(self) -> Any:
         """Leave out model errors that take long and were not asked for: the result can be shown at once."""

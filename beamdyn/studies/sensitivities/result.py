@@ -229,6 +229,8 @@ class Sensitivities(JudgedByRepeating):
         return self.derivative * np.array([each.value for each in self.inputs])[:, None] / self.value
 
     follows_stiffness: ClassVar[bool] = False
+    judged_value = "the largest derivatives"
+    counted = "answer"
 
     @property
     def most_important(self) -> tuple[str, ...]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
 from math import inf, isfinite, isnan, nan
+from statistics import median
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.plots.curves import plot_work_precision
 from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
+from beamdyn.common.results.snapshots import ADDED_LATER
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,6 +41,8 @@ class Measurement:
         Relative error of the result; inf where the result is not a number.
     time : float
         Shortest processor time of several runs, in one thread [s].
+    scatter : float
+        Distance of the median of the runs' times from the shortest [s]; a tenth of the time of a single run.
     """
 
     family: str
@@ -46,6 +50,11 @@ class Measurement:
     size: float
     error: float
     time: float
+    scatter: float = field(default=0.0, metadata=ADDED_LATER)
+
+    def ties_with(self, other: Measurement) -> bool:
+        """Whether the times differ by at most twice the scatter of either."""
+        return abs(self.time - other.time) <= _TIE * max(self.scatter, other.scatter)
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,8 @@ class Digit:
         Time of this measurement [s].
     ratio : float
         Ratio of the time to that of one digit less; nan for the first digit.
+    ties : tuple of str
+        Other settings within this error whose time is not told from it: by at most twice the scatter.
     """
 
     error: float
@@ -69,6 +80,12 @@ class Digit:
     setting: str
     time: float
     ratio: float
+    ties: tuple[str, ...] = field(default=(), metadata=ADDED_LATER)
+
+    @property
+    def advice(self) -> str:
+        """Family and setting of the cheapest measurement."""
+        return f"{self.family}, {self.setting}"
 
 
 def number_of(number: int, one: str, many: str) -> str:
@@ -106,7 +123,9 @@ def cost_per_digit(measurements: Sequence[Measurement]) -> tuple[Digit, ...]:
             break
         m = min(candidates, key=lambda m: m.time)
         ratio = m.time / digits[-1].time if digits else nan
-        digits.append(Digit(10.0**-k, m.family, m.setting, m.time, ratio))
+        equal = (c for c in candidates if c is not m and c.ties_with(m))
+        ties = tuple(f"{c.family}, {c.setting}" for c in sorted(equal, key=lambda c: c.time))
+        digits.append(Digit(10.0**-k, m.family, m.setting, m.time, ratio, ties))
     return tuple(digits)
 
 
@@ -188,6 +207,8 @@ class Diagram(Result):
 
 RUNS = 7  # runs of a setting; the shortest counts, because other programs can only add time
 _REPEATS = 0.4  # part of a setting's share of the budget that is for repetitions
+_AGAIN, _NEAR = 0.2, 1.3  # part of the budget for runs in turns; time over the shortest of what runs again
+_TIE, _SCATTER_OF_ONE = 2.0, 0.1  # scatters within which times are equal; that of a single run, relative
 
 
 @dataclass(frozen=True)
@@ -250,44 +271,78 @@ def measure_families(
         Sentences on the settings that were left out, and why.
     """
     end = perf_counter() + budget
-    measurements: list[Measurement] = []
+    timed: list[_Timed] = []
     skipped: list[str] = []
     for i, family in enumerate(families):
         share = max(0.0, (end - perf_counter()) / (len(families) - i))
         measured, reason = _measure_family(family, error, resolved, share)
-        measurements += measured
+        timed += measured
         skipped += [f"{family.name}: {reason}"] if reason else []
-    return measurements, skipped
+    _repeat_in_turns(timed, perf_counter() + _AGAIN * budget)
+    return [each.measurement() for each in timed], skipped
+
+
+@dataclass(frozen=True)
+class _Timed:
+    """A setting of a family with the error of its result and the processor times of its runs [s]."""
+
+    family: str
+    setting: Setting
+    error: float
+    times: list[float]
+
+    def measurement(self) -> Measurement:
+        """The shortest time, with its scatter."""
+        time = min(self.times)
+        scatter = median(self.times) - time if len(self.times) > 1 else _SCATTER_OF_ONE * time
+        return Measurement(self.family, self.setting.name, self.setting.size, self.error, time, scatter)
+
+
+def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
+    """Run the settings that may be the cheapest of a digit again and again, in turns, until a time [s].
+
+    The speed of a machine drifts: settings that were timed one after the other are not told apart by it.
+    """
+    limits = [10.0**-k for k in range(1, _MOST_DIGITS + 1)]
+    cheapest = {e: min((min(t.times) for t in timed if t.error <= e), default=nan) for e in limits}
+    near = [t for t in timed if any(t.error <= e and min(t.times) <= _NEAR * cheapest[e] for e in limits)]
+    for _ in range(RUNS if len(near) > 1 else 0):
+        for each in near:
+            if perf_counter() + min(each.times) > end:
+                return
+            cpu_start = process_time()
+            each.setting.run(inf)
+            each.times.append(process_time() - cpu_start)
 
 
 def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
-) -> tuple[list[Measurement], str]:
-    """Measure a family: the measurements, and why the rest was left out.
+) -> tuple[list[_Timed], str]:
+    """Measure a family: its settings with their times, and why the rest was left out.
 
     Whether the next setting still fits is told by the processor time of the last one: a moment in which
     the machine did something else would look like a slow setting, and end the family too early.
     """
     start, last = perf_counter(), 0.0
-    measurements: list[Measurement] = []
+    timed: list[_Timed] = []
     for setting in family.settings:
         rest = share - (perf_counter() - start)
         if rest < last:
-            return measurements, f"left out from {setting.name} on, its {share:.2g} s being used up"
+            return timed, f"left out from {setting.name} on, its {share:.2g} s being used up"
         try:
-            result, last = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
+            result, times = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
         except TimeoutError as stop:
-            return measurements, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
+            return timed, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
         except (ArithmeticError, LinAlgError) as failure:
-            return measurements, f"{setting.name} failed ({reason_of(failure)}), and the rest left out"
-        relative_error = error(result)
+            return timed, f"{setting.name} failed ({reason_of(failure)}), and the rest left out"
+        relative_error, last = error(result), min(times)
         bounded = inf if isnan(relative_error) else max(relative_error, resolved)
-        measurements.append(Measurement(family.name, setting.name, setting.size, bounded, last))
-    return measurements, ""
+        timed.append(_Timed(family.name, setting, bounded, times))
+    return timed, ""
 
 
-def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, float]:
-    """Run a setting several times: the result, and the shortest processor time [s].
+def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, list[float]]:
+    """Run a setting several times: the result, and the processor times [s].
 
     Other programs hardly influence the processor time; all runs are in one thread.
     """
@@ -298,7 +353,7 @@ def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, float]
         cpu_start = process_time()
         result = setting.run(start + rest)
         times.append(process_time() - cpu_start)
-    return result, min(times)
+    return result, times
 
 
 def remaining_budget(budget: float, start: float) -> float:
