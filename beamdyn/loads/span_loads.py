@@ -169,7 +169,7 @@ class SpanLoads(JudgedByRepeating):
     @property
     def judged_quantity(self) -> str:
         """The quantity of which the model error is stated: the first of these that is not 0 or unknown."""
-        sizes = {name: np.nanmax(np.abs(self.values(name)), initial=0.0) for name in _JUDGED}
+        sizes = {name: np.nan_to_num(np.abs(self.values(name))).max(initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 
     @property
@@ -178,8 +178,9 @@ class SpanLoads(JudgedByRepeating):
         return f"the largest {self.judged_quantity}"
 
     def judged(self, found: SpanLoads) -> np.ndarray:
-        """The largest value of the `judged_quantity`: shape ()."""
-        return np.array(abs(found.largest(self.judged_quantity).value))
+        """The largest value of the `judged_quantity`, nan where none is known: shape ()."""
+        known = np.isfinite(found.values(self.judged_quantity)).any()
+        return np.array(abs(found.largest(self.judged_quantity).value) if known else np.nan)
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:

@@ -61,7 +61,7 @@ class JudgedByRepeating(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the values that are `judged`, by the effects left out."""
-        if self.again is None:
+        if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene)
         return left_out_by_solving(self.scene, self.solve)
 

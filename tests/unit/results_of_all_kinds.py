@@ -6,7 +6,7 @@ import importlib
 import pkgutil
 import tomllib
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -76,6 +76,7 @@ BASES = {
     "PlanarAnswer",
     "OfChosenPhysics",
     "StatesModelError",
+    "JudgedByRepeating",
     "TellsKinds",
     "SpanLoads",
     "SlidesOrLocks",
@@ -119,7 +120,8 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "SettingAngleLimits": lambda: bd.setting_angle_limits(HARVESTER, 400.0),
     "ShoeMotion": lambda: BENDIX.move_shoes(5e-4),
     "ShoeResult": lambda: made("BrakeResult").shoes[0],
-    "Spread": lambda: bd.spread(HARVESTER, {"beam.thickness": "+-2%"}, samples=128, modes=1, speed=50.0),
+    "SceneSpread": lambda: bd.spread(HARVESTER, {"beam.thickness": "+-2%"}, samples=128, modes=1, speed=50.0),
+    "Spread": lambda: bd.Spread(*(getattr(made("SceneSpread"), each.name) for each in fields(bd.Spread))),
     "StaticLoads": lambda: bd.static_loads(HARVESTER, [0.0, 50.0]),
     "SteadyLoads": lambda: bd.steady_loads(made("SteadyResponse"), at=[0.0, 0.025]),
     "SteadyResponse": lambda: bd.steady_response(SHORT_SPIN_UP, np.linspace(45.0, 50.0, 5), 2),
