@@ -131,8 +131,8 @@ class FrequencyResponse(JudgedByRepeating):
         return plot_frequency_response(curves, value, labels, ax)
 
 
-@repeatable
 @announced_of_plain_beam
+@repeatable
 def frequency_response(
     scene: Scene,
     speed: float,

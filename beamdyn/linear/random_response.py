@@ -138,8 +138,8 @@ class RandomResponse(JudgedByRepeating):
         return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
 
 
-@repeatable
 @announced_of_plain_beam
+@repeatable
 def random_response(
     scene: Scene,
     speed: float,

@@ -184,8 +184,8 @@ class RandomLoads(SpanLoads):
         return values[:, self.outputs.places[quantity]]
 
 
-@repeatable
 @announced_of_plain_beam
+@repeatable
 def random_loads(
     scene: Scene,
     speed: float,

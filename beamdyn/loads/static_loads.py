@@ -73,8 +73,8 @@ class StaticLoads(SpanLoads):
     case: ClassVar[LoadCase] = SPEEDS
 
 
-@repeatable
 @announced
+@repeatable
 def static_loads(
     scene: Scene,
     speeds: float | Sequence[float] | np.ndarray = 0.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import sys
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar, ParamSpec, TypeVar
@@ -109,7 +110,10 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
         (_, source), *others = signature.bind(*given, **named).arguments.items()
         options = dict(others)
         options |= options.pop("options", {})  # of `solve_ivp`
-        vars(result)["again"] = functools.partial(_repeat, repeatable_analysis, source, options)
+        public = vars(sys.modules[analysis.__module__])[
+            analysis.__name__
+        ]  # with all decorators: it is pickled
+        vars(result)["again"] = functools.partial(_repeat, public, source, options)
         return result
 
     return repeatable_analysis

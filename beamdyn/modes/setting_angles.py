@@ -94,8 +94,8 @@ class SettingAngleLimits(JudgedByRepeating):
         return iter((self.first, self.second))
 
 
-@repeatable
 @announced_of_plain_beam
+@repeatable
 def setting_angle_limits(
     scene: Scene,
     top_speed: float,

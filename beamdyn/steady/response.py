@@ -236,8 +236,8 @@ class SteadyResponse(StatesModelError):
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)
 
 
-@repeatable
 @announced
+@repeatable
 def steady_response(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],

@@ -14,6 +14,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, check_used, kind, one_of
 from beamdyn.common.parallel.tasks import Progress
 from beamdyn.common.results.announced import announced, unannounced
+from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.first_order import KnownDerivatives
 from beamdyn.common.spreading.result import Spread
@@ -118,6 +119,11 @@ class SceneSpread(Spread, StatesModelError):
     def scene(self) -> Scene:
         """The scene, with the nominal design."""
         return self.question.scene
+
+    @property
+    def display_units(self) -> DisplayUnits:
+        """Units of its tables and columns: SI, as for brakes, unless `in_units` gave others."""
+        return vars(self).get("_display_units") or SI_UNITS
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 
-@repeatable
 @announced
+@repeatable
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def simulate(
     scene: Scene,

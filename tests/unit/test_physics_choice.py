@@ -323,11 +323,18 @@ def test_a_critical_speed_is_chosen_for_by_those_with_each_effect() -> None:
 
 def test_what_does_not_choose_takes_the_plain_beam_and_says_so() -> None:
     scene = bd.Scene(STOCKY, INWARD, physics="auto")
-    limits, bounds = bd.setting_angle_limits(scene, 100.0), bd.frequency_bounds(scene, 10.0)
-    plain = replace(scene, physics=bd.Physics())
-    assert limits.first == bd.setting_angle_limits(plain, 100.0).first
+    bounds, plain = bd.frequency_bounds(scene, 10.0), replace(scene, physics=bd.Physics())
     np.testing.assert_array_equal(bounds.lower, bd.frequency_bounds(plain, 10.0).lower)
-    assert all("that of the plain beam" in result.warnings[0] for result in (limits, bounds))
+    assert "that of the plain beam" in bounds.warnings[0]
+
+
+def test_limits_and_loads_choose_for_the_straight_beam() -> None:
+    scene = bd.Scene(STOCKY, INWARD, physics="auto")
+    for found in (bd.setting_angle_limits(scene, 100.0), bd.static_loads(scene, 100.0, at=[0.0])):
+        assert found.physics_choice is not None
+        given = replace(scene, physics=found.physics_choice.physics)
+        assert not given.physics.large_deflection
+    assert bd.static_loads(given, 100.0, at=[0.0]).strain == pytest.approx(found.strain, rel=1e-12)
 
 
 def test_terms_are_those_of_the_plain_beam_and_say_that_analyses_choose() -> None:

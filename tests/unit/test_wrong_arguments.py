@@ -124,16 +124,17 @@ CALLS = {
     ),
     "backbone": (
         bd.backbone,
-        {"scene": SCENE, "speed": 5.0, "mode": 1, "discretization": "ritz"},
+        {"scene": SCENE, "speed": 5.0, "mode": 1, "discretization": "ritz", "tolerance": 1e-3},
     ),
     "setting_angle_limits": (
         bd.setting_angle_limits,
-        {"scene": SCENE, "top_speed": 100.0, "discretization": "ritz"},
+        {"scene": SCENE, "top_speed": 100.0, "discretization": "ritz", "tolerance": 1e-3},
     ),
     "frequency_bounds": (bd.frequency_bounds, {"scene": SCENE, "speed": 5.0, "modes": 2}),
     "resonance_speeds": (
         bd.resonance_speeds,
-        {"scene": MOVING, "top_speed": 100.0, "modes": 2, "order": 1, "discretization": "ritz"},
+        {"scene": MOVING, "top_speed": 100.0, "modes": 2, "order": 1, "discretization": "ritz"}
+        | {"tolerance": 1e-3},
     ),
     "steady_response": (
         bd.steady_response,
@@ -148,7 +149,7 @@ CALLS = {
     "static_loads": (
         bd.static_loads,
         {"scene": SCENE, "speeds": 5.0, "at": [0.0], "points": [(0.0, 0.0)], "angle": 0.1}
-        | {"youngs_modulus": 1e9, "discretization": "ritz"},
+        | {"youngs_modulus": 1e9, "discretization": "ritz", "tolerance": 1e-3},
     ),
     "transient_loads": (
         bd.transient_loads,
@@ -209,12 +210,13 @@ CALLS = {
     ),
     "matrices": (
         bd.matrices,
-        {"scene": SCENE, "speed": 5.0, "modes": 2, "discretization": "ritz", "inputs": ["bending"]},
+        {"scene": SCENE, "speed": 5.0, "modes": 2, "discretization": "ritz", "inputs": ["bending"]}
+        | {"tolerance": 1e-3},
     ),
     "state_space": (
         bd.state_space,
         {"scene": SCENE, "speed": 5.0, "inputs": ["bending"], "outputs": ["tip"], "modes": 2}
-        | {"discretization": "ritz"},
+        | {"discretization": "ritz", "tolerance": 1e-3},
     ),
     "frequency_response": (
         bd.frequency_response,
@@ -245,7 +247,7 @@ CALLS = {
     "crossing_sensitivities": (
         bd.crossing_sensitivities,
         {"scene": MOVING, "top_speed": 60.0, "modes": 2, "inputs": ["beam.length"], "order": 1}
-        | {"discretization": "ritz"},
+        | {"discretization": "ritz", "tolerance": 1e-3},
     ),
     "terms": (bd.terms, {"scene": MOVING}),
     "tradeoff": (
