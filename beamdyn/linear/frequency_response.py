@@ -202,13 +202,13 @@ def frequency_response(
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
 
     def evaluate(model: ModelAtSpeed) -> np.ndarray:
+        check_stable(model)
         return transfer(model, drive, seen, given)[1]
 
     top = _TURN * float(given[-1]) + abs(speed)
     refined: Refined = evaluate_accurately(
         with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
     )
-    check_stable(refined.model)
     harmonics, _ = transfer(refined.model, drive, seen, given[:1])
     band = float(given[0]), float(given[-1])
     if not np.isfinite(refined.value).all():

@@ -208,6 +208,7 @@ def _solve(
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     """Coordinates (C, n) in equilibrium: K (C, n, n) must be positive definite."""
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
+    size[size == 0] = 1.0  # of a function that nothing holds
     scaled = K / (size[:, :, None] * size[:, None, :])
     least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
     if (lost := least <= _SINGULAR).any():

@@ -15,6 +15,7 @@ from time import perf_counter
 
 import numpy as np
 
+from beamdyn.accuracy.margins import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
@@ -155,7 +156,7 @@ def backbone(
         mode=mode,
         frequency=float(s.imag / (2 * np.pi)),
         coefficient=k,
-        error=abs(k - coarse) + abs(k - found[0].coefficient(SMALL)),
+        error=SLOW_BASES.factor * abs(k - coarse) + abs(k - found[0].coefficient(SMALL)),
         warnings=tuple(found[0].warnings()),
         provenance=provenance_of(solution, start),
         scene=scene,

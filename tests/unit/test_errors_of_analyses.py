@@ -158,3 +158,20 @@ def test_a_loose_response_takes_fewer_functions(tolerance):
     assert loose.provenance.method != exact.provenance.method
     peaks = loose.peaks.bandwidth - exact.peaks.bandwidth
     assert (np.abs(peaks) <= loose.peaks.bandwidth_error + exact.peaks.bandwidth_error).all()
+
+
+@pytest.mark.parametrize(
+    ("analysis", "said"),
+    [
+        (lambda scene: bd.static_loads(scene, 0.0), "turns freely about its root"),
+        (lambda scene: bd.frequency_response(scene, 0.0, [10.0]), "turns freely about its root"),
+    ],
+)
+def test_a_free_hinge_at_rest_is_refused_in_words(analysis, said):
+    section = {"second_bending_stiffness": 1.0, "shear_stiffness": 1e4, "second_shear_stiffness": 1e4}
+    inertia = {"rotary_inertia": 1e-6, "second_rotary_inertia": 1e-6}
+    beam = bd.Beam.from_stiffness(0.5, 0.1, 1.0, **section, **inertia)
+    physics = bd.Physics(planes=2, shear=True, rotary_inertia=True)
+    hinged = bd.Mount(0.0, 0.0, math.pi / 2, second_root_stiffness=0.0)
+    with pytest.raises((ValueError, ArithmeticError), match=said):
+        analysis(bd.Scene(beam, hinged, physics=physics, damping_ratio=0.01))
