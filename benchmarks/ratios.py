@@ -11,6 +11,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from statistics import median
 from time import perf_counter
@@ -91,6 +92,28 @@ def compare_import() -> Iterator[Row]:
     yield f"{' over '.join(IMPORTS)}, least of {RUNS}", f"{first / scipy_linalg:.2f}", "1.5"
 
 
+def compare_start() -> Iterator[Row]:
+    """A command on a file, over the import of scipy.linalg, each in fresh processes."""
+    command = [sys.executable, "-m", "beamdyn", "modes", "examples/tyre_harvester.toml"]
+    programs = [command, [sys.executable, "-c", IMPORTS["import scipy.linalg"]]]
+    runs = [
+        [time_once(lambda p=p: subprocess.run(p, check=True, stdout=subprocess.DEVNULL)) for p in programs]
+        for _ in range(RUNS)
+    ]
+    start, scipy_linalg = np.min(runs, axis=0)
+    yield f"beamdyn modes FILE over import scipy.linalg, least of {RUNS}", f"{start / scipy_linalg:.2f}", "3"
+
+
+def compare_tolerances() -> Iterator[Row]:
+    """A frequency response at a loose tolerance, over one at a tight one."""
+    scene, frequencies = replace(STEADY_ROLLING, damping_ratio=0.01), np.linspace(1.0, 2000.0, 200)
+    loose, tight = (
+        best_time(lambda t=t: bd.frequency_response(scene, 50.0, frequencies, tolerance=t))
+        for t in (1e-2, 1e-9)
+    )
+    yield "frequency response at 200 frequencies, tolerance 1e-2 over 1e-9", f"{loose / tight:.2f}", "0.4"
+
+
 def time_once(action: Callable[[], object]) -> float:
     """Wall time of a call [s]."""
     start = perf_counter()
@@ -98,7 +121,15 @@ def time_once(action: Callable[[], object]) -> float:
     return perf_counter() - start
 
 
-PARTS = compare_transients, compare_sweeps, compare_steady, compare_record, compare_import
+PARTS = (
+    compare_transients,
+    compare_sweeps,
+    compare_steady,
+    compare_record,
+    compare_import,
+    compare_start,
+    compare_tolerances,
+)
 
 
 def main() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -23,7 +23,7 @@ from beamdyn.modes.modal.discretization_choice import (
     most_modes,
 )
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.model_error.effect_choice import LARGE_BENDING, NOTHING_BARRED, choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -32,8 +32,10 @@ _STRAIGHT = "linear models are those about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
 
-def check_linear(scene: Scene, speed: float, modes: int | None) -> tuple[Scene, float]:
-    """The scene with its physics chosen, and the speed [rad/s].
+def check_linear(
+    scene: Scene, speed: float, modes: int | None, barred: Mapping[str, str] = NOTHING_BARRED
+) -> tuple[Scene, float]:
+    """The scene with its physics chosen, without effects that are barred, and the speed [rad/s].
 
     Raises
     ------
@@ -45,7 +47,7 @@ def check_linear(scene: Scene, speed: float, modes: int | None) -> tuple[Scene, 
     check_speeds(speed, "speed")
     if modes is not None:
         count("modes", modes, remedy=_OR_ALL)
-    scene = choose_physics(scene, [speed], modes or _MODES, straight=_STRAIGHT)
+    scene = choose_physics(scene, [speed], modes or _MODES, barred={LARGE_BENDING: _STRAIGHT} | dict(barred))
     if scene.physics.large_deflection:
         remedy = "leave large_deflection out"
         raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)

@@ -42,6 +42,7 @@ from beamdyn.linear.free_motion import FreeMotion
 from beamdyn.linear.inputs_outputs import BaseMotion, Excitation, Observation, StrainAtRoot
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, SpectrumPiece
+from beamdyn.scene.scene import Scene
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _NEAR = 1.5  # distance of a pole from a piece, over its length, below which it is integrated apart
@@ -143,6 +144,17 @@ def pole_integrals(
     return PoleIntegrals(whole, by_pole)
 
 
+def check_damped(scene: Scene) -> None:
+    """Refuse a scene without any damping, of which the mean square grows without limit."""
+    if not scene.is_damped:
+        raise _undamped(scene)
+
+
+def _undamped(scene: Scene) -> InvalidValue:
+    bound = "a mode is not damped, and its mean square grows without limit"
+    return InvalidValue("damping_ratio", scene.damping_ratio, bound, "such as 0.01")
+
+
 def damped_motion(model: ModelAtSpeed) -> FreeMotion:
     """Free motion of a model of which every mode decays.
 
@@ -153,8 +165,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
     """
     inverse = model.free_motion.inverse_poles
     if (np.real(inverse) > -_UNDAMPED * np.abs(inverse)).any():
-        bound = "a mode is not damped, and its mean square grows without limit"
-        raise InvalidValue("damping_ratio", model.scene.damping_ratio, bound, "such as 0.01")
+        raise _undamped(model.scene)
     return model.free_motion
 
 

@@ -27,6 +27,7 @@ from beamdyn.linear.inputs_outputs import (
 from beamdyn.linear.mean_square import (
     ParametricTerm,
     PartialFractions,
+    check_damped,
     damped_motion,
     parametric_term,
     partial_fractions,
@@ -208,6 +209,7 @@ def random_response(
     start = perf_counter()
     seen = as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+    check_damped(scene)
     drive, spectrum = random_input(scene, speed, psd, input)
     if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"

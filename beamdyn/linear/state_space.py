@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.signal import StateSpace, lti
@@ -23,7 +24,7 @@ _MODES = 6  # number of modes by default
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 
 
-class StateSpaceWithErrors(StateSpace, lti):
+class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatibleMethodOverride]
     """A `scipy.signal.StateSpace` that states its errors; systems that scipy makes of it do not.
 
     Attributes
@@ -136,7 +137,8 @@ def state_space(
     rows = [model.row(each) for each in observed]
     C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
     correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
-    system = StateSpaceWithErrors(A, B, C, np.array([r.acceleration @ of_load for r in rows]) + correction)
+    D = np.array([r.acceleration @ of_load for r in rows]) + correction
+    system: Any = StateSpaceWithErrors(A, B, C, D)  # pyright: ignore[reportAbstractUsage]
     system.scene, system.speed, system.error = scene, speed, pole_errors(model)
     return system
 

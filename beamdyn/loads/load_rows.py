@@ -24,6 +24,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import FieldEquations
@@ -34,6 +35,9 @@ from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import weight_degree
+
+STRAIGHT = "loads along the span of a beam with large deflection are not computed"
+_OF_TAPERED = "loads along the span are known with it where the width is constant"
 
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
 
@@ -224,14 +228,20 @@ def _across_deflected_axis(
     return replace(rows, position=position)
 
 
+def barred_of_loads(scene: Scene) -> dict[str, str]:
+    """Names of effects with which loads along the span are not known, and why."""
+    section = scene.beam.section
+    tapered = section is not None and section.width.degree
+    return {LARGE_DEFLECTION.name: STRAIGHT} | ({CAMBER.name: _OF_TAPERED} if tapered else {})
+
+
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
     bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
     if scene.physics.camber and scene.beam.section is not None and scene.beam.section.width.degree:
-        of_width = "loads along the span are known with it where the width is constant"
         instead = 'it was chosen by "auto": give the physics without it'
         raise InvalidValue(
-            "physics.camber", True, of_width, remedy if scene.physics_choice is None else instead
+            "physics.camber", True, _OF_TAPERED, remedy if scene.physics_choice is None else instead
         )
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)

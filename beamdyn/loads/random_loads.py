@@ -14,9 +14,10 @@ from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.linear.convergence import check_linear, with_forces
 from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
-from beamdyn.linear.mean_square import ParametricTerm, parametric_term, partial_fractions
+from beamdyn.linear.mean_square import ParametricTerm, check_damped, parametric_term, partial_fractions
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, RoadRoughness, random_input, warn_of_band
+from beamdyn.loads.load_rows import barred_of_loads
 from beamdyn.loads.load_statistics import (
     InputAndOutputs,
     LoadFractions,
@@ -248,7 +249,10 @@ def random_loads(
     (1, 2)
     """
     duration = positive("duration", duration, "s")
-    scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
+    scene, speed = check_linear(
+        scene, speed, modes if isinstance(modes, int) else None, barred_of_loads(scene)
+    )
+    check_damped(scene)
     drive, spectrum = random_input(scene, speed, psd, input)
     if not isinstance(spectrum, PowerSpectrum):  # a cut moves with the input at once
         bound = "mean squares of loads by white noise are not finite"

@@ -15,6 +15,7 @@ from beamdyn.common.plots.curves import plot_along_span
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.equations.effects import modelled_directions
+from beamdyn.loads.load_rows import STRAIGHT
 from beamdyn.loads.stations import (
     UNITS,
     Positions,
@@ -31,7 +32,6 @@ from beamdyn.scene.validity import warn_of_elastic_limit
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-STRAIGHT = "loads along the span of a beam with large deflection are not computed"
 REMEDIES = {
     "strain": "give the beam an outer_fibre, or points of the section",
     "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",

@@ -6,6 +6,7 @@ import functools
 import inspect
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar, ParamSpec, TypeVar
 
@@ -24,6 +25,9 @@ Arguments = ParamSpec("Arguments")
 Answer = TypeVar("Answer")
 
 BY_FREQUENCY = "by the first frequency"
+_LOADED = "the file of this result does not hold it: ask for it before saving"
+_NOTHING = "there is no value that it could change"
+_STRAIGHT = {"large_deflection": False, "branch": "straight"}
 
 
 class JudgedByRepeating(StatesModelError):
@@ -63,8 +67,11 @@ class JudgedByRepeating(StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the values that are `judged`, by the effects left out."""
         if self.again is None or not np.isfinite(self.judged(self)).any():
-            return nothing_known(self.scene)
-        return left_out_by_solving(self.scene, self.solve)
+            return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
+        found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
+        if reason := found.not_known.get(name):  # in two planes, or at an oblique angle
+            found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
+        return replace(found, counted=self.counted or found.counted)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
         """Values of a scene with the effect of a name; by large deflection as far as the analysis allows."""
@@ -78,20 +85,35 @@ class JudgedByRepeating(StatesModelError):
             return SolvedValues(np.full(own.shape, np.nan), reason_of(error))
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
-                return self._by_frequency(own, refusal.bound)
+                straight = replace(scene, physics=replace(scene.physics, **_STRAIGHT))
+                return self.bent_values(self.solve(straight, "").values, refusal.bound)
             if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound it
                 return self.solve(without_camber(self.scene), name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
 
-    def _by_frequency(self, own: np.ndarray, reason: str) -> SolvedValues:
-        """Values with large deflection, by the first frequency: they are the same where nothing bends."""
+    def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
+        """Values with large deflection, by the first frequency; nan, and why, if they do not follow that.
+
+        They are those of the straight beam where rotation does not bend it.
+        """
         effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
         name = LARGE_DEFLECTION.name
         change = float(effects.changes[name][0])
         if change and not self.follows_stiffness:
-            return SolvedValues(np.full(own.shape, np.nan), reason)
+            return SolvedValues(np.full(straight.shape, np.nan), reason)
         note = BY_FREQUENCY if change else ""
-        return SolvedValues(own / (1 + change) ** 2, effects.not_known.get(name, ""), note)
+        return SolvedValues(straight / (1 + change) ** 2, effects.not_known.get(name, ""), note)
+
+
+def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
+    """The changes with that of an effect that was not known, if it is now."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = bent.values / own - 1
+    if not np.isfinite(change).all():
+        return found
+    others = {other: why for other, why in found.not_known.items() if other != name}
+    assumed = found.assumed | ({name: bent.assumed} if bent.assumed else {})
+    return replace(found, changes=found.changes | {name: change}, not_known=others, assumed=assumed)
 
 
 def left_out_of_frequencies(scene: Scene, speed: float, modes: int) -> LeftOutEffects:

@@ -106,7 +106,7 @@ class Beam(FieldsOnly, OneLine):
             raise InvalidValue("twist", self.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
         if self.warping_stiffness is not None and self.torsion_stiffness is None:
             bound, remedy = "warping needs {other} as well", "give both, or neither"
-            value = float(self.warping_stiffness(0.0))
+            value = float(self.warping_stiffness(np.zeros(1))[0])
             raise InvalidValue(
                 "warping_stiffness",
                 value,

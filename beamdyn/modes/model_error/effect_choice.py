@@ -10,9 +10,10 @@ that leaves less out is taken.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from time import perf_counter
+from types import MappingProxyType
 
 import numpy as np
 
@@ -35,13 +36,14 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 
+NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
 _SMALL = 0.1  # share of the tolerance below which no effect is added
 _SOLVED = 0.1  # share of the tolerance to which the modes are solved that the effects change
 _MODES = 3  # modes of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
-_BENDING = LARGE_DEFLECTION.name
+LARGE_BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
 
@@ -77,7 +79,7 @@ def choose_physics(
     speeds: np.ndarray | Sequence[float],
     modes: int,
     tolerance: float | None = None,
-    straight: str = "",
+    barred: Mapping[str, str] = NOTHING_BARRED,
 ) -> Scene:
     """Choose the physics of a scene where it is "auto", by the frequencies at some speeds.
 
@@ -91,8 +93,8 @@ def choose_physics(
         Number of modes.
     tolerance : float, optional
         Relative change of a frequency that may be left out; 1e-3 if not given.
-    straight : str
-        Why the analysis cannot do with large deflection; empty if it can.
+    barred : mapping of str to str
+        Names of effects that the analysis cannot do with, and why.
 
     Returns
     -------
@@ -125,7 +127,7 @@ def choose_physics(
         return solve(candidate).model.solver.size
 
     undamped = scene.undamped  # damped modes take long to find, and change alike
-    chosen = choose_by(undamped, judge, count, tolerance, some, straight)
+    chosen = choose_by(undamped, judge, count, tolerance, some, barred)
     return replace(chosen, damping_ratio=scene.damping_ratio, damping=scene.damping)
 
 
@@ -166,13 +168,13 @@ def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, r
         counted = np.abs(change[np.broadcast_to(counts, change.shape)])
         sizes[name] = float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
     sizes |= {name: math.nan for name in effects.not_known if name not in sizes}
-    if _BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[_BENDING])):
-        sizes[_BENDING] = rough
+    if LARGE_BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[LARGE_BENDING])):
+        sizes[LARGE_BENDING] = rough
     additions, _, _ = list_effects(scene)
     assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
     addable = {a.name for a in additions} - assumed.keys()
-    if effects.not_known.get(_BENDING) not in EXCLUDED:
-        addable.add(_BENDING)
+    if effects.not_known.get(LARGE_BENDING) not in EXCLUDED:
+        addable.add(LARGE_BENDING)
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return EffectSizes(sizes, nothing | assumed | refused)
@@ -200,8 +202,8 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
         return None
-    sizes = {effect.name: effect.size for effect in choice.effects} | {_BENDING: size}
-    kept = (_BENDING, *(name for name in choice.included if NAMED[name].bends))
+    sizes = {effect.name: effect.size for effect in choice.effects} | {LARGE_BENDING: size}
+    kept = (LARGE_BENDING, *(name for name in choice.included if NAMED[name].bends))
     lost = sum(sizes[name] for name in choice.included if name not in kept)
     try:
         bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
@@ -290,13 +292,18 @@ class _Candidate:
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
             size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
-            rough = other == _BENDING and other in judged.reasons
+            rough = other == LARGE_BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons, judged.strained)
 
 
 def choose_by(
-    scene: Scene, judge: Judge, solve: Solve, tolerance: float, speeds: np.ndarray, straight: str = ""
+    scene: Scene,
+    judge: Judge,
+    solve: Solve,
+    tolerance: float,
+    speeds: np.ndarray,
+    barred: Mapping[str, str] = NOTHING_BARRED,
 ) -> Scene:
     """Choose the physics by any answer.
 
@@ -312,8 +319,8 @@ def choose_by(
         Relative change that may be left out.
     speeds : ndarray
         Speeds [rad/s] at which the effects are judged.
-    straight : str
-        Why the analysis cannot do with large deflection; empty if it can.
+    barred : mapping of str to str
+        Names of effects that the analysis cannot do with, and why.
 
     Returns
     -------
@@ -323,17 +330,17 @@ def choose_by(
     plain = plain_physics(scene)
     judged = judge(plain)
     start = _Candidate(plain, {}, judged.sizes, judged.reasons, judged.strained)
-    if straight:
-        start = start.without(_BENDING, straight)
-    best = _grow(start, judge, tolerance, {_BENDING})
-    needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
+    for name, why in barred.items():
+        start = start.without(name, why)
+    best = _grow(start, judge, tolerance, {LARGE_BENDING})
+    needed = start.addable().get(LARGE_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
+            bent = start.add(LARGE_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
             best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
-            best = best.without(_BENDING, reason_of(error))
+            best = best.without(LARGE_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
 
 
@@ -392,10 +399,10 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
         return ""
     if name in best.reasons:
         return best.reasons[name]
-    if _BENDING in best.included and not NAMED[name].bends:
+    if LARGE_BENDING in best.included and not NAMED[name].bends:
         return EXCLUSIVE
     others = ", ".join(n for n in best.included if not NAMED[n].bends)
-    return f"it cannot be combined with {others}" if name == _BENDING and others else ""
+    return f"it cannot be combined with {others}" if name == LARGE_BENDING and others else ""
 
 
 def _cost(scene: Scene, solve: Solve) -> np.ndarray:

@@ -229,11 +229,12 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     return _gather(model.scene, base.scene, change, bent, reason)
 
 
-def nothing_known(scene: Scene) -> LeftOutEffects:
-    """The effects that a scene leaves out, where there is no value that they could change."""
+def nothing_known(scene: Scene, reason: str = "") -> LeftOutEffects:
+    """The effects that a scene leaves out, where there is no value that they could change, and why."""
     additions, not_known, not_modelled = list_effects(_straightened(scene))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
+    not_known = dict.fromkeys(unchanged if reason else (), reason) | not_known
     return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import set_fields
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import plain
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, joined
 from beamdyn.common.words import Words
 from beamdyn.scene.physics import OfChosenPhysics
@@ -93,6 +94,8 @@ class LeftOutEffects:
         Modes of the body that the model does not have, below the highest that it lists.
     reversals : dict of str to str
         Effects by which a mode that vibrates diverges, or the other way round, and which of the two.
+    counted : str
+        What the last axis of the values counts.
     """
 
     changes: dict[str, np.ndarray]
@@ -103,6 +106,7 @@ class LeftOutEffects:
     shape: tuple[int, ...] = ()
     unlisted: tuple[UnlistedMode, ...] = ()
     reversals: dict[str, str] = field(default_factory=dict)
+    counted: str = field(default="mode", metadata=ADDED_LATER)
 
     @property
     def total(self) -> np.ndarray:
@@ -121,7 +125,7 @@ class LeftOutEffects:
 
     def at(self, index: Any) -> LeftOutEffects:
         """Select the changes of some of the values."""
-        changes = {name: change[index] for name, change in self.changes.items()}
+        changes = {name: np.asarray(change[index]) for name, change in self.changes.items()}
         first = (
             index[0] if isinstance(index, tuple) else index
         )  # of the speeds, where modes are the last axis
@@ -130,18 +134,19 @@ class LeftOutEffects:
 
     # In words -----------------------------------------------------------------------------------------
 
-    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
+    def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
         """One line: the largest change by each effect, what is not known, and what is not modelled.
 
         Parameters
         ----------
-        what : str
-            What the last axis of the values counts; "" where there is one value.
+        what : str, optional
+            What the last axis of the values counts, in place of `counted`; "" where there is one value.
         where : str
             Where the values hold, said first: "at 100 rad/s".
         speeds : ndarray, optional
             Speeds [rad/s] of the first axis: what holds elsewhere than `where` is said with its own.
         """
+        what = self.counted if what is None else what
         parts: list[str] = [
             joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
         ]
@@ -258,7 +263,7 @@ def say_size(size: float) -> str:
 class NotJudged(LeftOutEffects):
     """Stands for what the effects left out would change where that takes long and was not asked for."""
 
-    def sentence(self, what: str = "mode", where: str = "", speeds: np.ndarray | None = None) -> Words:
+    def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
         """Say how it is asked for."""
         return Words(
             "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."

@@ -23,7 +23,7 @@ from typing import Generic, TypeAlias, TypeVar
 import numpy as np
 import scipy.linalg
 
-from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.modal.model import Model
@@ -337,7 +337,12 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
         bound = "a point mass or spring at the tip, or where a section jumps, would leave its place"
         raise InvalidValue(name, value, bound, "move both")
-    return steady_pencils(Model(scene, model.discretization), model.equations.coarse)
+    nearby = Model(scene, model.discretization)
+    if nearby.equations.size != model.equations.size:
+        remedy = 'give discretization="fem", or a Ritz of few functions'
+        bound = "its number of independent functions is not the same for nearby designs"
+        raise NoModelAnswer(f"discretization = {model.discretization}: {bound}; {remedy}")
+    return steady_pencils(nearby, model.equations.coarse)
 
 
 def steady_pencils(model: Model, coarse: np.ndarray | None) -> tuple[SteadyPencil, SteadyPencil]:

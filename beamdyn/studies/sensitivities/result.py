@@ -9,11 +9,13 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.modes.repeated import JudgedByRepeating
 from beamdyn.scene.beam import PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 _TOUCHING = 1e-6  # distance over the length at which a point stands beside another
 _STEP = 0.01  # step, as a share of a value or of the size of its kind
+_FURTHER = 2  # times as many modes, among which those of another scene are sought
+_SAME = 0.2  # relative distance up to which an answer may be the same one
 _NEAR = 0.8  # similarity of a mistyped name: all begin alike
 
 
@@ -210,6 +214,7 @@ class Sensitivities(JudgedByRepeating):
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
+    speed: float = field(default=0.0, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
         """Numbers of answers and inputs, and which input matters most, in one line; see `Result.headline`."""
@@ -240,17 +245,32 @@ class Sensitivities(JudgedByRepeating):
 
     def judged(self, found: Sensitivities) -> np.ndarray:
         """Derivative of each answer by the number that matters most, of which the error is stated: (k,)."""
-        named = zip(self.most_important, self.answers, strict=True)
-        known = found.answers
-        values = (
-            found.by(name)[known.index(answer)] if answer in known else np.nan for name, answer in named
-        )
-        return np.array([*values])
+        rows = {each.name: i for i, each in enumerate(found.inputs)}
+        most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
+        return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
+
+    def _same_answers(self, found: Sensitivities) -> np.ndarray:
+        """Index (k,) of the answer of another scene's result that is nearest to each one; -1 where none is.
+
+        Modes that an effect adds may stand between the others.
+        """
+        apart = np.abs(found.value / self.value[:, None] - 1)
+        near = np.where(np.isfinite(apart), np.minimum(apart, 1.0), 1.0)
+        rows, columns = linear_sum_assignment(near)
+        same = np.full(len(self.value), -1)
+        same[rows] = np.where(near[rows, columns] <= _SAME, columns, -1)
+        return same
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """The numbers that matter most, by which the analysis is repeated."""
-        return {"inputs": [*dict.fromkeys(self.most_important)]}
+        """The numbers that matter most, by which the analysis is repeated; modes may come between others."""
+        numbers = {"inputs": [*dict.fromkeys(self.most_important)]}
+        return numbers | ({"modes": _FURTHER * len(self.answers)} if self.unit == "Hz" else {})
+
+    @property
+    def bending_speed(self) -> float:
+        """Speed [rad/s] at which large deflection is judged: that of frequencies, or the largest found."""
+        return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:
         """Derivatives by the number of a name, shape (k,).

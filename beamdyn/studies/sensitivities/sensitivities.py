@@ -7,6 +7,7 @@ estimated as those of frequencies are, by the same derivatives of the coarser mo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
@@ -107,7 +108,8 @@ def frequency_sensitivities(
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
     warnings = (*found.warnings, *words, *changes.refusals)
-    return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
+    made = _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
+    return replace(made, speed=found.speed)
 
 
 @repeatable
