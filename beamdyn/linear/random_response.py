@@ -209,8 +209,8 @@ def random_response(
     start = perf_counter()
     seen = as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
-    check_damped(scene)
     drive, spectrum = random_input(scene, speed, psd, input)
+    check_damped(scene)
     if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")

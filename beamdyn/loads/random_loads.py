@@ -32,7 +32,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.points import ACROSS
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 if TYPE_CHECKING:
@@ -248,12 +248,13 @@ def random_loads(
     >>> found.rms("strain").shape
     (1, 2)
     """
+    check_scene(scene)
     duration = positive("duration", duration, "s")
     scene, speed = check_linear(
         scene, speed, modes if isinstance(modes, int) else None, barred_of_loads(scene)
     )
-    check_damped(scene)
     drive, spectrum = random_input(scene, speed, psd, input)
+    check_damped(scene)
     if not isinstance(spectrum, PowerSpectrum):  # a cut moves with the input at once
         bound = "mean squares of loads by white noise are not finite"
         raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
