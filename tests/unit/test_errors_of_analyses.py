@@ -59,7 +59,12 @@ ANALYSES = {
 }
 
 
-@pytest.mark.parametrize("name", ANALYSES)
+LONG = {"random loads", "sensitivities", "steady loads", "cycles"}  # the others show the same
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in ANALYSES]
+)
 def test_a_model_error_is_the_difference_of_two_answers(name):
     """Which are asked for one by one."""
     if name == "cycles":
@@ -93,7 +98,14 @@ def test_large_deflection_of_loads_is_that_of_the_bent_beam(speed):
     assert "roughly" in found.left_out_effects.assumed[LARGE]
 
 
-@pytest.mark.parametrize("name", ["response", "static loads", "limits", "sensitivities"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "static loads",
+        "limits",
+        *(pytest.param(n, marks=pytest.mark.slow) for n in ("response", "sensitivities")),
+    ],
+)
 def test_large_deflection_is_that_of_the_physics_given(name):
     """Not what leaving camber out would change."""
     found = ANALYSES[name](replace(INWARD, physics=WITH_CAMBER))
