@@ -25,7 +25,7 @@ Arguments = ParamSpec("Arguments")
 Answer = TypeVar("Answer")
 
 BY_FREQUENCY = "by the first frequency"
-_LOADED = "the file of this result does not hold it: ask for it before saving"
+_LOADED = "it, or what it was made of, was loaded from a file without it: ask for it before saving"
 _NOTHING = "there is no value that it could change"
 _STRAIGHT = {"large_deflection": False, "branch": "straight"}
 
@@ -132,10 +132,10 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
         (_, source), *others = signature.bind(*given, **named).arguments.items()
         options = dict(others)
         options |= options.pop("options", {})  # of `solve_ivp`
-        public = vars(sys.modules[analysis.__module__])[
-            analysis.__name__
-        ]  # with all decorators: it is pickled
-        vars(result)["again"] = functools.partial(_repeat, public, source, options)
+        # The function with all its decorators, which is found by name where it is pickled.
+        public = vars(sys.modules[analysis.__module__])[analysis.__name__]
+        if isinstance(source, Scene) or getattr(source, "again", None) is not None:  # none that was loaded
+            vars(result)["again"] = functools.partial(_repeat, public, source, options)
         return result
 
     return repeatable_analysis

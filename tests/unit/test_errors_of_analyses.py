@@ -184,6 +184,14 @@ def test_a_result_is_judged_after_it_was_pickled_and_loaded(tmp_path):
         assert loaded.to_json()
 
 
+def test_loads_of_a_loaded_run_are_not_judged_and_say_why(tmp_path):
+    bd.simulate(replace(INWARD, motion=ROLLING.motion), 0.3, modes=2).save(tmp_path / "run.json")
+    loads = bd.transient_loads(bd.load(tmp_path / "run.json"), at=[0.0])
+    assert np.isnan(loads.model_error)
+    assert "loaded from a file" in loads.left_out_effects.sentence()
+    assert loads.to_json()
+
+
 def test_a_run_from_coordinates_of_its_own_is_not_judged():
     run = bd.simulate(replace(INWARD, motion=ROLLING.motion), 0.3, modes=2, initial=np.zeros(4))
     assert np.isnan(bd.transient_loads(run, at=[0.0]).model_error)
