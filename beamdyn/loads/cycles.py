@@ -100,6 +100,16 @@ class LoadCycles(JudgedByRepeating):
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 
+    def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
+        """Largest range with large deflection, as the largest deflection of the run changes."""
+        assert self.loads is not None, "the result was made by count_cycles"
+        return self.loads.bent_values(straight, reason)
+
+    @property
+    def bending_speed(self) -> float:
+        """Largest speed of the run [rad/s]."""
+        return 0.0 if self.loads is None else self.loads.bending_speed
+
     def equivalent_range(self, exponent: float, cycles: float = 1.0) -> float:
         """Range of so many equal cycles that do the damage of these, by Miner's rule.
 

@@ -22,6 +22,7 @@ from beamdyn.loads.span_loads import (
     with_unit,
 )
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints
+from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.repeated import BY_FREQUENCY, repeatable
@@ -118,6 +119,15 @@ class TransientLoads(SpanLoads):
     def solve(self, scene: Scene, name: str) -> SolvedValues:
         """Largest value with an effect: by another run, or as its largest deflection changes."""
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
+
+    def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
+        """Values with large deflection, as the largest deflection of the run changes."""
+        return self.as_deflection(straight, LARGE_DEFLECTION.name) or SolvedValues(straight, reason)
+
+    @property
+    def bending_speed(self) -> float:
+        """Largest speed of the run [rad/s]."""
+        return find_speed_range(self.run.request.motion, self.run.path.end)[-1]
 
     def as_deflection(self, value: np.ndarray, name: str) -> SolvedValues | None:
         """A value with an effect that changes the run little, or large deflection; None with another."""

@@ -27,6 +27,7 @@ Answer = TypeVar("Answer")
 BY_FREQUENCY = "by the first frequency"
 _LOADED = "it, or what it was made of, was loaded from a file without it: ask for it before saving"
 _NOTHING = "there is no value that it could change"
+_LOWEST, _SMALL = 2, 1e-5  # lowest modes, and change of their frequencies up to which nothing is repeated
 _STRAIGHT = {"large_deflection": False, "branch": "straight"}
 
 
@@ -78,6 +79,8 @@ class JudgedByRepeating(StatesModelError):
         own = self.judged(self)
         if scene == self.scene or self.again is None:
             return SolvedValues(own)
+        if (change := self._small_changes.get(name)) is not None:
+            return SolvedValues(own / (1 + change) ** 2 if self.follows_stiffness else own, "", BY_FREQUENCY)
         try:
             with unannounced():
                 return SolvedValues(self.judged(self.again(scene, **self.as_far_as_judged)))
@@ -90,6 +93,13 @@ class JudgedByRepeating(StatesModelError):
             if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound it
                 return self.solve(without_camber(self.scene), name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
+
+    @cached_property
+    def _small_changes(self) -> dict[str, float]:
+        """Changes of the first frequency by effects that change the lowest frequencies hardly at all."""
+        changes = left_out_of_frequencies(self.scene, self.bending_speed, _LOWEST).changes
+        small = {name: each for name, each in changes.items() if np.abs(each).max() <= _SMALL}
+        return {name: float(each[0]) for name, each in small.items() if name != LARGE_DEFLECTION.name}
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
         """Values with large deflection, by the first frequency; nan, and why, if they do not follow that.

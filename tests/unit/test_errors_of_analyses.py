@@ -184,6 +184,16 @@ def test_a_result_is_judged_after_it_was_pickled_and_loaded(tmp_path):
         assert loaded.to_json()
 
 
+def test_large_deflection_of_a_run_in_two_planes_is_not_known():
+    """Nor that of its loads and cycles: rotation does not bend it, but its own motion does."""
+    pytest.importorskip("rainflow")
+    scene = replace(INWARD, motion=ROLLING.motion, physics=bd.Physics(planes=2))
+    loads = bd.transient_loads(bd.simulate(scene, 0.3, modes=2), at=[0.0])
+    for found in (loads, bd.count_cycles(loads)):
+        assert np.isnan(found.left_out[LARGE])
+        assert found.left_out_effects.not_known[LARGE] == "it is solved in one plane of bending"
+
+
 def test_loads_of_a_loaded_run_are_not_judged_and_say_why(tmp_path):
     bd.simulate(replace(INWARD, motion=ROLLING.motion), 0.3, modes=2).save(tmp_path / "run.json")
     loads = bd.transient_loads(bd.load(tmp_path / "run.json"), at=[0.0])
