@@ -21,9 +21,8 @@ from beamdyn.scene.sections import weight_degree
 _ACROSS = 8  # functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest number accepted
 MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
-_SHORTEST = 1e-5 * (
-    1 - 1e-9
-)  # shortest segment, as a fraction of the beam: rounding leaves shorter ones no digit
+# Shortest segment over the length, below which rounding leaves no digit, with a margin for its last digit.
+_SHORTEST = 1e-5 * (1 - 1e-9)
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
 # Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.

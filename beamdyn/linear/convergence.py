@@ -13,6 +13,7 @@ from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words
+from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
@@ -23,7 +24,7 @@ from beamdyn.modes.modal.discretization_choice import (
     most_modes,
 )
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.effect_choice import LARGE_BENDING, NOTHING_BARRED, choose_physics
+from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -47,7 +48,9 @@ def check_linear(
     check_speeds(speed, "speed")
     if modes is not None:
         count("modes", modes, remedy=_OR_ALL)
-    scene = choose_physics(scene, [speed], modes or _MODES, barred={LARGE_BENDING: _STRAIGHT} | dict(barred))
+    scene = choose_physics(
+        scene, [speed], modes or _MODES, barred={LARGE_DEFLECTION.name: _STRAIGHT} | dict(barred)
+    )
     if scene.physics.large_deflection:
         remedy = "leave large_deflection out"
         raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)
@@ -110,6 +113,7 @@ _FIRST = 4  # modes of the first basis of "auto"
 _ACCURATE = 8  # modes for which its functions are chosen by default, at least
 _MOST = 40  # most modes of the last refinement
 _OF_FREQUENCIES = 0.01  # error of frequencies over that of a response, which a resonance magnifies
+_DEFAULT = 1.001 * DEFAULT_TARGET  # target up to which models are the default ones: no last digit decides
 _FINER = 1e-3  # of the target, where the response has not met its tolerance
 _MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
 _ROUNDING = 1e-12  # rounding error, over the largest value
@@ -191,7 +195,7 @@ def evaluate_accurately(
         return target, _add_modes(few, tolerance, discretization, evaluate)
 
     def of_smaller_target(found: tuple[float, Refined]) -> tuple[float, Refined] | None:
-        smallest = not isinstance(discretization, str) or found[0] <= 1.001 * DEFAULT_TARGET
+        smallest = not isinstance(discretization, str) or found[0] <= _DEFAULT
         return None if smallest else of_target(_FINER * found[0])
 
     def meets(found: tuple[float, Refined]) -> bool:
@@ -204,7 +208,7 @@ def _model_up_to(
     scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
 ) -> ModelAtSpeed:
     """The model with functions for modes up to an angular frequency [rad/s], to a target, within limits."""
-    tolerance = target if target > 1.001 * DEFAULT_TARGET else None
+    tolerance = target if target > _DEFAULT else None
 
     def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
         return modes, model_of_few_modes(scene, speed, modes, discretization, tolerance)

@@ -18,10 +18,11 @@ from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
 from beamdyn.common.words import Named, Words
+from beamdyn.equations import effects
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
-from beamdyn.modes.model_error.effect_choice import LARGE_BENDING, choose_physics
+from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
@@ -157,7 +158,7 @@ def setting_angle_limits(
         top_speed = positive("top_speed", top_speed, "rad/s", remedy)
         check_speeds(top_speed, "top_speed")
     speeds = np.array([top_speed if bounded else 0.0])
-    chosen = choose_physics(scene, speeds, 1, tolerance, {LARGE_BENDING: _LINEAR})
+    chosen = choose_physics(scene, speeds, 1, tolerance, {effects.LARGE_DEFLECTION.name: _LINEAR})
     scene = replace(chosen.undamped, physics=replace(chosen.physics, stretch=False))
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)

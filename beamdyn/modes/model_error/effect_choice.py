@@ -43,7 +43,7 @@ _SOLVED = 0.1  # share of the tolerance to which the modes are solved that the e
 _MODES = 3  # modes of which a motion consists
 _SHORT = 0.2  # time [s] below which the shorter of two runs counts
 _ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
-LARGE_BENDING = LARGE_DEFLECTION.name
+_BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
 
@@ -168,13 +168,13 @@ def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, r
         counted = np.abs(change[np.broadcast_to(counts, change.shape)])
         sizes[name] = float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
     sizes |= {name: math.nan for name in effects.not_known if name not in sizes}
-    if LARGE_BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[LARGE_BENDING])):
-        sizes[LARGE_BENDING] = rough
+    if _BENDING in sizes and (rough == math.inf or not math.isfinite(sizes[_BENDING])):
+        sizes[_BENDING] = rough
     additions, _, _ = list_effects(scene)
     assumed = {a.name: f"it is estimated {a.assumed}" for a in additions if a.assumed}
     addable = {a.name for a in additions} - assumed.keys()
-    if effects.not_known.get(LARGE_BENDING) not in EXCLUDED:
-        addable.add(LARGE_BENDING)
+    if effects.not_known.get(_BENDING) not in EXCLUDED:
+        addable.add(_BENDING)
     refused = {name: why for name, why in effects.not_known.items() if name not in addable}
     nothing = {name: _NOTHING for name, size in sizes.items() if math.isnan(size)}
     return EffectSizes(sizes, nothing | assumed | refused)
@@ -202,8 +202,8 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
         return None
-    sizes = {effect.name: effect.size for effect in choice.effects} | {LARGE_BENDING: size}
-    kept = (LARGE_BENDING, *(name for name in choice.included if NAMED[name].bends))
+    sizes = {effect.name: effect.size for effect in choice.effects} | {_BENDING: size}
+    kept = (_BENDING, *(name for name in choice.included if NAMED[name].bends))
     lost = sum(sizes[name] for name in choice.included if name not in kept)
     try:
         bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
@@ -292,7 +292,7 @@ class _Candidate:
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
             size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
-            rough = other == LARGE_BENDING and other in judged.reasons
+            rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons, judged.strained)
 
@@ -332,15 +332,15 @@ def choose_by(
     start = _Candidate(plain, {}, judged.sizes, judged.reasons, judged.strained)
     for name, why in barred.items():
         start = start.without(name, why)
-    best = _grow(start, judge, tolerance, {LARGE_BENDING})
-    needed = start.addable().get(LARGE_BENDING, 0.0) > _SMALL * tolerance
+    best = _grow(start, judge, tolerance, {_BENDING})
+    needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(LARGE_BENDING, judge)  # with the effects that it is combined with
+            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
             best = min(best, bent, key=lambda candidate: candidate.model_error)
         except (InvalidValue, ArithmeticError) as error:
-            best = best.without(LARGE_BENDING, reason_of(error))
+            best = best.without(_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
 
 
@@ -399,10 +399,10 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
         return ""
     if name in best.reasons:
         return best.reasons[name]
-    if LARGE_BENDING in best.included and not NAMED[name].bends:
+    if _BENDING in best.included and not NAMED[name].bends:
         return EXCLUSIVE
     others = ", ".join(n for n in best.included if not NAMED[n].bends)
-    return f"it cannot be combined with {others}" if name == LARGE_BENDING and others else ""
+    return f"it cannot be combined with {others}" if name == _BENDING and others else ""
 
 
 def _cost(scene: Scene, solve: Solve) -> np.ndarray:
