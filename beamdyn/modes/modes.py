@@ -33,9 +33,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
-from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
@@ -127,6 +125,9 @@ class Modes(TellsKinds, StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of each frequency by the effects that the model leaves out (m,)."""
+        # Imported here, as few calls ask for it.
+        from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
+
         return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -280,6 +281,8 @@ def natural_modes(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     if scene.chooses_physics:
+        from beamdyn.modes.model_error.effect_choice import choose_physics  # few calls need it
+
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]

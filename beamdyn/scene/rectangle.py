@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.special import zeta
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.legendre import gauss_rule
@@ -24,6 +23,7 @@ _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
 _LONGEST_REACH = 0.7  # of the length
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
+_ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
 
@@ -150,7 +150,7 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
     """
     n = np.arange(1, 16, 2)[:, None, None]
     left = ((1 - np.tanh(n * np.pi * b / (2 * t))) / n**5).sum(axis=0)
-    return (1 - 192 / np.pi**5 * t / b * (31 / 32 * zeta(5) - left))[None]
+    return (1 - 192 / np.pi**5 * t / b * (31 / 32 * _ZETA_5 - left))[None]
 
 
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:

@@ -258,6 +258,17 @@ def test_help_loads_nothing_heavy():
     assert loaded & {"numpy", "scipy", "matplotlib", "pydantic", "pint", "skfem", "meshio"} == set()
 
 
+def test_a_file_in_common_units_is_answered_without_what_reads_uncommon_ones():
+    code = (
+        "import sys; from beamdyn.cli import main; main(['modes', 'examples/harvester_45deg.toml']); "
+        "print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert "numpy" in loaded
+    assert loaded & {"pint", "matplotlib", "skfem", "scipy.special", "scipy.optimize"} == set()
+
+
 @pytest.mark.parametrize("command", ["modes", "locus", "critical", "limits", "reproduce"])
 def test_help_describes_every_option(run, command):
     code, out, _ = run(command, "--help")

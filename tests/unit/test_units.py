@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.common.edge.units import quantity, show
+from beamdyn.common.edge.units import _COMMON, _convert, _parse, quantity, show, unit_as_written
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -155,3 +155,13 @@ def test_show_writes_toml(value, text):
 
 def test_show_is_short():
     assert len(show(["mm"] * 1000)) == 60
+
+
+@pytest.mark.parametrize(("unit", "given"), [(unit, given) for unit in _COMMON for given in _COMMON[unit]])
+@given(number=st.decimals(-1e6, 1e6, places=6))
+def test_common_units_are_those_of_pint(unit, given, number):
+    kind, wanted = _parse(given), _parse(unit)
+    assert quantity(f"{number:f} {given}", unit) == _convert(f"{number:f}", kind, wanted)  # to the last bit
+    assert unit_as_written(f"1 {given}", unit)[1](float(number)) == pytest.approx(
+        _convert(repr(float(number)), wanted, kind), rel=4e-16
+    )

@@ -63,6 +63,16 @@ _KINDS = {
     "K": "temperature",
     "": "plain number",
 }
+# Factors of the units of most files, so that reading them does not load pint, which takes longer than most
+# commands; of angles to more digits than decimal numbers have.
+_COMMON = {
+    "m": {"mm": "0.001", "cm": "0.01"},
+    "kg": {"g": "0.001"},
+    "kg m2": {"g mm2": "1e-9"},
+    "Pa": {"GPa": "1e9", "MPa": "1e6"},
+    "rad": {"deg": "0.0174532925199432957692369076848861"},
+    "rad/s": {"rpm": "0.104719755119659774615421446109317"},
+}
 _USUAL = {"m": "mm", "kg": "g", "rad": "deg", "rad/s": "rpm", "Pa": "GPa", "kg m2": "g mm2"}
 
 
@@ -101,6 +111,8 @@ def quantity(text: object, unit: str) -> float:
 
 def _quantity(text: object, unit: str) -> float:
     number, given = _split(text, unit)
+    if (factor := _common_factor(given, unit)) is not None:
+        return _finite(_product(number, factor), text, unit)
     kind, wanted = _parse(given), _parse(unit)
     if kind is None or wanted is None:
         raise InvalidInput(
@@ -108,10 +120,26 @@ def _quantity(text: object, unit: str) -> float:
         )
     if _root(kind) != _root(wanted):
         raise InvalidInput("", text, _mismatch(number, kind, unit))
-    value = _convert(number, kind, wanted)
+    return _finite(_convert(number, kind, wanted), text, unit)
+
+
+def _finite(value: float, text: object, unit: str) -> float:
     if not math.isfinite(value):
         raise InvalidInput("", text, "out of range", f"give a finite number in {unit}")
     return value
+
+
+def _common_factor(given: str, unit: str) -> Decimal | None:
+    """The factor from a unit to an SI unit where it is a common one."""
+    factor = "1" if given == unit else _COMMON.get(unit, {}).get(given)
+    return None if factor is None else Decimal(factor)
+
+
+def _product(number: str, factor: Decimal) -> float:
+    try:
+        return float(Decimal(number) * factor)
+    except ArithmeticError:  # an exponent beyond decimal's
+        return math.nan
 
 
 @lru_cache(4096)
@@ -126,9 +154,12 @@ def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], flo
     Where the text has no unit of that kind, it is `unit` itself.
     """
     match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) and unit else None
-    written = match[2] if match else ""
+    if match is None or not (written := match[2]):
+        return unit, float
+    if (factor := _common_factor(written, unit)) is not None:
+        return written, lambda number: _product(repr(float(number)), 1 / factor)
     kind, wanted = _parse(written), _parse(unit)
-    if not written or kind is None or wanted is None or _root(kind) != _root(wanted):
+    if kind is None or wanted is None or _root(kind) != _root(wanted):
         return unit, float
     return written, lambda number: _convert(repr(float(number)), wanted, kind)
 

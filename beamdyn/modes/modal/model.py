@@ -11,16 +11,15 @@ import numpy as np
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.elastica import assemble_elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.eigenproblem import Eigensolver
-from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
     from beamdyn.equations.elastica import Elastica
+    from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from collections.abc import Iterator
 
 from beamdyn.common.results.statements import OUTSIDE, Statement
@@ -61,6 +60,8 @@ class Model(FieldsOnly):
     @cached_property
     def _deflected(self) -> DeflectedSolver:
         """Solver of equations for deflections of any size."""
+        from beamdyn.modes.modal.equilibrium import DeflectedSolver  # few scenes need it
+
         assert self.elastica is not None
         return DeflectedSolver(self.elastica, self.scene.physics.branch)
 
@@ -69,6 +70,8 @@ class Model(FieldsOnly):
         """Equations of motion for deflections of any size; None where they are linear."""
         if not self.scene.physics.large_deflection:
             return None
+        from beamdyn.equations.elastica import assemble_elastica  # few scenes need it
+
         return assemble_elastica(self.scene, self.discretization, self.equations)
 
     @cached_property
