@@ -16,6 +16,7 @@ from beamdyn.common.edge.varied_inputs import parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.spreading.statistics import BLOCKS, SpreadDesigns
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
+from beamdyn.common.spreading.worst_case import trends_of
 from brakes.answers.caliper import MECHANISM
 from brakes.cli import main as brakes
 
@@ -290,3 +291,9 @@ def test_designs_of_a_named_caliper_go_to_workers():
     with pytest.raises(KeyboardInterrupt):
         one_by_one(tables, axes, [Output("finger_travel", "", float)], solve)
     assert np.array_equal(sent[0].given[0], [1.0, -46.0])
+
+
+def test_an_answer_that_no_design_has_neither_rises_nor_stays():
+    answers = np.array([[[1.0, np.nan]], [[2.0, np.nan]], [[2.0, np.nan]]])  # of A, B, and A with B's input
+    trends = trends_of(answers, np.zeros_like(answers), np.array([[0.0]]), np.array([[1.0]]))
+    assert trends.tolist() == [["rises", "no answer"]]

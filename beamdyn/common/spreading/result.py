@@ -53,7 +53,7 @@ class Spread(Result):
         are found (`smallest_at`, `largest_at`), and whether they were `searched`, so that there may be worse.
     trends : ndarray of str, shape (d, k)
         How each answer changes with each input, as far as n pairs of random designs show: "rises", "falls",
-        "rises and falls", "does not change".
+        "rises and falls", "does not change"; "no answer" where the answer is not known.
     scatter : Scatter
         Of random designs: `mean`, standard `deviation`, `percentile` (1, 5, 50, 95, 99 %), each with its
         error, and the share of designs that have `no_answer`; the others are of those that have one.

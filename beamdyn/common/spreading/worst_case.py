@@ -18,7 +18,7 @@ import numpy as np
 
 from beamdyn.common.spreading.tolerances import SpreadInput
 
-RISES, FALLS, BOTH, NEITHER = "rises", "falls", "rises and falls", "does not change"
+RISES, FALLS, BOTH, NEITHER, UNKNOWN = "rises", "falls", "rises and falls", "does not change", "no answer"
 _MOST_TURNING = 6  # inputs of which all ends are combined
 _FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # steps of a search, over the width of a tolerance
 ROUNDING = 1e-12  # relative change of an answer that is none
@@ -43,7 +43,7 @@ def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: 
     Returns
     -------
     ndarray of str, shape (d, k)
-        "rises", "falls", "rises and falls" or "does not change".
+        "rises", "falls", "rises and falls" or "does not change"; "no answer" where no pair has one.
     """
     with np.errstate(invalid="ignore"):
         change = random[2:] - random[0]
@@ -51,7 +51,8 @@ def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: 
         seen = np.abs(change) > error[2:] + error[0] + rounding
         up = np.sign(change) * np.sign((second - first).T)[..., None] > 0
     rises, falls = (seen & up).any(axis=1), (seen & ~up).any(axis=1)
-    return np.select([rises & falls, rises, falls], [BOTH, RISES, FALLS], NEITHER)
+    unknown = ~np.isfinite(change).any(axis=1)
+    return np.select([unknown, rises & falls, rises, falls], [UNKNOWN, BOTH, RISES, FALLS], NEITHER)
 
 
 @dataclass(frozen=True)
