@@ -1,6 +1,6 @@
 """What accuracy costs, and what `tolerance=` makes of it.  Run: python -m benchmarks.tradeoff
 
-Takes some four minutes; writes docs/tradeoff.md and docs/tradeoff.png.
+Takes some six minutes; writes docs/tradeoff.md and docs/tradeoff.png.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from beamdyn.studies.tradeoffs.responses import (
     steady_modes_diagram,
     transient_modes_diagram,
 )
-from benchmarks import rows
+from benchmarks import digits, rows
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_harvester
 from benchmarks.cases.table_3 import handwritten, modal_system
 from benchmarks.rows import markdown_table, time_text
@@ -264,6 +264,12 @@ would make them faster by nearly as much: `python -m benchmarks.transient` races
 To 55 rad/s it is the published scene, to 6 rad/s the outward blade.
 
 {steady}
+## What each digit of each analysis costs
+
+The published scene at 55 rad/s, at a setting angle of 45 deg where that is said: the time of the whole call at the
+loosest tolerance, and that of tighter ones over it.
+
+{digits}
 ## What `tolerance=` makes of it
 
 {rules}
@@ -321,6 +327,7 @@ def write_page(
         many=tabulate_digits(many),
         transients="\n".join(write_section(d) for d in motion if d.title.startswith("transient")),
         steady="\n".join(write_section(d) for d in motion if d.title.startswith("steady")),
+        digits=digits.tabulate(),
         rules=write_rules([*single.values(), *many.values()], single["published"], motion, chosen),
         choices=markdown_table(CHOICE_HEAD, (c.row() for c in chosen)),
         loose_locus=markdown_table(
