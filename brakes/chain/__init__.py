@@ -1,0 +1,22 @@
+"""From pedal or lever to the wheels: actuation by line or cable, what brakes and road give, and the heat."""
+
+from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
+from brakes.chain.braked import BrakedStop, brake_from_pedal
+from brakes.chain.heat import Drums, Heat, heat_of_stop
+from brakes.chain.lines import Cable, HydraulicLine
+from brakes.chain.pedal import Pedal
+
+__all__ = [
+    "Actuation",
+    "BrakedStop",
+    "Cable",
+    "Drums",
+    "Heat",
+    "HydraulicLine",
+    "Pedal",
+    "actuate",
+    "brake_from_pedal",
+    "force_for",
+    "heat_of_stop",
+    "ratio_for",
+]
