@@ -34,7 +34,7 @@ class Actuation(Result):
     ----------
     pedal, line : Pedal, HydraulicLine or Cable
         What was pressed.
-    force : ndarray
+    pedal_force : ndarray
         On the pedal [N].
     output_force : ndarray
         Behind pedal and booster [N].
@@ -55,7 +55,7 @@ class Actuation(Result):
 
     pedal: Pedal
     line: Line
-    force: Annotated[Numbers, Meaning("N", "force on the pedal")]
+    pedal_force: Annotated[Numbers, Meaning("N", "force on the pedal")]
     output_force: Annotated[Numbers, Meaning("N", "force behind pedal and booster")]
     pressure: Annotated[Numbers, Meaning("Pa", "pressure of the line", "MPa")]
     actuator_force: Annotated[Numbers, Meaning("N", "force on each actuator")]
@@ -63,14 +63,14 @@ class Actuation(Result):
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
-        yield f"{spanned(self.force, 'N')} on the pedal, {spanned(self.actuator_force, 'N')} on each actuator"
+        yield f"{spanned(self.pedal_force, 'N')} on the pedal, {spanned(self.actuator_force, 'N')} on each actuator"
         yield warned(self.warnings)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """A sentence if the force is above what ISO 6292 allows."""
         limb, most = self.pedal.operated_by, self.pedal.allowed_force
-        hardest = float(np.max(self.force))
+        hardest = float(np.max(self.pedal_force))
         if hardest <= most * (1 + _EDGE):
             return ()
         clause = f"ISO 6292:2020, {CLAUSES[limb]}"

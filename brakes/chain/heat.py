@@ -33,8 +33,6 @@ class Drums:
     ----------
     drum_mass : float or ndarray
         Mass of each drum [kg].
-    drum_radius : float or ndarray
-        Radius at which the linings rub [m].
     lining_area : float or ndarray
         Area of the linings of one brake [m2].
     specific_heat : float or ndarray
@@ -49,12 +47,11 @@ class Drums:
 
     Examples
     --------
-    >>> chain.Drums(drum_mass=18.0, drum_radius=0.15875, lining_area=0.05).specific_heat  # J/(kg K)
+    >>> chain.Drums(drum_mass=18.0, lining_area=0.05).specific_heat  # J/(kg K)
     500.0
     """
 
     drum_mass: Annotated[Numbers, Described("kg", "m_d", "mass of each drum", above=0)]
-    drum_radius: Annotated[Numbers, Described("m", "r", "radius at which the linings rub", above=0)]
     lining_area: Annotated[Numbers, Described("m2", "A_l", "area of the linings of one brake", above=0)]
     specific_heat: Annotated[
         Numbers, Described("J/(kg K)", "c", "specific heat of the drum", above=0)
@@ -123,7 +120,9 @@ class Heat(Result):
         return (f"pressure times rubbing speed of the linings reaches {highest:.4g} W/m2, above their limit",)
 
 
-def heat_of_stop(stop: Stop, drums: Drums | None = None, normal_force: Numbers = np.nan) -> Heat:
+def heat_of_stop(
+    stop: Stop, drums: Drums | None = None, normal_force: Numbers = np.nan, drum_radius: Numbers = np.nan
+) -> Heat:
     """Find where the energy of a stop goes.
 
     Parameters
@@ -134,6 +133,8 @@ def heat_of_stop(stop: Stop, drums: Drums | None = None, normal_force: Numbers =
         What is warmed.
     normal_force : float or ndarray, optional
         Sum of the normal forces of the linings of one brake on its drum, at full force [N].
+    drum_radius : float or ndarray, optional
+        Radius at which they rub [m].
 
     Returns
     -------
@@ -171,6 +172,6 @@ def heat_of_stop(stop: Stop, drums: Drums | None = None, normal_force: Numbers =
     rise = pv = np.full(drum_energy.shape, np.nan)
     if drums is not None:
         rise = drum_energy / (_BRAKES * drums.drum_mass * drums.specific_heat)
-        rubbing = V * drums.drum_radius / stop.truck.front_wheel_radius
+        rubbing = V * drum_radius / stop.truck.front_wheel_radius
         pv = np.where(stops, normal_force / drums.lining_area * rubbing, np.nan)
     return Heat(stop, drums, (rising + full)[()], drum_energy[()], into_tyres[()], rise[()], pv[()])
