@@ -32,6 +32,7 @@ from brakes.answers.tables import (
 from brakes.config.forklift import ForkliftInput, StageName
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
+from brakes.drawings.chain import line_sketch
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
@@ -152,6 +153,8 @@ class ForkliftAnswer(Answer):
         tables, heads = [], ("", "value", "unit")
         if self.stop is not None:
             rows = [["", str(self.stop.status), ""], *list_outputs(_VEHICLE, [self.stop])]
+            if self.stop.limited_by == "brake":
+                rows = [[words.replace("wheels locked", "wheels rolling"), *rest] for words, *rest in rows]
             tables.append(table("Vehicle", heads, rows, (0, 2)))
         if self.pedal is not None:
             title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
@@ -328,7 +331,7 @@ class VehicleType(ForkliftType):
         ("torque of each brake", "torque_per_brake"),
     )
     stages = ("vehicle",)
-    sketches = staticmethod(truck_sketch)
+    sketches = staticmethod(lambda: [*truck_sketch(), *line_sketch()])
 
 
 class KinematicsType(ForkliftType):

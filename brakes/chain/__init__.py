@@ -5,6 +5,7 @@ from brakes.chain.braked import BrakedStop, brake_from_pedal
 from brakes.chain.heat import Drums, Heat, heat_of_stop
 from brakes.chain.lines import Cable, HydraulicLine
 from brakes.chain.pedal import Pedal
+from brakes.chain.wheel_brakes import WheelBrakes
 
 __all__ = [
     "Actuation",
@@ -14,6 +15,7 @@ __all__ = [
     "Heat",
     "HydraulicLine",
     "Pedal",
+    "WheelBrakes",
     "actuate",
     "brake_from_pedal",
     "force_for",

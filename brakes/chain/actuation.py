@@ -13,7 +13,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, positive, together
+from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import InvalidValue, kind, refuse
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
@@ -140,7 +140,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     Raises
     ------
     ValueError
-        If the force is not positive, or the shapes do not broadcast.
+        If the force is negative, or the shapes do not broadcast.
 
     References
     ----------
@@ -177,7 +177,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     Raises
     ------
     ValueError
-        If the force is not positive, or the shapes do not broadcast.
+        If the force is negative, or the shapes do not broadcast.
 
     References
     ----------
@@ -205,7 +205,7 @@ def _check(pedal: Pedal, line: Line) -> None:
 def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
     """Force behind the booster that gives a force on the actuators [N]."""
     _check(pedal, line)
-    wanted = positive("actuator_force", actuator_force, "N")
+    wanted = not_negative("actuator_force", actuator_force, "N")
     together(actuator_force=wanted, pedal=pedal.output_force * line.gain)
     return wanted / line.gain
 

@@ -112,8 +112,8 @@ class Vehicle:
         """
         sense = 1 if axle == leading else -1
         left = share * self.wheelbase - sense * friction * self.cg_height
-        with np.errstate(divide="ignore", over="ignore"):
-            return np.where(left > 0, friction * self.arm(axle) / np.where(left > 0, left, 1.0), np.inf)[()]
+        locks = (np.asarray(share) > 0) & (left > 0)
+        return np.where(locks, friction * self.arm(axle) / np.where(locks, left, 1.0), np.inf)[()]
 
     def slipping_ratio(self, friction: Numbers, braked: Braked, leading: Axle) -> Numbers:
         """Largest braking ratio that the road holds, with all braked wheels at the limit of their friction.

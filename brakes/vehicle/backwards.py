@@ -18,7 +18,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, positive, together
+from beamdyn.common.inputs.array_checks import Numbers, not_negative, positive, together
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
@@ -93,7 +93,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     Raises
     ------
     ValueError
-        If the slope is not positive, or a choice is unknown.
+        If the slope is negative, or a choice is unknown.
 
     References
     ----------
@@ -107,7 +107,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     """
     kind("vehicle", vehicle, Vehicle)
     one_of("downhill", downhill, ("front", "rear"))
-    slope = positive("slope", slope, "rad")
+    slope = not_negative("slope", slope, "rad")
     together(vehicle=vehicle.cg_height * vehicle.wheelbase, slope=slope)
     return _friction_for(vehicle, np.tan(slope), braked, downhill)
 

@@ -133,7 +133,7 @@ def braking_limits(
     lock = np.minimum(front, rear)
     with np.errstate(invalid="ignore"):
         equal = np.abs(front - rear) <= _EDGE * lock
-    kinds = [lock > pitching * (1 + _EDGE), equal, front < rear]
+    kinds = [lock >= pitching * (1 - _EDGE), equal, front < rear]
     first = np.select(kinds, ["pitching over", "both", "front"], default="rear")
     alone = (vehicle.slipping_ratio(mu, braked, leading) for braked in ("front", "rear", "both"))
     return Braking(
