@@ -22,12 +22,12 @@ def _cylinder(title: str, bore: str, travel: str) -> Drawing:
         Outline([(0.45, half - 0.02), (0.45, 0.02 - half)], "contact", 4.0),
         Outline([(0.45, 0.0), (-0.45, 0.0)], "support", 4.0),
     )
-    s.dashed((1.2, half), (1.65, half))
-    s.dashed((1.2, -half), (1.65, -half))
-    s.length(bore, (1.5, -half), (1.5, half), (1.0, 0.0))
-    s.dashed((0.45, -half), (0.45, -0.75))
-    s.dashed((0.85, half), (0.85, -0.75))
-    s.length(travel, (0.45, -0.65), (0.85, -0.65), _DOWN)
+    s.dashed((1.2, half), (1.85, half))
+    s.dashed((1.2, -half), (1.85, -half))
+    s.length(bore, (1.7, -half), (1.7, half), (1.0, 0.0))
+    s.dashed((0.45, -half), (0.45, -1.1))
+    s.dashed((0.85, half), (0.85, -1.1))
+    s.length(travel, (0.45, -1.0), (0.85, -1.0), _DOWN)
     return s.drawing(title, f"{title}: bore {bore}, travel of its piston {travel}")
 
 
