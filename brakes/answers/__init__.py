@@ -27,5 +27,8 @@ def _vehicle() -> BrakeType[Any]:
 
 STANDARD = {  # by the name of the command: what it shows, and what gives the type
     "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum),
-    "vehicle": ("Parking on a slope in both directions, pitching over, and which axle locks first.", _vehicle),
+    "vehicle": (
+        "Parking on a slope in both directions, pitching over, and which axle locks first.",
+        _vehicle,
+    ),
 }

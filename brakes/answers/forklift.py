@@ -30,9 +30,9 @@ from brakes.answers.tables import (
     take_from,
 )
 from brakes.config.forklift import ForkliftInput, StageName
+from brakes.drawings.chain import line_sketch
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
-from brakes.drawings.chain import line_sketch
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
@@ -256,7 +256,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
     stopped = forces = chained = None
     with in_range(design):
         if design.pedal:
-            chained = solve_pedal(design, design.brake.motion if design.brake else design.levers.core)
+            chained = solve_pedal(design)
             stopped = chained.braked.stop
         elif (from_stop or "vehicle" in shown) and design.truck and design.stop:
             with of_file({}):
@@ -269,7 +269,9 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
             if chained is not None:  # the wheel may be locked: less friction than the lining's is needed
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
-                forces = internal_forces(geometry, piston_force=piston_force, torque=torque, friction=friction)
+                forces = internal_forces(
+                    geometry, piston_force=piston_force, torque=torque, friction=friction
+                )
     source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
     of_vehicle = (stopped, chained) if "vehicle" in shown else (None, None)
     source = source if forces else ""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from beamdyn.common.results.result import Result
 from brakes.answers.tables import take, take_fields, take_from
 from brakes.chain import Actuation, BrakedStop, Heat, brake_from_pedal, heat_of_stop
 from brakes.config.forklift import ForkliftInput
-from brakes.forklift import HasLevers, InternalForces, internal_forces
+from brakes.forklift import internal_forces
 
 
 @dataclass(frozen=True)
@@ -30,19 +29,6 @@ class FromPedal(Result):
         Energy of the stop.
     brake_error : ndarray
         Bound of the relative error of the torque that a brake can give.
-
-    Examples
-    --------
-    >>> import tomllib
-    >>> from brakes.app.bases import base
-    >>> from brakes.config.forklift import parse_forklift
-    >>> tables = base("forklift").replace('piston_force = "11650 N"', "lining_friction = 0.39")
-    >>> tables += '\\n[pedal]\\nratio = 5\\nforce = "450 N"'
-    >>> tables += '\\n[line]\\nmaster_bore = "22.22 mm"\\ncylinder_bore = "31.75 mm"'
-    >>> design = parse_forklift(tables)
-    >>> found = solve_pedal(design, design.brake.motion)
-    >>> str(found.braked.limited_by)
-    'brake'
     """
 
     braked: BrakedStop
@@ -99,22 +85,21 @@ OUTPUTS = (
 )
 
 
-def solve_pedal(design: ForkliftInput, geometry: HasLevers) -> FromPedal:
+def solve_pedal(design: ForkliftInput) -> FromPedal:
     """Solve the chain of a file that has a pedal.
 
     Parameters
     ----------
     design : ForkliftInput
         The file.
-    geometry : HasLevers
-        Lever arms of its brake.
 
     Raises
     ------
     ValueError
         As for `brakes.chain.brake_from_pedal`.
     """
-    assert design.pedal and design.line and design.truck and design.stop and design.forces
+    geometry = design.brake.motion if design.brake else design.levers and design.levers.core
+    assert geometry and design.pedal and design.line and design.truck and design.stop and design.forces
     with of_file({"friction": "lining_friction"}):
         unit = internal_forces(geometry, piston_force=1.0, friction=design.forces.lining_friction)
     if np.any(unit.status != "equilibrium"):

@@ -122,7 +122,8 @@ class VehicleAnswer(Answer):
         said = [["", *(str(way.holding.status) for way in self.ways.values()), ""]]
         first = [["ends the hardest braking", *(str(way.braking.first) for way in self.ways.values()), ""]]
         heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
-        tables = [table("The vehicle at rest on the slope, and in a stop", heads, [*said, *rows, *first], (0, 3))]
+        title = "The vehicle at rest on the slope, and in a stop"
+        tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _LEVER, self.lever))
@@ -165,7 +166,9 @@ class VehicleType(ArrayBrakeType[VehicleInput]):
 
     name = "vehicle"
     title = "Parking and grip"
-    purpose = "A vehicle on a slope: does it hold, slip or tip, what must the lever give, which axle locks first?"
+    purpose = (
+        "A vehicle on a slope: does it hold, slip or tip, what must the lever give, which axle locks first?"
+    )
     method = "equilibrium of two axles in closed form"
     error_from = "rounding of inputs and sums"
     model = VehicleInput
@@ -180,11 +183,14 @@ class VehicleType(ArrayBrakeType[VehicleInput]):
     def solve(self, design: VehicleInput) -> VehicleAnswer:
         """Both ways, and the lever."""
         with in_range(design), of_file({}):
-            pulled = design.lever and actuate(design.lever.core, (design.cable or design.line).core)
+            line = design.cable or design.line
+            pulled = actuate(design.lever.core, line.core) if design.lever and line else None
             gain = design.brakes.core.force_per_actuator_force if design.brakes else np.nan
             force = gain * pulled.actuator_force if pulled else np.inf
-            ways = {axle: _solve_way(design, axle, force, pulled, gain) for axle in _AXLES}
-        return VehicleAnswer(design, ways, pulled or None)
+            ways: dict[Axle, OneWay] = {
+                axle: _solve_way(design, axle, force, pulled, gain) for axle in _AXLES
+            }
+        return VehicleAnswer(design, ways, pulled)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """Explain the symbols of the form."""

@@ -63,7 +63,8 @@ class Actuation(Result):
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
-        yield f"{spanned(self.pedal_force, 'N')} on the pedal, {spanned(self.actuator_force, 'N')} on each actuator"
+        yield f"{spanned(self.pedal_force, 'N')} on the pedal"
+        yield f"{spanned(self.actuator_force, 'N')} on each actuator"
         yield warned(self.warnings)
 
     @property

@@ -83,7 +83,10 @@ class HydraulicLine:
 
     def stroke(self, force: Numbers) -> Numbers:
         """Travel of the master cylinder's piston at a force on it [m]."""
-        taken = self.pistons * self.piston_travel * self.gain + self.compliance * self.pressure(force) / self._area
+        taken = (
+            self.pistons * self.piston_travel * self.gain
+            + self.compliance * self.pressure(force) / self._area
+        )
         return self.lost_travel + taken
 
     @property

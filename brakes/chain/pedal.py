@@ -45,7 +45,7 @@ class Pedal:
 
     Examples
     --------
-    >>> chain.Pedal(ratio=5.0, force=450.0, booster=3.0, runout=2000.0).output_force  # N
+    >>> float(chain.Pedal(ratio=5.0, force=450.0, booster=3.0, runout=2000.0).output_force)  # N
     6250.0
     """
 
@@ -57,7 +57,9 @@ class Pedal:
     booster: Annotated[Numbers, Described("", "k", "booster: its output over the rod's force", least=1)] = 1.0
     runout: Annotated[
         Numbers | None,
-        Described("N", "", "force of the rod at which the booster gives its most; never if not given", above=0),
+        Described(
+            "N", "", "force of the rod at which the booster gives its most; never if not given", above=0
+        ),
     ] = None
     travel: Annotated[
         Numbers | None,

@@ -32,7 +32,7 @@ class WheelBrakes:
     Examples
     --------
     >>> brakes = chain.WheelBrakes(c_star=4.0, drum_radius=0.15, wheel_radius=0.4)
-    >>> brakes.force_per_actuator_force
+    >>> round(brakes.force_per_actuator_force, 6)
     3.0
     """
 

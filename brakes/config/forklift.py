@@ -105,7 +105,9 @@ class ForcesInput(Section):
 
     piston_force: Annotated[
         float | None,
-        Quantity("N", "P_T", "force of the piston on the trailing shoe; by [pedal] and [line] if given", above=0),
+        Quantity(
+            "N", "P_T", "force of the piston on the trailing shoe; by [pedal] and [line] if given", above=0
+        ),
     ] = None
     torque: Annotated[
         float | None, Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
@@ -160,14 +162,14 @@ class ForkliftInput(Section):
 
     def _refuse_half_a_chain(self) -> None:
         f = self.forces
-        if self.pedal is None or self.line is None or "vehicle" not in self.stages or f is None:
+        if f is None or not (self.pedal and self.line and {"vehicle", "forces"} <= {*self.stages}):
             raise ValueError(
                 "[pedal], [line] and [drums] go with a stop: give [pedal], [line], [truck], [stop], [forces] "
                 "with lining_friction, and [brake] or [levers]"
             )
         if f.piston_force is not None or f.torque is not None or f.lining_friction is None:
             raise ValueError(
-                "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from the pedal"
+                "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from it"
             )
 
     @property

@@ -1,4 +1,4 @@
-"""Vehicles in TOML: [truck] or [vehicle], [road], [braking], and a [lever] with [cable] or [line] and [brakes]."""
+"""Vehicles in TOML: [truck] or [vehicle], [road], [braking]; [lever] with [cable] or [line] and [brakes]."""
 
 from __future__ import annotations
 

@@ -27,7 +27,9 @@ def standing(found: Holding) -> Drawing:
     braked = {name: load for name, (_, load, axle) in loads.items() if found.braked in (axle, "both")}
     for name, (x, load, _) in loads.items():
         if load > 0:
-            arrows.add(np.array([x, 0.0]) @ turn, np.array([0.0, load]) @ turn, f"N_{name}", "normal", ends_here=True)
+            arrows.add(
+                np.array([x, 0.0]) @ turn, np.array([0.0, load]) @ turn, f"N_{name}", "normal", ends_here=True
+            )
         if load > 0 and name in braked and beta:
             held = np.array([-weight * np.sin(beta) * load / sum(braked.values()), 0.0])
             arrows.add(np.array([x, 0.0]) @ turn, held @ turn, f"R_{name}", "friction")
@@ -35,7 +37,8 @@ def standing(found: Holding) -> Drawing:
     arrows.add(at, np.array([0.0, -weight]), "Mg", "weight")
     arrows.shapes.append(Symbol("dot", at, "weight", 7.0))
     on, most = np.degrees([float(found.road.slope), float(found.largest_slope)])
-    title = f"{found.downhill} axle downhill, {on:.3g} deg: {found.status}; {found.limited_by} past {most:.4g} deg"
+    most_held = f"{found.limited_by} past {most:.4g} deg"
+    title = f"{found.downhill} axle downhill, {on:.3g} deg: {found.status}; {most_held}"
     key = {"weight": "weight", "normal": "axle loads", "friction": "friction of the braked tyres"}
     return arrows.drawing(title, "A vehicle at rest on a slope with the forces on it", key)
 

@@ -14,7 +14,7 @@ from brakes.forklift.kinematics import (
     constraint_rank,
     follow_shoes,
 )
-from brakes.forklift.levers import HasLevers, Levers
+from brakes.forklift.levers import Levers
 from brakes.forklift.procedure import Procedure, brake_procedure
 from brakes.vehicle import Stop, StopConditions, Truck, stop
 
@@ -22,7 +22,6 @@ __all__ = [
     "BENDIX_12_5",
     "DuoServo",
     "Event",
-    "HasLevers",
     "InternalForces",
     "Kinematics",
     "Levers",

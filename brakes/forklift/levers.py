@@ -13,7 +13,6 @@ from beamdyn.common.inputs.described import Described
 from brakes.vehicle.axles import LEAST_MARGIN
 
 
-
 class HasLevers:
     """Base of what has lever arms, some of it at one clearance alone: for `internal_forces`."""
 

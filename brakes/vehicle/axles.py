@@ -31,7 +31,7 @@ ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
 
 @dataclass(frozen=True)
 class Vehicle:
-    """Mass and centre of gravity of a vehicle of two axles; every value may be an array, one entry per design.
+    """Mass and centre of gravity of a vehicle of two axles; every value may be an array, one per design.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class Vehicle:
         return self.arm(other(leading)) / self.cg_height
 
     def locking_ratio(self, axle: Axle, friction: Numbers, share: Numbers, leading: Axle) -> Numbers:
-        """Braking ratio at which an axle that gives a share of the braking force locks; inf if it never does.
+        """Braking ratio at which an axle with a share of the braking force locks; inf if it never does.
 
         Parameters
         ----------

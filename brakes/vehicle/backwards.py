@@ -62,7 +62,7 @@ class Needed(Result):
         return f"none: {self.reason}" if self.reason else f"{float(self.value):.6g}"
 
 
-def needed(value: Numbers, *reasons: tuple[Any, str]) -> Needed:
+def needed(value: Numbers, *reasons: tuple[Any, Any]) -> Needed:
     """The value where none of the conditions holds, else nan with the words of the first that does."""
     shapes = np.broadcast_arrays(value, *(bad for bad, _ in reasons))
     value, bad = shapes[0], list(shapes[1:])
@@ -103,7 +103,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     --------
     >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     >>> round(float(vehicle.friction_to_hold(bicycle, 0.2, braked="rear", downhill="front").value), 4)
-    0.521
+    0.5208
     """
     kind("vehicle", vehicle, Vehicle)
     one_of("downhill", downhill, ("front", "rear"))
@@ -112,9 +112,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     return _friction_for(vehicle, np.tan(slope), braked, downhill)
 
 
-def friction_to_stop(
-    truck: Truck, conditions: StopConditions, distance: Numbers = np.inf
-) -> Needed:
+def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers = np.inf) -> Needed:
     """Least friction of the tyres with which a truck with locked front wheels stops, within a distance.
 
     Parameters

@@ -135,8 +135,17 @@ def braking_limits(
         equal = np.abs(front - rear) <= _EDGE * lock
     kinds = [lock >= pitching * (1 - _EDGE), equal, front < rear]
     first = np.select(kinds, ["pitching over", "both", "front"], default="rear")
-    alone = (vehicle.slipping_ratio(mu, braked, leading) for braked in ("front", "rear", "both"))
     return Braking(
-        vehicle, mu, share, leading, pitching[()], *alone, front[()], rear[()],
-        np.minimum(lock, pitching)[()], first[()],
-    )  # fmt: skip
+        vehicle,
+        mu,
+        share,
+        leading,
+        pitching=pitching[()],
+        front_alone=vehicle.slipping_ratio(mu, "front", leading),
+        rear_alone=vehicle.slipping_ratio(mu, "rear", leading),
+        both=vehicle.slipping_ratio(mu, "both", leading),
+        front_locks=front[()],
+        rear_locks=rear[()],
+        largest=np.minimum(lock, pitching)[()],
+        first=first[()],
+    )

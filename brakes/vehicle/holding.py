@@ -96,7 +96,7 @@ class Holding(Result):
     >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     >>> road = vehicle.Road(slope=0.3, friction=0.8)
     >>> vehicle.hold(bicycle, road, braked="rear", downhill="front").message
-    'slips past 14.6314 deg: on 17.1887 deg it slips'
+    'slips past 14.6307 deg: on 17.1887 deg it slips'
     """
 
     vehicle: Vehicle
@@ -173,13 +173,17 @@ def hold(
     >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     >>> road = vehicle.Road(slope=0.3, friction=0.8)
     >>> found = vehicle.hold(bicycle, road, braked="both", downhill="front")
-    >>> found.limited_by, round(float(np.degrees(found.largest_slope)), 2)
+    >>> str(found.limited_by), round(float(np.degrees(found.largest_slope)), 2)
     ('tips', 29.41)
     """
     kind("vehicle", vehicle, Vehicle)
     kind("road", road, Road)
     one_of("downhill", downhill, ("front", "rear"))
-    force = brake_force if np.ndim(brake_force) == 0 and brake_force == np.inf else numbers("brake_force", brake_force, "N")
+    force = (
+        brake_force
+        if np.ndim(brake_force) == 0 and brake_force == np.inf
+        else numbers("brake_force", brake_force, "N")
+    )
     refuse(np.asarray(force) < 0, "brake_force", force, "N", "it must be 0 or more")
     together(vehicle=vehicle.mass * vehicle.cg_height * vehicle.wheelbase, brake_force=force, **vars(road))
     weight = vehicle.mass * road.gravity
@@ -192,7 +196,8 @@ def hold(
     kinds = [near, slope < most, slope > tips, slope > slips]
     status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
     front, rear = (
-        weight * np.cos(slope) * vehicle.load_share(axle, np.tan(slope), downhill) for axle in ("front", "rear")
+        weight * np.cos(slope) * vehicle.load_share(axle, np.tan(slope), downhill)
+        for axle in ("front", "rear")
     )
     return Holding(
         vehicle=vehicle,

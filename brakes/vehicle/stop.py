@@ -226,8 +226,8 @@ _SENTENCES = {
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
     "less slope, more friction, or another load",
-    "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the truck "
-    "never stops; press harder, or take stronger brakes",
+    "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
+    "truck never stops; press harder, or take stronger brakes",
     "too near to decide": "does not stop: the slope is too near the steepest that the locked front wheels "
     "hold to decide; less slope, more friction, or another load",
 }
@@ -282,7 +282,8 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
     gc, gs = g * np.cos(beta), g * np.sin(beta)
     locked, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
-    rolls = strongest < mu * locked
+    locking = truck.front_wheel_radius * mu * locked / 2
+    rolls = brakes < locking
     R = np.where(rolls, strongest, mu * locked)
     front = np.where(rolls, (M * b * gc - R * h) / L, locked)
     A = gs - R / M
@@ -313,7 +314,7 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
         braking_distance=braking[()],
         speed_lost_in_rise=np.where(in_rise, V, V - v2)[()],
         speed_gained_coasting=(gs * t1)[()],
-        torque_per_brake=(truck.front_wheel_radius * R / 2)[()],
+        torque_per_brake=np.where(rolls, brakes, locking)[()],
         front_load=front[()],
         rear_load=(M * gc - front)[()],
         standing_front_load=standing[()],

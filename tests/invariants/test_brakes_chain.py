@@ -67,7 +67,7 @@ def test_tipping_by_virtual_work(leading):
     step = 1e-30  # of a complex step: exact
     lever = arm + 1j * many.cg_height  # from the lower tyre, up the slope and normal to it
     work = np.array([
-        ((x * np.exp(0) * np.sin(b - 1j * step) + h * np.cos(b - 1j * step)).imag / step)
+        ((x * np.sin(b - 1j * step) + h * np.cos(b - 1j * step)).imag / step)
         for x, h, b in zip(lever.real, lever.imag, found, strict=True)
     ])  # fmt: skip
     assert np.abs(work) == pytest.approx(0.0, abs=SAME * float(np.max(np.abs(lever))))
@@ -107,7 +107,7 @@ def trucks(rng, n=CASES):
 def conditions(rng, direction="reverse", n=CASES, steep=0.1):
     return vehicle.StopConditions(
         rng.uniform(0.0, steep, n), rng.uniform(2.0, 10.0, n), rng.uniform(0.3, 0.55, n),
-        rng.uniform(0.0, 1.0, n), rng.uniform(0.0, 0.6, n), direction=direction,
+        rng.uniform(0.0, 1.0, n), rng.uniform(0.0, 1.5, n), direction=direction,
     )  # fmt: skip
 
 
@@ -142,10 +142,14 @@ def test_the_energy_of_a_stop_is_that_of_speed_and_height():
     for torque in (None, 0.8 * vehicle.stop(truck, c).torque_per_brake):
         stop = vehicle.stop(truck, c, torque)
         heat = chain.heat_of_stop(stop)
+        done = stop.stops
+        assert np.mean(done) > 0.9 and np.array_equal(done, np.isfinite(heat.energy))
         fall = np.sin(c.slope) * (stop.distance - stop.reaction_distance)
-        assert heat.energy == pytest.approx(truck.mass * (c.speed**2 / 2 + c.gravity * fall), rel=SAME)
-        assert heat.drum_energy + heat.tyre_energy == pytest.approx(heat.energy, rel=1e-14)
-        assert np.array_equal(heat.tyre_energy == 0, (stop.limited_by == "brake") | (stop.braking_distance == 0))
+        by_height = truck.mass * (c.speed**2 / 2 + c.gravity * fall)
+        assert heat.energy[done] == pytest.approx(by_height[done], rel=SAME)
+        assert (heat.drum_energy + heat.tyre_energy)[done] == pytest.approx(heat.energy[done], rel=1e-14)
+        rolling = (stop.limited_by == "brake") | (stop.braking_distance == 0)
+        assert np.array_equal((heat.tyre_energy == 0)[done], rolling[done])
 
 
 def test_friction_backwards_is_inverted_forwards():
@@ -155,7 +159,9 @@ def test_friction_backwards_is_inverted_forwards():
         for downhill in ("front", "rear"):
             found = vehicle.friction_to_hold(many, slope, braked, downhill)
             there = found.reason == ""
-            again = vehicle.hold(many, vehicle.Road(slope, np.where(there, found.value, 1.0)), braked, downhill)
+            again = vehicle.hold(
+                many, vehicle.Road(slope, np.where(there, found.value, 1.0)), braked, downhill
+            )
             assert again.slipping_slope[there] == pytest.approx(slope[there], rel=BACK)
             assert 0.2 * CASES < there.sum() < CASES
             for friction in np.linspace(0.05, 2.0, 40):  # none: no friction holds
@@ -213,7 +219,9 @@ def test_force_and_ratio_of_a_pedal_backwards_are_inverted_forwards(kind):
         assert 0.05 * CASES < there.sum() < CASES
         with_it = dataclasses.replace(free, **{name: np.where(there, found.value, 1.0)})
         assert chain.actuate(with_it, loose).actuator_force[there] == pytest.approx(wanted[there], rel=BACK)
-        for tried in np.geomspace(0.1, 20.0, 60) * getattr(pedal, name):  # none: all that reach it are refused
+        for tried in np.geomspace(0.1, 20.0, 60)[:, None] * getattr(
+            pedal, name
+        ):  # none: all that reach it are refused
             made = chain.actuate(dataclasses.replace(free, **{name: tried}), loose)
             over = made.pedal_travel > pedal.travel * (1 - BACK)
             over |= np.zeros(CASES, bool) if kind else made.pressure > line.most_pressure * (1 - BACK)

@@ -1,6 +1,6 @@
-"""The truck of Yoo et al. (1997) braked from its pedal, and a bicycle: numbers found by two other routes each.
+"""The truck of Yoo et al. (1997) braked from its pedal, and a bicycle: numbers found by two other routes.
 
-They were computed by programs that share nothing with this one: the brake by inverse and forward C* and by the
+They were computed by programs that share nothing with this one: the brake by inverse and forward C* and the
 solved shoes, slopes by moments and by roots, the energy by force times path and by m v^2 / 2 + m g h. The
 published numbers of limits of force are those of ISO 6292:2020, 4.5.2, 4.5.4 and 4.5.5.
 """
