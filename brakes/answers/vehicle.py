@@ -20,7 +20,8 @@ from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take
 from brakes.chain import Actuation, actuate, force_for, ratio_for
 from brakes.config.vehicle import VehicleInput
 from brakes.drawings.vehicle import standing, vehicle_sketch
-from brakes.vehicle import Axle, Braking, Holding, Needed, braking_limits, friction_to_hold, hold
+from brakes.vehicle import Braking, Holding, Needed, braking_limits, friction_to_hold, hold
+from brakes.vehicle.axles import Axle
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

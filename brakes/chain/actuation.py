@@ -100,7 +100,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
 
     References
     ----------
-    Equilibrium of the pedal, and the volume of the fluid: see `Pedal` and `HydraulicLine`.
+    Standard (a lever, and the volume of a fluid): `Pedal` and `HydraulicLine`. Limits of force: ISO 6292:2020.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Inverse of `actuate`, in closed form.
+    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Inverse of `actuate`, in closed form.
+    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
 
     Examples
     --------

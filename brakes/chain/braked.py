@@ -111,7 +111,7 @@ def brake_from_pedal(
 
     References
     ----------
-    The smaller of two forces, as in the docstring of the module.
+    Yoo et al. (1997), section 2, with the smaller one of two forces.
 
     Examples
     --------

@@ -148,7 +148,7 @@ def heat_of_stop(
 
     References
     ----------
-    Work of the braking force along the path, as in the docstring of the module.
+    Standard (work of a force along its path), as in the docstring of the module.
 
     Examples
     --------

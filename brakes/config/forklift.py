@@ -18,7 +18,7 @@ from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import of_file
 from brakes.chain import Drums, HydraulicLine, Pedal
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
-from brakes.vehicle import SlopeAngle
+from brakes.vehicle.stop import SlopeAngle
 
 __all__ = ["STAGES", "ForkliftInput", "forklift_from_dict", "load_forklift", "parse_forklift"]
 

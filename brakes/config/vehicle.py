@@ -10,7 +10,9 @@ from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.sections import section_of
 from brakes.chain import Cable, HydraulicLine, Pedal, WheelBrakes
-from brakes.vehicle import Braked, Road, SlopeAngle, Truck, Vehicle
+from brakes.vehicle import Road, Truck, Vehicle
+from brakes.vehicle.axles import Braked
+from brakes.vehicle.stop import SlopeAngle
 
 __all__ = ["VehicleInput"]
 

@@ -1,20 +1,17 @@
 """Vehicles of two axles: stop, parking and hill hold, pitching over, and which axle locks first."""
 
-from brakes.vehicle.axles import Axle, Braked, Vehicle
+from brakes.vehicle.axles import Vehicle
 from brakes.vehicle.backwards import Needed, friction_to_hold, friction_to_stop
 from brakes.vehicle.braking import Braking, braking_limits
 from brakes.vehicle.holding import Holding, Road, hold
-from brakes.vehicle.stop import SlopeAngle, Stop, StopConditions, stop
+from brakes.vehicle.stop import Stop, StopConditions, stop
 from brakes.vehicle.truck import Truck
 
 __all__ = [
-    "Axle",
-    "Braked",
     "Braking",
     "Holding",
     "Needed",
     "Road",
-    "SlopeAngle",
     "Stop",
     "StopConditions",
     "Truck",

@@ -51,7 +51,7 @@ class Vehicle:
 
     References
     ----------
-    Moments, as in the docstring of the module.
+    Standard (moments about where the tyres stand).
 
     Examples
     --------
@@ -95,7 +95,7 @@ class Vehicle:
         return (self.arm(axle) + (moved if axle == leading else -moved)) / self.wheelbase
 
     def pitching_ratio(self, leading: Axle) -> Numbers:
-        """Braking ratio at which the axle that does not lead lifts: the vehicle pitches over the other one."""
+        """Braking ratio at which the axle that does not lead lifts: it pitches over the other one."""
         return self.arm(other(leading)) / self.cg_height
 
     def locking_ratio(self, axle: Axle, friction: Numbers, share: Numbers, leading: Axle) -> Numbers:

@@ -97,7 +97,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
 
     References
     ----------
-    Inverse of `slipping_ratio` of `Vehicle`, as in the docstring of the module.
+    Standard (moments), solved for the friction, as in the docstring of the module.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers
 
     References
     ----------
-    Inverse of `stop`, as in the docstring of the module.
+    Yoo et al. (1997), section 2, corrected and solved for the friction, as in the docstring of the module.
 
     Examples
     --------

@@ -112,7 +112,7 @@ def braking_limits(
 
     References
     ----------
-    Moments, as in the docstring of `brakes.vehicle.axles`.
+    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------

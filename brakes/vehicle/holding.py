@@ -166,7 +166,7 @@ def hold(
 
     References
     ----------
-    Moments, as in the docstring of the module.
+    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------
