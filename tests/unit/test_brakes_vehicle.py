@@ -29,6 +29,8 @@ most_pressure = "18 MPa"
 drum_mass = "18 kg"
 lining_area = "500 cm2"
 """
+LINE = '[line]\nmaster_bore = "20 mm"\ncylinder_bore = "20 mm"'
+BARE = '[vehicle]\nmass = "1 kg"\ncg_behind_front = "1 m"\ncg_height = "1 m"\nwheelbase = "2 m"'
 
 
 @pytest.fixture
@@ -148,13 +150,12 @@ def test_bad_input_of_a_pedal_is_a_sentence(run, forklift, old, new, parts):
         ('slope = "15 %"', 'slope = "46 deg"', "at most 45 deg"),
         ('slope = "15 %"', 'slope = "-5 deg"', "at least 0, at most 45 deg"),
         ("front_share = 1 ", "front_share = 60 ", "60 % is 0.6"),
-        ('[brakes]\nc_star = 4.6', "# none\n#", "go together"),
-        ("\n[cable]\n", "\n[line]\nmaster_bore = \"20 mm\"\ncylinder_bore = \"20 mm\"\n[cable]", "do not go together"),
-        ("[road]", '[vehicle]\nmass = "1 kg"\ncg_behind_front = "1 m"\ncg_height = "1 m"\nwheelbase = "2 m"\n[road]',
-         "either [truck]"),
+        ("[brakes]\nc_star = 4.6", "# none\n#", "go together"),
+        ("\n[cable]\n", f"\n{LINE}\n[cable]\n", "do not go together"),
+        ("[road]", f"{BARE}\n[road]", "either [truck]"),
         ('travel = "300 mm"', 'travel = "100 mm"', "needs a travel of 192 mm"),
     ],
-)  # fmt: skip
+)
 def test_bad_input_of_a_vehicle_is_a_sentence(run, truck, old, new, part):
     if old.startswith("[brakes]"):
         truck, old, new = truck[: truck.index("\n[brakes]")], "[road]", "[road]"
