@@ -41,7 +41,7 @@ _WORDS = {
 
 
 @dataclass(frozen=True)
-class OneWay:
+class OneDirection:
     """What is found with one axle downhill, or leading in a stop.
 
     Attributes
@@ -91,14 +91,14 @@ class VehicleAnswer(Answer):
     ----------
     design : VehicleInput
         The file.
-    ways : mapping of {"front", "rear"} to OneWay
+    ways : mapping of {"front", "rear"} to OneDirection
         What is found, by the axle that is downhill or leads.
     lever : Actuation, optional
         From the lever to the brakes, if there is one.
     """
 
     design: VehicleInput
-    ways: Mapping[Axle, OneWay]
+    ways: Mapping[Axle, OneDirection]
     lever: Actuation | None
 
     @property
@@ -188,7 +188,7 @@ class VehicleType(ArrayBrakeType[VehicleInput]):
             pulled = actuate(design.lever.core, line.core) if design.lever and line else None
             gain = design.brakes.core.force_per_actuator_force if design.brakes else np.nan
             force = gain * pulled.actuator_force if pulled else np.inf
-            ways: dict[Axle, OneWay] = {
+            ways: dict[Axle, OneDirection] = {
                 axle: _solve_way(design, axle, force, pulled, gain) for axle in _AXLES
             }
         return VehicleAnswer(design, ways, pulled)
@@ -202,7 +202,9 @@ class VehicleType(ArrayBrakeType[VehicleInput]):
         return _outputs(design.lever is not None)
 
 
-def _solve_way(design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any) -> OneWay:
+def _solve_way(
+    design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
+) -> OneDirection:
     """What is found with an axle downhill or leading."""
     standing, road, braking = design.standing, design.road.core, design.braking
     holding = hold(standing, road, braking.parked_by, axle, force)
@@ -211,7 +213,7 @@ def _solve_way(design: VehicleInput, axle: Axle, force: Any, pulled: Actuation |
         each = holding.needed_force / gain
         needs["force_to_hold"] = force_for(pulled.pedal, pulled.line, each)
         needs["ratio_to_hold"] = ratio_for(pulled.pedal, pulled.line, each)
-    return OneWay(holding, braking_limits(standing, road.friction, braking.front_share, axle), needs)
+    return OneDirection(holding, braking_limits(standing, road.friction, braking.front_share, axle), needs)
 
 
 BRAKE = VehicleType()

@@ -3,14 +3,14 @@
 from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
 from brakes.chain.braked import BrakedStop, brake_from_pedal
 from brakes.chain.heat import Drums, Heat, heat_of_stop
-from brakes.chain.lines import Cable, HydraulicLine
+from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal
 from brakes.chain.wheel_brakes import WheelBrakes
 
 __all__ = [
     "Actuation",
     "BrakedStop",
-    "Cable",
+    "BrakeCable",
     "Drums",
     "Heat",
     "HydraulicLine",

@@ -18,11 +18,11 @@ from beamdyn.common.inputs.checks import InvalidValue, kind, refuse
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from brakes.chain.lines import Cable, HydraulicLine
+from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import CLAUSES, Pedal
 from brakes.vehicle.backwards import Needed, needed
 
-Line = HydraulicLine | Cable
+Line = HydraulicLine | BrakeCable
 _EDGE = 1e-9  # relative excess over a limit that is rounding
 
 
@@ -32,7 +32,7 @@ class Actuation(Result):
 
     Attributes
     ----------
-    pedal, line : Pedal, HydraulicLine or Cable
+    pedal, line : Pedal, HydraulicLine or BrakeCable
         What was pressed.
     pedal_force : ndarray
         On the pedal [N].
@@ -85,7 +85,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     ----------
     pedal : Pedal
         The pedal and the force on it.
-    line : HydraulicLine or Cable
+    line : HydraulicLine or BrakeCable
         What carries the force on.
 
     Returns
@@ -100,7 +100,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
 
     References
     ----------
-    Standard (a lever, and the volume of a fluid): `Pedal` and `HydraulicLine`. Limits of force: ISO 6292:2020.
+    Standard (a lever, the volume of a fluid): `Pedal`, `HydraulicLine`. Limits of force: ISO 6292:2020.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     ----------
     pedal : Pedal
         The pedal; its own force is not used.
-    line : HydraulicLine or Cable
+    line : HydraulicLine or BrakeCable
         What carries the force on.
     actuator_force : float or ndarray
         Wanted on each actuator [N].
@@ -165,7 +165,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     ----------
     pedal : Pedal
         The pedal; its own ratio is not used.
-    line : HydraulicLine or Cable
+    line : HydraulicLine or BrakeCable
         What carries the force on.
     actuator_force : float or ndarray
         Wanted on each actuator [N].
@@ -198,8 +198,8 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
 def _check(pedal: Pedal, line: Line) -> None:
     kind("pedal", pedal, Pedal)
-    if not isinstance(line, HydraulicLine | Cable):
-        raise InvalidValue("line", line, "give a HydraulicLine or a Cable")
+    if not isinstance(line, HydraulicLine | BrakeCable):
+        raise InvalidValue("line", line, "give a HydraulicLine or a BrakeCable")
     together(pedal=pedal.output_force, line=line.gain + line.stroke(1.0))
 
 

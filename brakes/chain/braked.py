@@ -94,7 +94,7 @@ def brake_from_pedal(
         Road, speed and timing.
     pedal : Pedal
         The pedal and the force on it.
-    line : HydraulicLine or Cable
+    line : HydraulicLine or BrakeCable
         What carries the force to the brakes.
     torque_per_force : float or ndarray
         Torque of a brake over the force on its actuator, C* r [m].

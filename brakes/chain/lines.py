@@ -95,7 +95,7 @@ class HydraulicLine:
 
 
 @dataclass(frozen=True)
-class Cable:
+class BrakeCable:
     """A cable or linkage; every value may be an array, one entry per design.
 
     Parameters
@@ -120,7 +120,7 @@ class Cable:
 
     Examples
     --------
-    >>> chain.Cable(cable_gain=4.0, efficiency=0.8).gain
+    >>> chain.BrakeCable(cable_gain=4.0, efficiency=0.8).gain
     3.2
     """
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.sections import section_of
-from brakes.chain import Cable, HydraulicLine, Pedal, WheelBrakes
+from brakes.chain import BrakeCable, HydraulicLine, Pedal, WheelBrakes
 from brakes.vehicle import Road, Truck, Vehicle
 from brakes.vehicle.axles import Braked
 from brakes.vehicle.stop import SlopeAngle
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 else:
     _TruckInput, _VehicleInput = section_of(Truck), section_of(Vehicle)
     _RoadInput = section_of(Road, tables={SlopeAngle: SlopeQuantity})
-    _LeverInput, _CableInput = section_of(Pedal), section_of(Cable)
+    _LeverInput, _CableInput = section_of(Pedal), section_of(BrakeCable)
     _LineInput, _BrakesInput = section_of(HydraulicLine), section_of(WheelBrakes)
 
 

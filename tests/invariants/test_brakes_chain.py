@@ -194,7 +194,7 @@ def random_chains(rng, n=CASES):
             piston_travel=rng.uniform(0, 1e-3, n), lost_travel=rng.uniform(0, 2e-3, n),
             compliance=rng.uniform(0, 1e-12, n), most_pressure=rng.uniform(5e6, 3e7, n),
         ),
-        chain.Cable(
+        chain.BrakeCable(
             rng.uniform(1, 8, n), rng.uniform(0.5, 1, n), rng.uniform(0, 3e-3, n),
             lost_travel=rng.uniform(0, 3e-3, n), stretch=rng.uniform(0, 2e-6, n),
         ),
