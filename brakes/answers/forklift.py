@@ -82,7 +82,7 @@ def stage_outputs(stages: Sequence[StageName], with_pedal: bool = False) -> tupl
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
         "forces": take_from(lambda answer: answer.forces, _FORCES),
     }
-    further = _PEDAL if with_pedal and "vehicle" in stages else ()
+    further = _PEDAL if with_pedal and stages != ("kinematics",) else ()
     return (*(output for stage in stages for output in groups[stage]), *further)
 
 
@@ -105,7 +105,7 @@ class ForkliftAnswer(Answer):
     torque_from : str
         Where the torque comes from: "the file", "the stop" or "the lining's friction".
     pedal : FromPedal, optional
-        From the pedal to the stop, if the file has one and the vehicle is shown.
+        From the pedal to the stop, if the file has one and vehicle or forces are shown.
     """
 
     design: ForkliftInput
@@ -133,7 +133,8 @@ class ForkliftAnswer(Answer):
     @property
     def refusals(self) -> Sequence[str]:
         """Sentences if the truck does not stop, or the brake locks or cannot give the torque."""
-        stop = [] if self.stop is None or np.all(self.stop.stops) else [self.stop.message]
+        found = self.stop if self.pedal is None else self.pedal.braked.stop
+        stop = [] if found is None or np.all(found.stops) else [found.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
@@ -255,7 +256,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
     from_stop = "forces" in shown and given is None and "vehicle" in design.stages
     stopped = forces = chained = None
     with in_range(design):
-        if design.pedal:
+        if design.pedal and shown != ("kinematics",):
             chained = solve_pedal(design)
             stopped = chained.braked.stop
         elif (from_stop or "vehicle" in shown) and design.truck and design.stop:
@@ -273,9 +274,8 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
                     geometry, piston_force=piston_force, torque=torque, friction=friction
                 )
     source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
-    of_vehicle = (stopped, chained) if "vehicle" in shown else (None, None)
-    source = source if forces else ""
-    return ForkliftAnswer(design, shown, of_vehicle[0], motion, forces, source, of_vehicle[1])
+    source, shown_stop = source if forces else "", stopped if "vehicle" in shown else None
+    return ForkliftAnswer(design, shown, shown_stop, motion, forces, source, chained)
 
 
 class ForkliftType(ArrayBrakeType[ForkliftInput]):
@@ -323,8 +323,7 @@ class VehicleType(ForkliftType):
 
     title = "Vehicle"
     purpose = "The truck drives down a slope and brakes: stopping distance, and the torque of each brake."
-    sections = ("truck", "stop", "pedal", "line", "drums")
-    needs = ForkliftType.needs
+    sections = needs = ("truck", "stop")
     example_sweep = "stop.speed=10:30:21 km/h"
     sweep_results = "distance,torque_per_brake"
     key_results = (
@@ -333,7 +332,7 @@ class VehicleType(ForkliftType):
         ("torque of each brake", "torque_per_brake"),
     )
     stages = ("vehicle",)
-    sketches = staticmethod(lambda: [*truck_sketch(), *line_sketch()])
+    sketches = staticmethod(truck_sketch)
 
 
 class KinematicsType(ForkliftType):
@@ -363,7 +362,7 @@ class ForcesType(ForkliftType):
     purpose = (
         "The force on every part of the brake, from the torque of the stop and the arms of the kinematics."
     )
-    sections = ("forces", "levers")
+    sections = ("forces", "levers", "pedal", "line", "drums")
     needs = ForkliftType.needs
     example_sweep = "forces.piston_force=9:13:17 kN"
     sweep_results = "A,B,Q,P_L,lining_friction"
@@ -373,7 +372,7 @@ class ForcesType(ForkliftType):
         ("margin to self-locking", "margin"),
     )
     stages = ("forces",)
-    sketches = staticmethod(levers_sketch)
+    sketches = staticmethod(lambda: [*levers_sketch(), *line_sketch()])
 
 
 FORKLIFT = ForkliftType()

@@ -9,8 +9,8 @@ from brakes.chain.wheel_brakes import WheelBrakes
 
 __all__ = [
     "Actuation",
-    "BrakedStop",
     "BrakeCable",
+    "BrakedStop",
     "Drums",
     "Heat",
     "HydraulicLine",
