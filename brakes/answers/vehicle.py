@@ -162,7 +162,7 @@ def _failures(holding: Holding) -> list[str]:
     return [] if holding.status == "holds" else [holding.message]
 
 
-class VehicleType(ArrayBrakeType[VehicleInput]):
+class ParkingType(ArrayBrakeType[VehicleInput]):
     """Vehicles at rest on a slope, and the limits of their stops."""
 
     name = "vehicle"
@@ -216,4 +216,4 @@ def _solve_way(
     return OneDirection(holding, braking_limits(standing, road.friction, braking.front_share, axle), needs)
 
 
-BRAKE = VehicleType()
+BRAKE = ParkingType()
