@@ -18,6 +18,17 @@ def _drum() -> BrakeType[Any]:
     return BRAKE
 
 
+def _vehicle() -> BrakeType[Any]:
+    """Vehicles, imported when they are wanted."""
+    from brakes.answers.vehicle import BRAKE
+
+    return BRAKE
+
+
 STANDARD = {  # by the name of the command: what it shows, and what gives the type
-    "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum)
+    "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum),
+    "vehicle": (
+        "Parking on a slope in both directions, pitching over, and which axle locks first.",
+        _vehicle,
+    ),
 }

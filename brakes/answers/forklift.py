@@ -19,6 +19,7 @@ from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
+from brakes.answers.pedal import OUTPUTS, FromPedal, solve_pedal
 from brakes.answers.tables import (
     list_outputs,
     outputs_csv,
@@ -29,6 +30,7 @@ from brakes.answers.tables import (
     take_from,
 )
 from brakes.config.forklift import ForkliftInput, StageName
+from brakes.drawings.chain import line_sketch
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
@@ -70,14 +72,18 @@ _FORCES = (
 )
 
 
-def stage_outputs(stages: Sequence[StageName]) -> tuple[Output, ...]:
-    """Numbers of the answers to stages."""
+_PEDAL = take_from(lambda answer: answer.pedal, OUTPUTS)
+
+
+def stage_outputs(stages: Sequence[StageName], with_pedal: bool = False) -> tuple[Output, ...]:
+    """Numbers of the answers to stages, of the stop with those of its pedal."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
         "forces": take_from(lambda answer: answer.forces, _FORCES),
     }
-    return tuple(output for stage in stages for output in groups[stage])
+    further = _PEDAL if with_pedal and stages != ("kinematics",) else ()
+    return (*(output for stage in stages for output in groups[stage]), *further)
 
 
 @dataclass(frozen=True)
@@ -98,6 +104,8 @@ class ForkliftAnswer(Answer):
         The forces in one brake.
     torque_from : str
         Where the torque comes from: "the file", "the stop" or "the lining's friction".
+    pedal : FromPedal, optional
+        From the pedal to the stop, if the file has one and vehicle or forces are shown.
     """
 
     design: ForkliftInput
@@ -106,6 +114,7 @@ class ForkliftAnswer(Answer):
     motion: ShoeMotion | None
     forces: InternalForces | None
     torque_from: str = ""
+    pedal: FromPedal | None = None
 
     @cached_property
     def kinematics(self) -> Kinematics | None:
@@ -116,14 +125,16 @@ class ForkliftAnswer(Answer):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Where a lining enters the drum, and the warnings of the forces."""
+        """Where a lining enters the drum, and the warnings of forces and pedal."""
         interference = () if self.motion is None else self.motion.interference
-        return (*interference, *(() if self.forces is None else self.forces.warnings))
+        parts = (self.forces, self.pedal)
+        return (*interference, *(said for part in parts if part is not None for said in part.warnings))
 
     @property
     def refusals(self) -> Sequence[str]:
         """Sentences if the truck does not stop, or the brake locks or cannot give the torque."""
-        stop = [] if self.stop is None or np.all(self.stop.stops) else [self.stop.message]
+        found = self.stop if self.pedal is None else self.pedal.braked.stop
+        stop = [] if found is None or np.all(found.stops) else [found.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
         return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
@@ -135,7 +146,7 @@ class ForkliftAnswer(Answer):
     @property
     def error(self) -> Any:
         """Sum of the stages' errors."""
-        stages = (self.stop, self.motion, self.forces)
+        stages = (self.stop, self.motion, self.forces, self.pedal)
         return sum(stage.error for stage in stages if stage is not None)
 
     def tables(self) -> list[RenderableType]:
@@ -143,7 +154,12 @@ class ForkliftAnswer(Answer):
         tables, heads = [], ("", "value", "unit")
         if self.stop is not None:
             rows = [["", str(self.stop.status), ""], *list_outputs(_VEHICLE, [self.stop])]
+            if self.stop.limited_by == "brake":
+                rows = [[words.replace("wheels locked", "wheels rolling"), *rest] for words, *rest in rows]
             tables.append(table("Vehicle", heads, rows, (0, 2)))
+        if self.pedal is not None:
+            title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
+            tables.append(outputs_table(title, OUTPUTS, self.pedal))
         if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
             rows = [
                 [
@@ -166,7 +182,7 @@ class ForkliftAnswer(Answer):
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""
-        return outputs_csv(stage_outputs(self.stages), value=self)
+        return outputs_csv(stage_outputs(self.stages, self.pedal is not None), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are shown."""
@@ -195,6 +211,7 @@ class ForkliftAnswer(Answer):
     def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
         parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
+        parts |= {} if self.pedal is None else {"pedal": plain(self.pedal)}
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
 
     def handles(self, place: float) -> Sequence[Handle]:
@@ -237,26 +254,28 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
             raise ValueError(f"the stage {name} needs the tables {_NEEDS[name]}")
     given = design.forces and design.forces.torque
     from_stop = "forces" in shown and given is None and "vehicle" in design.stages
-    stopped = forces = None
+    stopped = forces = chained = None
     with in_range(design):
-        if (from_stop or "vehicle" in shown) and design.truck and design.stop:
+        if design.pedal and shown != ("kinematics",):
+            chained = solve_pedal(design)
+            stopped = chained.braked.stop
+        elif (from_stop or "vehicle" in shown) and design.truck and design.stop:
             with of_file({}):
                 stopped = stop(design.truck.core, design.stop.core)
         motion = design.brake.motion if design.brake and shown != ("vehicle",) else None
         torque = stopped.torque_per_brake if from_stop and stopped is not None else given
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
+            piston_force, friction = design.forces.piston_force, design.forces.lining_friction
+            if chained is not None:  # the wheel may be locked: less friction than the lining's is needed
+                piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
-                    geometry,
-                    piston_force=design.forces.piston_force,
-                    torque=torque,
-                    friction=design.forces.lining_friction,
+                    geometry, piston_force=piston_force, torque=torque, friction=friction
                 )
     source = "the stop" if from_stop else "the lining's friction" if given is None else "the file"
-    return ForkliftAnswer(
-        design, shown, stopped if "vehicle" in shown else None, motion, forces, source if forces else ""
-    )
+    source, shown_stop = source if forces else "", stopped if "vehicle" in shown else None
+    return ForkliftAnswer(design, shown, shown_stop, motion, forces, source, chained)
 
 
 class ForkliftType(ArrayBrakeType[ForkliftInput]):
@@ -277,7 +296,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
         "of the shoes' reach"
     )
     model = ForkliftInput
-    sections = needs = ("truck", "stop", "brake", "levers", "forces")
+    sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums")
     example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()
     sketches: Callable[[], Rows] = staticmethod(tuple)
@@ -292,7 +311,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
 
     def outputs(self, design: ForkliftInput) -> Sequence[Output]:
         """Numbers of the stages."""
-        return stage_outputs(self.stages or design.stages)
+        return stage_outputs(self.stages or design.stages, design.pedal is not None)
 
     def default_results(self, design: ForkliftInput) -> str:
         """The most important results of each stage."""
@@ -343,8 +362,8 @@ class ForcesType(ForkliftType):
     purpose = (
         "The force on every part of the brake, from the torque of the stop and the arms of the kinematics."
     )
-    sections = ("forces", "levers")
-    needs = ("truck", "stop", "brake", "levers", "forces")
+    sections = ("forces", "levers", "pedal", "line", "drums")
+    needs = ForkliftType.needs
     example_sweep = "forces.piston_force=9:13:17 kN"
     sweep_results = "A,B,Q,P_L,lining_friction"
     key_results = (
@@ -353,7 +372,7 @@ class ForcesType(ForkliftType):
         ("margin to self-locking", "margin"),
     )
     stages = ("forces",)
-    sketches = staticmethod(levers_sketch)
+    sketches = staticmethod(lambda: [*levers_sketch(), *line_sketch()])
 
 
 FORKLIFT = ForkliftType()

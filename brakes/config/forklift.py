@@ -1,4 +1,7 @@
-"""A forklift's brakes in TOML: [truck] and [stop], [brake] or [levers], [forces]; each stage alone or all."""
+"""A forklift's brakes in TOML: [truck] and [stop], [brake] or [levers], [forces]; each stage alone or all.
+
+[pedal] and [line] put the driver's foot in place of a given force of the piston.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,9 @@ from beamdyn.common.edge.config import CoreSection, parse, read, validated
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import of_file
+from brakes.chain import Drums, HydraulicLine, Pedal
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
-from brakes.forklift.vehicle import SlopeAngle
+from brakes.vehicle.stop import SlopeAngle
 
 __all__ = ["STAGES", "ForkliftInput", "forklift_from_dict", "load_forklift", "parse_forklift"]
 
@@ -86,18 +90,25 @@ if TYPE_CHECKING:
     _StopInput = CoreSection
     _DuoServoInput = DuoServoInput
     _LeversInput = LeversInput
+    _PedalInput = _LineInput = _DrumsInput = CoreSection
 else:
     _TruckInput = section_of(Truck)
     _StopInput = section_of(StopConditions, tables={SlopeAngle: SlopeQuantity})
     _geometry = section_of(DuoServo, base=DuoServoInput)
     _DuoServoInput = create_model("_Brake", __base__=_geometry, **fields_of(DuoServo.move_shoes))
     _LeversInput = section_of(Levers, base=LeversInput)
+    _PedalInput, _LineInput, _DrumsInput = (section_of(each) for each in (Pedal, HydraulicLine, Drums))
 
 
 class ForcesInput(Section):
     """[forces]: the inputs of the forces in one brake."""
 
-    piston_force: Annotated[float, Quantity("N", "P_T", "force of the piston on the trailing shoe", above=0)]
+    piston_force: Annotated[
+        float | None,
+        Quantity(
+            "N", "P_T", "force of the piston on the trailing shoe; by [pedal] and [line] if given", above=0
+        ),
+    ] = None
     torque: Annotated[
         float | None, Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
     ] = None
@@ -115,13 +126,19 @@ class ForcesInput(Section):
 
 
 class ForkliftInput(Section):
-    """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted."""
+    """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted.
+
+    [pedal], [line] and [drums] go with all of them.
+    """
 
     truck: _TruckInput | None = None
     stop: _StopInput | None = None
     brake: _DuoServoInput | None = None
     levers: _LeversInput | None = None
     forces: ForcesInput | None = None
+    pedal: _PedalInput | None = None
+    line: _LineInput | None = None
+    drums: _DrumsInput | None = None
 
     @model_validator(mode="after")
     def _something(self) -> ForkliftInput:
@@ -133,11 +150,27 @@ class ForkliftInput(Section):
         if self.brake is not None and self.levers is not None:
             raise ValueError("[brake] and [levers] do not go together: the arms follow from the geometry")
         f = self.forces
+        if self.pedal or self.line or self.drums:
+            self._refuse_half_a_chain()
+        elif f is not None and f.piston_force is None:
+            raise ValueError("[forces]: give piston_force, or [pedal] and [line], which give it")
         if f is not None and "vehicle" not in self.stages and f.torque is None and f.lining_friction is None:
             raise ValueError(
                 "[forces]: give torque or lining_friction, or [truck] and [stop], which give the torque"
             )
         return self
+
+    def _refuse_half_a_chain(self) -> None:
+        f = self.forces
+        if f is None or not (self.pedal and self.line and {"vehicle", "forces"} <= {*self.stages}):
+            raise ValueError(
+                "[pedal], [line] and [drums] go with a stop: give [pedal], [line], [truck], [stop], [forces] "
+                "with lining_friction, and [brake] or [levers]"
+            )
+        if f.piston_force is not None or f.torque is not None or f.lining_friction is None:
+            raise ValueError(
+                "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from it"
+            )
 
     @property
     def stages(self) -> tuple[StageName, ...]:

@@ -57,7 +57,7 @@ def truck(stop: Stop) -> Drawing:
     # Of row vectors; downhill is to +x, of a truck that drives forwards to -x.
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
-    friction = float(stop.conditions.friction) * float(stop.front_load)
+    friction = float(stop.brake_force)
     arrows = ForceArrows(1.1 * L / weight)
     draw_chassis(arrows.shapes, t, turn)
     if has_load(t):
@@ -88,7 +88,8 @@ def truck(stop: Stop) -> Drawing:
 def outcome(stop: Stop) -> str:
     """Stopping distance, or why the truck does not stop, and the torque of a brake; of one case."""
     how = f"stops within {float(stop.distance):.4g} m" if stop.stops else str(stop.status)
-    return f"{how}, torque of one brake {float(stop.torque_per_brake):.5g} N m"
+    limit = ", which limits" if str(stop.limited_by) == "brake" else ""
+    return f"{how}, torque of one brake {float(stop.torque_per_brake):.5g} N m{limit}"
 
 
 def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:

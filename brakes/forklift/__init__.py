@@ -16,7 +16,7 @@ from brakes.forklift.kinematics import (
 )
 from brakes.forklift.levers import Levers
 from brakes.forklift.procedure import Procedure, brake_procedure
-from brakes.forklift.vehicle import Stop, StopConditions, Truck, stop
+from brakes.vehicle import Stop, StopConditions, Truck, stop
 
 __all__ = [
     "BENDIX_12_5",

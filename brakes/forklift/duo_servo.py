@@ -20,8 +20,8 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
-from brakes.forklift.levers import LEAST_MARGIN, ROUNDING, HasLevers, Levers
-from brakes.forklift.vehicle import ACUTE
+from brakes.forklift.levers import HasLevers, Levers
+from brakes.vehicle.axles import ACUTE, LEAST_MARGIN, ROUNDING
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
-
-ROUNDING = np.finfo(float).eps
-LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
+from brakes.vehicle.axles import LEAST_MARGIN
 
 
 class HasLevers:

@@ -13,7 +13,7 @@ from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
-from brakes.forklift.vehicle import Stop, StopConditions, Truck, stop
+from brakes.vehicle import Stop, StopConditions, Truck, stop
 
 
 @dataclass(frozen=True)

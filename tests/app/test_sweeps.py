@@ -193,6 +193,7 @@ def test_values_to_begin_with_are_around_what_is_given(document):
     given = {
         "forklift": ("truck.empty_mass", "4.76e+03:7.14e+03:21 kg"),
         "drum": ("brake.friction", "0.28:0.42:21"),
+        "vehicle": ("truck.empty_mass", "4.76e+03:7.14e+03:21 kg"),
         "caliper": ("dimensions.clearance", "1:1.5:21 mm"),
         "mechanism": ("points.E.y", "-32:-48:21 mm"),
         "scene": ("mount.bending_angle", "0:1:21 deg"),

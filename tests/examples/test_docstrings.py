@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from brakes import calipers, drum, forklift, planar
+from brakes import calipers, chain, drum, forklift, planar, vehicle
 
 ROOT = Path(__file__).parents[2]
-MODULES = (bd, calipers, drum, forklift, planar)
-KNOWN = {"np": np, "bd": bd, "calipers": calipers, "drum": drum, "forklift": forklift, "planar": planar}
+MODULES = (bd, calipers, chain, drum, forklift, planar, vehicle)
+KNOWN = {"np": np, **{module.__name__.rpartition(".")[2]: module for module in MODULES[1:]}, "bd": bd}
 NEED = {"beamdyn.count_cycles": "rainflow", "beamdyn.LoadCycles": "rainflow"}  # extras
 CHECKED = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["numpydoc_validation"]
 

@@ -16,6 +16,7 @@ from beamdyn.files.scene_inputs import SceneInput
 from brakes.config.drum import DrumInput
 from brakes.config.forklift import ForkliftInput
 from brakes.config.mechanism import CompleteMechanismInput
+from brakes.config.vehicle import VehicleInput
 from brakes.planar import JOINTS, LOADS
 
 ROOT = Path(__file__).parents[2]
@@ -46,6 +47,7 @@ def test_the_page_has_the_tables_of_all_files() -> None:
         (SceneInput, "twisted_blade"),
         (DrumInput, "drum"),
         (ForkliftInput, "forklift"),
+        (VehicleInput, "vehicle"),
     ],
 )
 def test_keys_of_an_example_are_in_its_tables(section: type, file: str) -> None:

@@ -19,10 +19,11 @@ import brakes
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.results.result import Result
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
-from brakes import drum, forklift
+from brakes import chain, drum, forklift, vehicle
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.answers.drum import BRAKE as DRUM
 from brakes.answers.forklift import FORKLIFT
+from brakes.answers.vehicle import BRAKE as VEHICLE
 from brakes.app.bases import base
 from brakes.calipers import NAMED, stop
 from brakes.reproduce.forklift_as_printed import stop_as_printed
@@ -41,6 +42,15 @@ SPEEDS = np.linspace(0.0, 100.0, 41)
 SHOE = drum.Shoe(0.138, 0.05, lining=(0.5, 1.9), pivot=(0.02, -0.11), force_arm=0.115)
 TRUCK = forklift.Truck(5950.0, (1.049, 0.359), 3500.0, (-1.2, 0.45), front_wheel_radius=0.4, wheelbase=1.89)
 STOP = forklift.StopConditions(0.1, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
+LINE, PEDAL = chain.HydraulicLine(0.02222, 0.03175), chain.Pedal(5.0, 450.0, booster=3.0)
+BICYCLE, ROAD = vehicle.Vehicle(80.0, 0.62, 1.1, 1.02), vehicle.Road(0.1, 0.8)
+
+
+def _from_pedal() -> Any:
+    text = base("forklift").replace('piston_force = "11650 N"', "lining_friction = 0.39")
+    text += '[pedal]\nratio = 5\nforce = "450 N"\nbooster = 3\n[line]\nmaster_bore = "22.22 mm"\n'
+    tables = tomllib.loads(text + 'cylinder_bore = "31.75 mm"')
+    return FORKLIFT.answer(tables, "forklift").pedal
 
 
 def _deck() -> bd.Deck:
@@ -82,8 +92,11 @@ BASES = {
     "SlidesOrLocks",
 }
 MAKERS: dict[str, Callable[[], Result]] = {
+    "Actuation": lambda: chain.actuate(PEDAL, LINE),
     "Backbone": lambda: bd.backbone(BENT, 5.0),
     "BrakeResult": lambda: drum.brake_torque(drum.simplex(SHOE), friction=0.4, force=1e3),
+    "BrakedStop": lambda: chain.brake_from_pedal(TRUCK, STOP, PEDAL, LINE, 0.7),
+    "Braking": lambda: vehicle.braking_limits(BICYCLE, 0.8, 0.7),
     "BrakeSweep": _sweep_of_a_brake,
     "CaliperAnswer": lambda: _answer(CALIPER),
     "CaliperStroke": lambda: _caliper().stroke(finger=40.0),
@@ -99,6 +112,9 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "ForkliftAnswer": lambda: _answer(FORKLIFT),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
+    "FromPedal": _from_pedal,
+    "Heat": lambda: chain.heat_of_stop(vehicle.stop(TRUCK, STOP), chain.Drums(18.0, 0.05), 1e5, 0.15),
+    "Holding": lambda: vehicle.hold(BICYCLE, ROAD),
     "InputSweep": lambda: InputSweep(("a.x",), ("mm",), (np.arange(3.0),), ("y",), ("N",), (np.ones(3),)),
     "InternalForces": lambda: forklift.internal_forces(BENDIX, piston_force=3e4, torque=9e3, clearance=5e-4),
     "Kinematics": lambda: forklift.follow_shoes(BENDIX, 5e-4),
@@ -108,6 +124,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "MechanismAnswer": lambda: _answer(MECHANISM),
     "MechanismFriction": _friction,
     "Modes": lambda: bd.natural_modes(HARVESTER, 50.0),
+    "Needed": lambda: vehicle.friction_to_hold(BICYCLE, 0.1, "both", "front"),
     "NewtonResult": lambda: newton_raphson(BENDIX.find_levers(5e-4), torque=9e3, piston_force=3e4),
     "PadWear": lambda: _caliper().wear([0.0, 1e-3]),
     "PivotFriction": lambda: _caliper().friction(0.1, 0.004, 40.0),
@@ -133,6 +150,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Tradeoff": lambda: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.05),
     "Transient": _transient,
     "TransientLoads": lambda: bd.transient_loads(_transient(), at=[0.0, 0.025]),
+    "VehicleAnswer": lambda: _answer(VEHICLE),
 }
 EXAMPLES_OF_INPUTS = (
     HARVESTER,

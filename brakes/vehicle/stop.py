@@ -1,4 +1,4 @@
-"""A truck that drives down a slope and stops with locked front wheels (Yoo et al. 1997, section 2).
+"""A truck that drives down a slope and brakes its front wheels (Yoo et al. 1997, section 2).
 
 Axes: x down the slope, y up from the ground; the origin is where the front wheels touch it. The front axle A
 is locked; the rear axle B, at x = L, leads and rolls. The wheels have no mass. With the total mass M, the
@@ -6,6 +6,9 @@ centre of gravity at x = a and at the height h = y_cg + r1 above the ground, b =
 
     N_A = M b g cos(beta) / (L + mu h),   R_A = mu N_A,
     acceleration = g sin(beta) - R_A / M,   torque of one brake = r1 R_A / 2.
+
+Brakes whose torque T is less than that let the wheels roll, with R_A = 2 T / r1 in place of mu N_A, and
+N_A = (M b g cos(beta) - h R_A) / L.
 
 Load transfer: the friction at the ground moves mu h N_A / L from the braked front axle to the leading rear
 axle. Both axle loads stay positive for any friction as long as the centre of gravity is between the axles.
@@ -25,117 +28,16 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, together
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from brakes.forklift.levers import LEAST_MARGIN, ROUNDING
+from brakes.vehicle.axles import ACUTE, LEAST_MARGIN, ROUNDING
+from brakes.vehicle.truck import Truck
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
-ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
-
-
-@dataclass(frozen=True)
-class Truck:
-    """A truck and its load; x from the front axle towards the rear, y up from the front wheels' centre.
-
-    Every value may be an array, one entry per design.
-
-    Parameters
-    ----------
-    empty_mass : float or ndarray
-        Mass of the empty truck [kg].
-    empty_cg : tuple
-        Its centre of gravity (x, y) [m].
-    load_mass : float or ndarray
-        Mass of the load [kg], which may be 0.
-    load_cg : tuple
-        Its centre of gravity (x, y) [m]; a load on the fork has x < 0.
-    front_wheel_radius : float or ndarray
-        Radius r1 of the front wheels [m].
-    wheelbase : float or ndarray
-        Distance L of the axles [m].
-
-    Raises
-    ------
-    ValueError
-        If a mass or length is not positive, or the centre of gravity, of the truck alone or with its
-        load, is not between the axles and above the ground.
-
-    References
-    ----------
-    Yoo et al. (1997), section 2.
-
-    Examples
-    --------
-    >>> truck = forklift.Truck(
-    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
-    ... )
-    >>> float(truck.mass)  # kg, with its load
-    9450.0
-    """
-
-    empty_mass: Annotated[Numbers, Described("kg", "m", "mass of the empty truck", above=0)]
-    empty_cg: tuple[
-        Annotated[Numbers, Described("m", "x", "the empty truck's centre of gravity, behind the front axle")],
-        Annotated[Numbers, Described("m", "y", "the empty truck's centre of gravity, above the front axle")],
-    ]
-    load_mass: Annotated[Numbers, Described("kg", "m_L", "mass of the load", least=0, default=0.0)]
-    load_cg: tuple[
-        Annotated[
-            Numbers, Described("m", "x_L", "the load's centre, behind the front axle: negative", default=0.0)
-        ],
-        Annotated[Numbers, Described("m", "y_L", "the load's centre, above the front axle", default=0.0)],
-    ]
-    front_wheel_radius: Annotated[Numbers, Described("m", "r1", "radius of the front wheels", above=0)]
-    wheelbase: Annotated[Numbers, Described("m", "L", "distance of the axles", above=0)]
-
-    def __post_init__(self) -> None:
-        keep_checked(self)
-        (x, y), (xl, yl) = self.empty_cg, self.load_cg
-        together(empty_mass=self.empty_mass, load_mass=self.load_mass, wheelbase=self.wheelbase,
-                 front_wheel_radius=self.front_wheel_radius,
-                 empty_x=x, empty_y=y, load_x=xl, load_y=yl)  # fmt: skip
-        self._check("the empty truck's centre of gravity", *self.empty_cg, "check {other}")
-        self._check("the centre of gravity with the load", *self.cg, "take less load, or nearer the axle")
-
-    def _check(self, name: str, x: Numbers, y: Numbers, remedy: str) -> None:
-        x, y, least = np.asarray(x), np.asarray(y), LEAST_MARGIN * np.asarray(self.wheelbase)
-        ahead = "it is ahead of the front wheel: the truck tips over it"
-        refuse(x <= least, f"x of {name}", x, "m", ahead, remedy, other="empty_cg")
-        behind = "it is behind the rear wheel, at wheelbase = {limit}"
-        late, length = x >= self.wheelbase - least, self.wheelbase
-        refuse(late, f"x of {name}", x, "m", behind, remedy, limit=length, other="empty_cg")
-        low = "it is below the ground (-front_wheel_radius)"
-        refuse(y + self.front_wheel_radius <= least, f"y of {name}", y, "m", low, remedy, other="empty_cg")
-
-    @property
-    def mass(self) -> Numbers:
-        """Mass with the load [kg]."""
-        return self.empty_mass + self.load_mass
-
-    @property
-    def cg(self) -> tuple[Numbers, Numbers]:
-        """Centre of gravity (x, y) with the load [m]."""
-        m, ml = self.empty_mass, self.load_mass
-        x, y = ((m * e + ml * w) / (m + ml) for e, w in zip(self.empty_cg, self.load_cg, strict=True))
-        return x, y
-
-    @property
-    def sizes_of_coordinates(self) -> Numbers:
-        """Sum of the lengths that make up the arms of weight and friction; it scales their rounding [m]."""
-        m, ml = self.empty_mass, self.load_mass
-        empty, load = (np.abs(x) + np.abs(y) for x, y in (self.empty_cg, self.load_cg))
-        return (m * empty + ml * load) / (m + ml) + self.front_wheel_radius + self.wheelbase
-
-    @property
-    def overturning_slopes(self) -> tuple[Numbers, Numbers]:
-        """Slopes between which the truck stands on both axles [rad]: over the front and the rear axle."""
-        a, y = self.cg
-        h = y + self.front_wheel_radius
-        return -np.arctan2(a, h), np.arctan2(self.wheelbase - a, h)
 
 
 @dataclass(frozen=True)
@@ -171,7 +73,7 @@ class StopConditions:
 
     Examples
     --------
-    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
     >>> round(conditions.speed, 3)  # m/s
     5.556
     """
@@ -215,8 +117,8 @@ class Stop(Result):
     stops : ndarray of bool
         Whether the truck comes to rest.
     status : str or ndarray of str
-        ``"stops"``, ``"stops in the rise time"``, ``"never stops"``, or ``"too near to decide"``: the slope
-        is the steepest that the brakes hold, up to 1e-9 of its pull or rounding.
+        ``"stops"``, ``"stops in the rise time"``, ``"never stops"``, ``"brakes too weak"``, or ``"too near to
+        decide"``: the slope is the steepest that the brakes hold, up to 1e-9 of its pull or rounding.
     acceleration : ndarray
         Down the slope with the full brake force, A [m/s2]; negative when the truck slows down.
     distance, time : ndarray
@@ -238,12 +140,12 @@ class Stop(Result):
 
     Examples
     --------
-    >>> truck = forklift.Truck(
+    >>> truck = vehicle.Truck(
     ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
     ... )
     >>> steep = np.radians(27.0)
-    >>> conditions = forklift.StopConditions(steep, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
-    >>> bool(forklift.stop(truck, conditions).stops)  # on 27 deg it does not
+    >>> conditions = vehicle.StopConditions(steep, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
+    >>> bool(vehicle.stop(truck, conditions).stops)  # on 27 deg it does not
     False
     """
 
@@ -274,10 +176,21 @@ class Stop(Result):
         yield self.message
 
     @property
+    def brake_force(self) -> Numbers:
+        """Force of the braked front wheels along the ground at full force [N]."""
+        return 2 * self.torque_per_brake / self.truck.front_wheel_radius
+
+    @property
+    def limited_by(self) -> Any:
+        """What limits the braking force: "road" where the front wheels lock, else "brake"."""
+        held = self.conditions.friction * self.front_load
+        return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
+
+    @property
     def residual(self) -> Numbers:
         """Residual moment of the axles' forces about the centre of gravity, over weight times wheelbase."""
         (a, y), truck, c = self.truck.cg, self.truck, self.conditions
-        height, friction = y + truck.front_wheel_radius, c.sense * c.friction * self.front_load
+        height, friction = y + truck.front_wheel_radius, c.sense * self.brake_force
         moment = (truck.wheelbase - a) * self.rear_load - a * self.front_load - height * friction
         return np.abs(moment) / ((self.front_load + self.rear_load) * truck.wheelbase)
 
@@ -313,12 +226,14 @@ _SENTENCES = {
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
     "less slope, more friction, or another load",
+    "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
+    "truck never stops; press harder, or take stronger brakes",
     "too near to decide": "does not stop: the slope is too near the steepest that the locked front wheels "
     "hold to decide; less slope, more friction, or another load",
 }
 
 
-def stop(truck: Truck, conditions: StopConditions) -> Stop:
+def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None = None) -> Stop:
     """Compute the stop of a truck that drives down a slope.
 
     Parameters
@@ -327,6 +242,9 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
         The truck and its load.
     conditions : StopConditions
         Road, speed and timing.
+    most_torque : float or ndarray, optional
+        Torque that each front brake can give [N m]; what locks its wheel if not given. The driver presses no
+        harder than that: the force rises in the rise time to the smaller one of what brake and road allow.
 
     Returns
     -------
@@ -345,28 +263,30 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
 
     Examples
     --------
-    >>> truck = forklift.Truck(
+    >>> truck = vehicle.Truck(
     ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
     ... )
-    >>> conditions = forklift.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
-    >>> round(float(forklift.stop(truck, conditions).distance), 2)  # m
+    >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> round(float(vehicle.stop(truck, conditions).distance), 2)  # m
     13.42
     """
     kind("truck", truck, Truck)
     kind("conditions", conditions, StopConditions)
-    _refuse_overturning(truck, conditions)
+    brakes = np.inf if most_torque is None else positive("most_torque", most_torque, "N m")
+    strongest = 2 * brakes / truck.front_wheel_radius
+    _refuse_overturning(truck, conditions, strongest)
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
-    together(truck=one_case, **conditions.numbers)
-    beta, V, mu, t1, t2, g, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case)
+    together(truck=one_case, most_torque=strongest, **conditions.numbers)
+    beta, V, mu, t1, t2, g, _, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case, strongest)
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
-    h, b, gc, gs = (
-        conditions.sense * (y + truck.front_wheel_radius),
-        L - a,
-        g * np.cos(beta),
-        g * np.sin(beta),
-    )
-    front, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
-    A = gs - mu * front / M
+    h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
+    gc, gs = g * np.cos(beta), g * np.sin(beta)
+    locked, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
+    locking = truck.front_wheel_radius * mu * locked / 2
+    rolls = brakes < locking
+    R = np.where(rolls, strongest, mu * locked)
+    front = np.where(rolls, (M * b * gc - R * h) / L, locked)
+    A = gs - R / M
     # The deceleration rises linearly to -A within t2; for A >= 0 there is no end.
     v2 = V + A * t2 / 2
     in_rise = v2 <= LEAST_MARGIN * V
@@ -378,8 +298,9 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
     undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
     stops, near = -undecided > A, np.abs(A) <= undecided
     braking = np.where(stops, braking, np.inf)
-    kinds = ["too near to decide", "never stops", "stops in the rise time"]
-    status = np.select([near, ~stops, in_rise], kinds, default="stops")
+    kinds = ["too near to decide", "brakes too weak", "never stops", "stops in the rise time"]
+    weak = ~stops & rolls & (gs < mu * locked / M)
+    status = np.select([near, weak, ~stops, in_rise], kinds, default="stops")
     return Stop(
         truck=truck,
         conditions=conditions,
@@ -393,7 +314,7 @@ def stop(truck: Truck, conditions: StopConditions) -> Stop:
         braking_distance=braking[()],
         speed_lost_in_rise=np.where(in_rise, V, V - v2)[()],
         speed_gained_coasting=(gs * t1)[()],
-        torque_per_brake=(truck.front_wheel_radius * mu * front / 2)[()],
+        torque_per_brake=np.where(rolls, brakes, locking)[()],
         front_load=front[()],
         rear_load=(M * gc - front)[()],
         standing_front_load=standing[()],
@@ -407,7 +328,7 @@ def _rounding(truck: Truck, conditions: StopConditions) -> Numbers:
     return ROUNDING * (4 + size)
 
 
-def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:
+def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Numbers) -> None:
     slope, sense = conditions.slope, conditions.sense
     front, rear = truck.overturning_slopes
     together(slope=slope, truck=front)
@@ -421,6 +342,8 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions) -> None:
         refuse(bad, "slope", slope, "rad", bound, remedy, limit=sense * limit)
     (a, y), mu = truck.cg, np.asarray(conditions.friction)
     least = mu * (y + truck.front_wheel_radius) + LEAST_MARGIN * truck.wheelbase
-    bad, limit = (sense < 0) & (a <= least), a / (y + truck.front_wheel_radius)
+    limit = a / (y + truck.front_wheel_radius)
+    pressed = strongest >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
+    bad = (sense < 0) & (a <= least) & pressed
     bound = "braking overturns the truck over the front axle from {limit} on"
     refuse(bad, "friction", mu, "", bound, "less load, or nearer the axle and lower", limit=limit)

@@ -1,0 +1,114 @@
+"""What a pedal adds to the answer on a vehicle's stop: the chain from foot to wheels, and the heat."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.edge.input_sweep import Output
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.results.result import Result
+from brakes.answers.tables import take, take_fields, take_from
+from brakes.chain import Actuation, BrakedStop, Heat, brake_from_pedal, heat_of_stop
+from brakes.config.forklift import ForkliftInput
+from brakes.forklift import internal_forces
+
+
+@dataclass(frozen=True)
+class FromPedal(Result):
+    """A forklift's stop from its pedal.
+
+    Attributes
+    ----------
+    braked : BrakedStop
+        The chain, and the stop.
+    heat : Heat
+        Energy of the stop.
+    brake_error : ndarray
+        Bound of the relative error of the torque that a brake can give.
+    """
+
+    braked: BrakedStop
+    heat: Heat
+    brake_error: Numbers
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield from self.braked.headline()
+
+    @property
+    def error(self) -> Numbers:
+        """Bound of the relative error of the stop, by that of the brake's torque where the brake limits."""
+        stop = self.braked.stop
+        slowing = np.where(stop.stops, np.abs(stop.acceleration), np.inf)
+        sensitive = np.where(stop.limited_by == "brake", stop.brake_force / stop.truck.mass / slowing, 0.0)
+        return (self.brake_error * (1 + sensitive))[()]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Limits that are passed, and what cannot be reached, a sentence each."""
+        asked = {
+            "force at which the wheels lock": self.braked.locking,
+            "least friction that stops": self.braked.friction,
+        }
+        none = (f"{what}: {found.message}" for what, found in asked.items() if np.ndim(found.reason) == 0)
+        lacking = tuple(said for said in none if ": none" in said)
+        return (*self.braked.actuation.warnings, *self.heat.warnings, *lacking)
+
+
+OUTPUTS = (
+    *take_from(
+        lambda found: found.braked.actuation,
+        take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel"),
+    ),
+    Output(
+        "allowed_force",
+        "largest pedal force by ISO 6292:2020",
+        lambda found: found.braked.actuation.pedal.allowed_force,
+        "N",
+    ),
+    *take_from(
+        lambda found: found.braked,
+        (
+            *take_fields(BrakedStop, "available_torque locking_torque"),
+            take("locking_force", "force on the pedal at which the wheels just lock", "N"),
+            take("least_friction", "least friction of the tyres that stops the truck"),
+        ),
+    ),
+    *take_from(
+        lambda found: found.heat,
+        take_fields(Heat, "energy drum_energy tyre_energy temperature_rise lining_pv"),
+    ),
+)
+
+
+def solve_pedal(design: ForkliftInput) -> FromPedal:
+    """Solve the chain of a file that has a pedal.
+
+    Parameters
+    ----------
+    design : ForkliftInput
+        The file.
+
+    Raises
+    ------
+    ValueError
+        As for `brakes.chain.brake_from_pedal`.
+    """
+    geometry = design.brake.motion if design.brake else design.levers and design.levers.core
+    assert geometry and design.pedal and design.line and design.truck and design.stop and design.forces
+    with of_file({"friction": "lining_friction"}):
+        unit = internal_forces(geometry, piston_force=1.0, friction=design.forces.lining_friction)
+    if np.any(unit.status != "equilibrium"):
+        raise ValueError(f"lining_friction = {design.forces.lining_friction:.6g}: {unit.message}")
+    with of_file({}):
+        braked = brake_from_pedal(
+            design.truck.core, design.stop.core, design.pedal.core, design.line.core, unit.torque
+        )
+    drums = design.drums and design.drums.core
+    pressed = (unit.A + unit.C) * braked.stop.torque_per_brake / unit.torque
+    heat = heat_of_stop(braked.stop, drums, pressed, unit.levers.drum_radius)
+    return FromPedal(braked, heat, unit.error)

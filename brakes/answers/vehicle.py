@@ -1,0 +1,219 @@
+"""Answers on vehicles: parking in both directions, pitching over, which axle locks, and the lever's force."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import RenderableType
+
+from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.input_sweep import Output
+from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.results.result import plain
+from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_fields, take_from
+from brakes.chain import Actuation, actuate, force_for, ratio_for
+from brakes.config.vehicle import VehicleInput
+from brakes.drawings.vehicle import standing, vehicle_sketch
+from brakes.vehicle import Braking, Holding, Needed, braking_limits, friction_to_hold, hold
+from brakes.vehicle.axles import Axle
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_AXLES: tuple[Axle, Axle] = ("front", "rear")
+_HOLDING = take_fields(
+    Holding,
+    "largest_slope slipping_slope tipping_slope rolling_slope needed_force front_load rear_load",
+)
+_BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
+_LEVER = take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel")
+_WORDS = {
+    "friction_to_hold": ("least friction of the tyres that holds", ""),
+    "force_to_hold": ("force on the lever that holds", "N"),
+    "ratio_to_hold": ("ratio of the lever that holds at its force", ""),
+}
+
+
+@dataclass(frozen=True)
+class OneDirection:
+    """What is found with one axle downhill, or leading in a stop.
+
+    Attributes
+    ----------
+    holding : Holding
+        At rest on the slope.
+    braking : Braking
+        In a stop.
+    needs : mapping of str to Needed
+        Answers backwards, by name.
+    """
+
+    holding: Holding
+    braking: Braking
+    needs: Mapping[str, Needed]
+
+
+def _of_one_way(with_lever: bool) -> tuple[Output, ...]:
+    """Numbers of one way."""
+    names = [*_WORDS] if with_lever else ["friction_to_hold"]
+    asked = (
+        Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])
+        for name in names
+    )
+    return (
+        *take_from(lambda way: way.holding, _HOLDING),
+        *asked,
+        *take_from(lambda way: way.braking, _BRAKING),
+    )
+
+
+def _outputs(with_lever: bool) -> tuple[Output, ...]:
+    """All numbers; those of a way end in the axle that is downhill or leads."""
+    ways = tuple(
+        Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
+        for axle in _AXLES
+        for o in take_from(lambda answer, axle=axle: answer.ways[axle], _of_one_way(with_lever))
+    )
+    return (*ways, *(take_from(lambda answer: answer.lever, _LEVER) if with_lever else ()))
+
+
+@dataclass(frozen=True)
+class VehicleAnswer(Answer):
+    """A vehicle at rest on a slope and in a stop, with either axle downhill.
+
+    Attributes
+    ----------
+    design : VehicleInput
+        The file.
+    ways : mapping of {"front", "rear"} to OneDirection
+        What is found, by the axle that is downhill or leads.
+    lever : Actuation, optional
+        From the lever to the brakes, if there is one.
+    """
+
+    design: VehicleInput
+    ways: Mapping[Axle, OneDirection]
+    lever: Actuation | None
+
+    @property
+    def error(self) -> Any:
+        """Bound of the relative error of the largest slopes."""
+        return max(way.holding.error / np.min(way.holding.largest_slope) for way in self.ways.values())
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """A sentence on each way in which it does not hold on the slope."""
+        ways = self.ways.items()
+        return [f"{axle} axle downhill: {said}" for axle, way in ways for said in _failures(way.holding)]
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """A sentence if the lever's force is above what the standard allows."""
+        return () if self.lever is None else self.lever.warnings
+
+    def tables(self) -> list[RenderableType]:
+        """Both ways, what cannot be had and why, and the lever."""
+        rows = list_outputs(_of_one_way(self.lever is not None), [*self.ways.values()])
+        said = [["", *(str(way.holding.status) for way in self.ways.values()), ""]]
+        first = [["ends the hardest braking", *(str(way.braking.first) for way in self.ways.values()), ""]]
+        heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
+        title = "The vehicle at rest on the slope, and in a stop"
+        tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
+        tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
+        if self.lever is not None:
+            tables.append(outputs_table("The lever at its force", _LEVER, self.lever))
+        return tables
+
+    def _lacking(self) -> Iterable[tuple[str, str, str]]:
+        """What has no answer backwards: words, axle, and the reason."""
+        for axle, way in self.ways.items():
+            for name, found in way.needs.items():
+                if found.reason:
+                    yield _WORDS[name][0], axle, found.message
+
+    def rows(self) -> Iterable[Sequence[object]]:
+        """Names, values and units of all numbers."""
+        return outputs_csv(_outputs(self.lever is not None), value=self)
+
+    def figure(self, place: float | None = None) -> Figure:
+        """The vehicle on its slope, both ways."""
+        return figure_of(self.drawings(0.0))
+
+    def drawings(self, place: float) -> Rows:
+        """The vehicle on its slope with the forces on it, both ways."""
+        return [[standing(way.holding) for way in self.ways.values()]]
+
+    def values(self) -> dict[str, Any]:
+        """The answer as plain numbers, lists and strings."""
+        return {"ways": plain(self.ways), "lever": plain(self.lever)}
+
+
+def _failures(holding: Holding) -> list[str]:
+    """A sentence if it does not hold; of many cases how many."""
+    if np.ndim(holding.status):
+        short = int(np.sum(holding.status != "holds"))
+        return [f"it does not hold in {short} of {holding.status.size} cases"] if short else []
+    return [] if holding.status == "holds" else [holding.message]
+
+
+class ParkingType(ArrayBrakeType[VehicleInput]):
+    """Vehicles at rest on a slope, and the limits of their stops."""
+
+    name = "vehicle"
+    title = "Parking and grip"
+    purpose = (
+        "A vehicle on a slope: does it hold, slip or tip, what must the lever give, which axle locks first?"
+    )
+    method = "equilibrium of two axles in closed form"
+    error_from = "rounding of inputs and sums"
+    model = VehicleInput
+    sections = needs = ("truck", "vehicle", "road", "braking", "lever", "cable", "line", "brakes")
+    example_sweep = "road.friction=0.4:0.9:26"
+    sweep_results = "largest_slope_front,largest_slope_rear"
+    key_results = (
+        ("largest slope, front axle downhill", "largest_slope_front"),
+        ("largest slope, rear axle downhill", "largest_slope_rear"),
+    )
+
+    def solve(self, design: VehicleInput) -> VehicleAnswer:
+        """Both ways, and the lever."""
+        with in_range(design), of_file({}):
+            line = design.cable or design.line
+            pulled = actuate(design.lever.core, line.core) if design.lever and line else None
+            gain = design.brakes.core.force_per_actuator_force if design.brakes else np.nan
+            force = gain * pulled.actuator_force if pulled else np.inf
+            ways: dict[Axle, OneDirection] = {
+                axle: _solve_way(design, axle, force, pulled, gain) for axle in _AXLES
+            }
+        return VehicleAnswer(design, ways, pulled)
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Explain the symbols of the form."""
+        return vehicle_sketch()
+
+    def outputs(self, design: VehicleInput) -> Sequence[Output]:
+        """Numbers of both ways, and of the lever."""
+        return _outputs(design.lever is not None)
+
+
+def _solve_way(
+    design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
+) -> OneDirection:
+    """What is found with an axle downhill or leading."""
+    standing, road, braking = design.standing, design.road.core, design.braking
+    holding = hold(standing, road, braking.parked_by, axle, force)
+    needs = {"friction_to_hold": friction_to_hold(standing, road.slope, braking.parked_by, axle)}
+    if pulled is not None:
+        each = holding.needed_force / gain
+        needs["force_to_hold"] = force_for(pulled.pedal, pulled.line, each)
+        needs["ratio_to_hold"] = ratio_for(pulled.pedal, pulled.line, each)
+    return OneDirection(holding, braking_limits(standing, road.friction, braking.front_share, axle), needs)
+
+
+BRAKE = ParkingType()

@@ -1,0 +1,24 @@
+"""From pedal or lever to the wheels: actuation by line or cable, what brakes and road give, and the heat."""
+
+from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
+from brakes.chain.braked import BrakedStop, brake_from_pedal
+from brakes.chain.heat import Drums, Heat, heat_of_stop
+from brakes.chain.lines import BrakeCable, HydraulicLine
+from brakes.chain.pedal import Pedal
+from brakes.chain.wheel_brakes import WheelBrakes
+
+__all__ = [
+    "Actuation",
+    "BrakeCable",
+    "BrakedStop",
+    "Drums",
+    "Heat",
+    "HydraulicLine",
+    "Pedal",
+    "WheelBrakes",
+    "actuate",
+    "brake_from_pedal",
+    "force_for",
+    "heat_of_stop",
+    "ratio_for",
+]

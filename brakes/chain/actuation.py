@@ -1,0 +1,228 @@
+"""From the force on the pedal to that on the brakes' actuators, and back.
+
+Force and stroke rise with the pedal's force, each by a formula that is solved for it; at a given force on the
+actuators the stroke of the rod is given too, so that the pedal's force falls as 1 / ratio while its travel
+rises in proportion to the ratio. Each question backwards so has one answer or none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
+from beamdyn.common.inputs.checks import InvalidValue, kind, refuse
+from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.one_line import spanned, warned
+from beamdyn.common.results.result import Result
+from brakes.chain.lines import BrakeCable, HydraulicLine
+from brakes.chain.pedal import CLAUSES, Pedal
+from brakes.vehicle.backwards import Needed, needed
+
+Line = HydraulicLine | BrakeCable
+_EDGE = 1e-9  # relative excess over a limit that is rounding
+
+
+@dataclass(frozen=True)
+class Actuation(Result):
+    """Forces and travel from pedal to actuators; arrays have one entry per case.
+
+    Attributes
+    ----------
+    pedal, line : Pedal, HydraulicLine or BrakeCable
+        What was pressed.
+    pedal_force : ndarray
+        On the pedal [N].
+    output_force : ndarray
+        Behind pedal and booster [N].
+    pressure : ndarray
+        Of the line [Pa]; nan of a cable.
+    actuator_force : ndarray
+        On each actuator of a brake [N].
+    pedal_travel : ndarray
+        Of the pedal [m].
+
+    Examples
+    --------
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> found = chain.actuate(chain.Pedal(ratio=5.0, force=450.0), line)
+    >>> round(float(found.actuator_force), 1)  # N
+    4593.9
+    """
+
+    pedal: Pedal
+    line: Line
+    pedal_force: Annotated[Numbers, Meaning("N", "force on the pedal")]
+    output_force: Annotated[Numbers, Meaning("N", "force behind pedal and booster")]
+    pressure: Annotated[Numbers, Meaning("Pa", "pressure of the line", "MPa")]
+    actuator_force: Annotated[Numbers, Meaning("N", "force on each actuator")]
+    pedal_travel: Annotated[Numbers, Meaning("m", "travel of the pedal", "mm")]
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield f"{spanned(self.pedal_force, 'N')} on the pedal"
+        yield f"{spanned(self.actuator_force, 'N')} on each actuator"
+        yield warned(self.warnings)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence if the force is above what ISO 6292 allows."""
+        limb, most = self.pedal.operated_by, self.pedal.allowed_force
+        hardest = float(np.max(self.pedal_force))
+        if hardest <= most * (1 + _EDGE):
+            return ()
+        clause = f"ISO 6292:2020, {CLAUSES[limb]}"
+        return (f"the pedal's force is {hardest:.6g} N: {clause}, allows {most:g} N for a {limb}",)
+
+
+def actuate(pedal: Pedal, line: Line) -> Actuation:
+    """Find the forces and the travel at the pedal's force.
+
+    Parameters
+    ----------
+    pedal : Pedal
+        The pedal and the force on it.
+    line : HydraulicLine or BrakeCable
+        What carries the force on.
+
+    Returns
+    -------
+    Actuation
+        Complete result, arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        If the pedal would travel further than it can, or the pressure exceeds that of the cylinders.
+
+    References
+    ----------
+    Standard (a lever, the volume of a fluid): `Pedal`, `HydraulicLine`. Limits of force: ISO 6292:2020.
+
+    Examples
+    --------
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> found = chain.actuate(chain.Pedal(ratio=5.0, force=450.0, booster=3.0), line)
+    >>> round(float(found.pressure) / 1e6, 3)  # MPa
+    17.407
+    """
+    _check(pedal, line)
+    output = pedal.output_force
+    travel = pedal.ratio * line.stroke(output)
+    _refuse_pressure(line, output)
+    if pedal.travel is not None:
+        late = np.asarray(travel) > pedal.travel * (1 + _EDGE)
+        bound, remedy = "the pedal needs a travel of {limit}", "less lost travel, or a smaller ratio"
+        refuse(late, "travel", pedal.travel, "m", bound, remedy, limit=travel)
+    force = pedal.force + 0.0 * output
+    return Actuation(pedal, line, force, output, line.pressure(output), line.gain * output, travel)
+
+
+def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
+    """Force on the pedal [N] that gives a force on the actuators.
+
+    Parameters
+    ----------
+    pedal : Pedal
+        The pedal; its own force is not used.
+    line : HydraulicLine or BrakeCable
+        What carries the force on.
+    actuator_force : float or ndarray
+        Wanted on each actuator [N].
+
+    Returns
+    -------
+    Needed
+        The force; none where the line or the travel of the pedal ends before.
+
+    Raises
+    ------
+    ValueError
+        If the force is negative, or the shapes do not broadcast.
+
+    References
+    ----------
+    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+
+    Examples
+    --------
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> round(float(chain.force_for(chain.Pedal(ratio=5.0, force=1.0), line, 11650.0).value), 2)  # N
+    1141.19
+    """
+    output = _output_for(pedal, line, actuator_force)
+    travel = pedal.ratio * line.stroke(output)
+    return needed(pedal.rod_force_for(output) / pedal.ratio, *_ends(pedal, line, output, travel))
+
+
+def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
+    """Ratio of the pedal that gives a force on the actuators at the pedal's force.
+
+    Parameters
+    ----------
+    pedal : Pedal
+        The pedal; its own ratio is not used.
+    line : HydraulicLine or BrakeCable
+        What carries the force on.
+    actuator_force : float or ndarray
+        Wanted on each actuator [N].
+
+    Returns
+    -------
+    Needed
+        The ratio; none where the pedal's travel runs out before, as it rises with the ratio.
+
+    Raises
+    ------
+    ValueError
+        If the force is negative, or the shapes do not broadcast.
+
+    References
+    ----------
+    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+
+    Examples
+    --------
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175, lost_travel=0.02)
+    >>> pedal = chain.Pedal(ratio=1.0, force=450.0, travel=0.15)
+    >>> chain.ratio_for(pedal, line, 11650.0).message
+    'none: the travel of the pedal runs out before: it rises with the ratio and with the force'
+    """
+    output = _output_for(pedal, line, actuator_force)
+    ratio = pedal.rod_force_for(output) / pedal.force
+    return needed(ratio, *_ends(pedal, line, output, ratio * line.stroke(output)))
+
+
+def _check(pedal: Pedal, line: Line) -> None:
+    kind("pedal", pedal, Pedal)
+    if not isinstance(line, HydraulicLine | BrakeCable):
+        raise InvalidValue("line", line, "give a HydraulicLine or a BrakeCable")
+    together(pedal=pedal.output_force, line=line.gain + line.stroke(1.0))
+
+
+def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
+    """Force behind the booster that gives a force on the actuators [N]."""
+    _check(pedal, line)
+    wanted = not_negative("actuator_force", actuator_force, "N")
+    together(actuator_force=wanted, pedal=pedal.output_force * line.gain)
+    return wanted / line.gain
+
+
+def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[tuple[Numbers, str], ...]:
+    """Which cases have no answer, and why."""
+    over = output > line.limit * (1 + _EDGE)
+    far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + _EDGE))
+    return (
+        (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
+        (far, "the travel of the pedal runs out before: it rises with the ratio and with the force"),
+    )
+
+
+def _refuse_pressure(line: Line, output: Numbers) -> None:
+    if isinstance(line, HydraulicLine) and line.most_pressure is not None:
+        over = np.asarray(output) > line.limit * (1 + _EDGE)
+        bound, remedy = "the pedal's force gives {limit}", "less force, or a larger master cylinder"
+        refuse(over, "most_pressure", line.most_pressure, "Pa", bound, remedy, limit=line.pressure(output))

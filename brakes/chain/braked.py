@@ -1,0 +1,140 @@
+"""A truck's stop from its pedal: the smaller of what the brakes give and what the road holds.
+
+The torque of a brake is in proportion to the force on its actuator, by the brake factor C* times the radius.
+So the pedal's force at which the wheels just lock follows from the torque of locked wheels in closed form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, positive
+from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.result import Result
+from brakes.chain.actuation import Actuation, Line, actuate, force_for
+from brakes.chain.pedal import Pedal
+from brakes.vehicle import Stop, StopConditions, Truck, friction_to_stop, stop
+from brakes.vehicle.backwards import Needed
+
+
+@dataclass(frozen=True)
+class BrakedStop(Result):
+    """A stop from the pedal; arrays have one entry per case.
+
+    Attributes
+    ----------
+    actuation : Actuation
+        From the pedal to the actuators.
+    stop : Stop
+        The stop with what brakes and road give.
+    available_torque : ndarray
+        Torque that each front brake can give at the pedal's force [N m].
+    locking_torque : ndarray
+        Torque of each front brake at which its wheel locks [N m].
+    locking : Needed
+        Force on the pedal at which the wheels just lock [N].
+    friction : Needed
+        Least friction of the tyres with which locked wheels stop the truck.
+
+    Examples
+    --------
+    >>> truck = vehicle.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> pedal = chain.Pedal(ratio=5.0, force=450.0)
+    >>> found = chain.brake_from_pedal(truck, conditions, pedal, line, torque_per_force=0.728)
+    >>> str(found.stop.limited_by), round(float(found.locking_force))  # N
+    ('brake', 1141)
+    """
+
+    actuation: Actuation
+    stop: Stop
+    available_torque: Annotated[Numbers, Meaning("N m", "torque that a brake can give")]
+    locking_torque: Annotated[Numbers, Meaning("N m", "torque at which its wheel locks")]
+    locking: Needed
+    friction: Needed
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield from self.stop.headline()
+        yield "" if np.ndim(self.limited_by) else f"the {self.limited_by} limits"
+
+    @property
+    def limited_by(self) -> Any:
+        """What limits the braking force: "brake" or "road"."""
+        return self.stop.limited_by
+
+    @property
+    def locking_force(self) -> Numbers:
+        """Force on the pedal at which the wheels just lock [N]; nan where it cannot be reached."""
+        return self.locking.value
+
+    @property
+    def least_friction(self) -> Numbers:
+        """Least friction of the tyres with which locked wheels stop the truck; nan where there is none."""
+        return self.friction.value
+
+
+def brake_from_pedal(
+    truck: Truck, conditions: StopConditions, pedal: Pedal, line: Line, torque_per_force: Numbers
+) -> BrakedStop:
+    """Stop a truck by its pedal.
+
+    Parameters
+    ----------
+    truck : Truck
+        The truck and its load.
+    conditions : StopConditions
+        Road, speed and timing.
+    pedal : Pedal
+        The pedal and the force on it.
+    line : HydraulicLine or BrakeCable
+        What carries the force to the brakes.
+    torque_per_force : float or ndarray
+        Torque of a brake over the force on its actuator, C* r [m].
+
+    Returns
+    -------
+    BrakedStop
+        Complete result, arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        As for `actuate` and `brakes.vehicle.stop`.
+
+    References
+    ----------
+    Yoo et al. (1997), section 2, with the smaller one of two forces.
+
+    Examples
+    --------
+    >>> truck = vehicle.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> pedal = chain.Pedal(ratio=5.0, force=450.0, booster=3.0)
+    >>> found = chain.brake_from_pedal(truck, conditions, pedal, line, torque_per_force=0.728)
+    >>> round(float(found.stop.distance), 2)  # m, with locked wheels
+    13.42
+    """
+    gain = positive("torque_per_force", torque_per_force, "m")
+    actuation = actuate(pedal, line)
+    available = gain * actuation.actuator_force
+    stopped, locked = stop(truck, conditions, available), stop(truck, conditions)
+    torque = locked.torque_per_brake
+    return BrakedStop(
+        actuation,
+        stopped,
+        available_torque=available,
+        locking_torque=torque,
+        locking=force_for(pedal, line, torque / gain),
+        friction=friction_to_stop(truck, conditions),
+    )

@@ -1,0 +1,92 @@
+"""A pedal or lever, with a booster behind it: the force that it pushes or pulls with, and its limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.checks import one_of
+from beamdyn.common.inputs.described import Described
+
+Limb = Literal["foot", "hand", "grip"]
+ALLOWED = {"foot": 450.0, "hand": 300.0, "grip": 150.0}  # [N] ISO 6292:2020, 4.5.2, 4.5.4 and 4.5.5
+CLAUSES = {"foot": "4.5.2", "hand": "4.5.4", "grip": "4.5.5"}
+
+
+@dataclass(frozen=True)
+class Pedal:
+    """A pedal or lever and its booster; every number may be an array, one entry per design.
+
+    The rod behind the pedal has ratio times the force; a booster multiplies that up to its run-out, past
+    which only the driver's force grows: output = rod + (booster - 1) min(rod, runout).
+
+    Parameters
+    ----------
+    ratio : float or ndarray
+        Travel of the pedal over that of its rod, at the end of either.
+    force : float or ndarray
+        Force on the pedal [N].
+    operated_by : {"foot", "hand", "grip"}
+        What presses: a foot, a hand that pulls, or a hand that squeezes a grip.
+    booster : float or ndarray
+        Force behind the booster over that of the rod, up to the run-out.
+    runout : float or ndarray, optional
+        Force of the rod at which the booster gives all that it can [N]; never reached if not given.
+    travel : float or ndarray, optional
+        Largest travel of the pedal [m]; not checked if not given.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds.
+
+    Examples
+    --------
+    >>> float(chain.Pedal(ratio=5.0, force=450.0, booster=3.0, runout=2000.0).output_force)  # N
+    6250.0
+    """
+
+    ratio: Annotated[Numbers, Described("", "i", "travel of the pedal over that of its rod", above=0)]
+    force: Annotated[Numbers, Described("N", "F", "force on the pedal or lever", above=0)]
+    operated_by: Annotated[Limb, Described(meaning="what presses: a foot, a hand, or a squeezed grip")] = (
+        "foot"
+    )
+    booster: Annotated[Numbers, Described("", "k", "booster: its output over the rod's force", least=1)] = 1.0
+    runout: Annotated[
+        Numbers | None,
+        Described(
+            "N", "", "force of the rod at which the booster gives its most; never if not given", above=0
+        ),
+    ] = None
+    travel: Annotated[
+        Numbers | None,
+        Described("m", "", "largest travel of the pedal; not checked if not given", above=0),
+    ] = None
+
+    def __post_init__(self) -> None:
+        one_of("operated_by", self.operated_by, tuple(ALLOWED))
+        keep_checked(self)
+        numbers = {name: x for name, x in vars(self).items() if name != "operated_by" and x is not None}
+        together(**numbers)
+
+    @property
+    def allowed_force(self) -> float:
+        """Largest force on the pedal that ISO 6292:2020 allows [N]."""
+        return ALLOWED[self.operated_by]
+
+    @property
+    def output_force(self) -> Numbers:
+        """Force behind the booster [N]."""
+        rod = self.ratio * self.force
+        most = np.inf if self.runout is None else self.runout
+        return (rod + (self.booster - 1) * np.minimum(rod, most))[()]
+
+    def rod_force_for(self, output: Numbers) -> Numbers:
+        """Force of the rod [N] at which the booster gives a force: the inverse of both its lines."""
+        assisted = output / self.booster
+        if self.runout is None:
+            return assisted
+        return np.maximum(assisted, output - (self.booster - 1) * self.runout)[()]

@@ -1,0 +1,74 @@
+"""Vehicles in TOML: [truck] or [vehicle], [road], [braking]; [lever] with [cable] or [line] and [brakes]."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field, model_validator
+
+from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
+from beamdyn.common.edge.sections import section_of
+from brakes.chain import BrakeCable, HydraulicLine, Pedal, WheelBrakes
+from brakes.vehicle import Road, Truck, Vehicle
+from brakes.vehicle.axles import Braked
+from brakes.vehicle.stop import SlopeAngle
+
+__all__ = ["VehicleInput"]
+
+
+class BrakingInput(Section):
+    """[braking]: which wheels are braked."""
+
+    front_share: Annotated[
+        float,
+        Quantity(
+            "", "phi", "share of the front wheels in the braking force", least=0, most=1, remedy="60 % is 0.6"
+        ),
+    ]
+    parked_by: Annotated[Braked, Field(description="axles whose wheels the parking brake holds")] = "both"
+
+
+if TYPE_CHECKING:
+    _TruckInput = _VehicleInput = _RoadInput = CoreSection
+    _LeverInput = _CableInput = _LineInput = _BrakesInput = CoreSection
+else:
+    _TruckInput, _VehicleInput = section_of(Truck), section_of(Vehicle)
+    _RoadInput = section_of(Road, tables={SlopeAngle: SlopeQuantity})
+    _LeverInput, _CableInput = section_of(Pedal), section_of(BrakeCable)
+    _LineInput, _BrakesInput = section_of(HydraulicLine), section_of(WheelBrakes)
+
+
+class VehicleInput(Section):
+    """A vehicle on a slope: [truck] or [vehicle], [road], [braking], and what its parking brake is pulled by.
+
+    [lever], [cable] or [line], and [brakes] go together.
+    """
+
+    truck: _TruckInput | None = None
+    vehicle: _VehicleInput | None = None
+    road: _RoadInput
+    braking: BrakingInput
+    lever: _LeverInput | None = None
+    cable: _CableInput | None = None
+    line: _LineInput | None = None
+    brakes: _BrakesInput | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> VehicleInput:
+        if (self.truck is None) == (self.vehicle is None):
+            raise ValueError("give either [truck], which has a load, or [vehicle]")
+        if self.cable is not None and self.line is not None:
+            raise ValueError("[cable] and [line] do not go together: one of them carries the lever's force")
+        given = [part is not None for part in (self.lever, self.cable or self.line, self.brakes)]
+        if any(given) and not all(given):
+            raise ValueError("[lever], [cable] or [line], and [brakes] go together: give all three or none")
+        return self
+
+    @property
+    def standing(self) -> Vehicle:
+        """The vehicle with its load."""
+        if self.truck is not None:
+            return self.truck.core.vehicle
+        assert self.vehicle is not None
+        return self.vehicle.core

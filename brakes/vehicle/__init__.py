@@ -1,0 +1,24 @@
+"""Vehicles of two axles: stop, parking and hill hold, pitching over, and which axle locks first."""
+
+from brakes.vehicle.axles import Vehicle
+from brakes.vehicle.backwards import Needed, friction_to_hold, friction_to_stop
+from brakes.vehicle.braking import Braking, braking_limits
+from brakes.vehicle.holding import Holding, Road, hold
+from brakes.vehicle.stop import Stop, StopConditions, stop
+from brakes.vehicle.truck import Truck
+
+__all__ = [
+    "Braking",
+    "Holding",
+    "Needed",
+    "Road",
+    "Stop",
+    "StopConditions",
+    "Truck",
+    "Vehicle",
+    "braking_limits",
+    "friction_to_hold",
+    "friction_to_stop",
+    "hold",
+    "stop",
+]

@@ -1,0 +1,142 @@
+"""A vehicle of two axles: loads of its axles, and the braking at which it slips, locks or pitches over.
+
+Let R be the braking force of all wheels along the ground, over the force normal to it, W = M g cos(beta):
+the braking ratio tau = R / W. With the centre of gravity at the height h, and at the distances a behind the
+front axle and b before the rear axle, a + b = L, moments about where the tyres touch the ground give
+
+    loads over W: (b + tau h) / L in front and (a - tau h) / L at the rear, if the front axle leads,
+                  (b - tau h) / L in front and (a + tau h) / L at the rear, if the rear axle leads.
+
+The wheels have no mass. The axle that leads is the one at the front of the motion, or the lower one at rest
+on a slope, where tau = tan(beta). So one formula covers stops and parking.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.checks import one_of, refuse
+from beamdyn.common.inputs.described import Described
+
+Axle = Literal["front", "rear"]
+Braked = Literal["front", "rear", "both"]
+ROUNDING = np.finfo(float).eps
+LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
+ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """Mass and centre of gravity of a vehicle of two axles; every value may be an array, one per design.
+
+    Parameters
+    ----------
+    mass : float or ndarray
+        Mass M with load or rider [kg].
+    cg_behind_front : float or ndarray
+        Distance a of the centre of gravity behind the front axle [m].
+    cg_height : float or ndarray
+        Height h of the centre of gravity above the ground [m].
+    wheelbase : float or ndarray
+        Distance L of the axles [m].
+
+    Raises
+    ------
+    ValueError
+        If a value is not positive, or the centre of gravity is not between the axles.
+
+    References
+    ----------
+    Standard (moments about where the tyres stand).
+
+    Examples
+    --------
+    >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
+    >>> round(bicycle.pitching_ratio("front"), 6)  # it pitches over the front wheel at 0.56 g
+    0.563636
+    """
+
+    mass: Annotated[Numbers, Described("kg", "M", "mass with load or rider", above=0)]
+    cg_behind_front: Annotated[
+        Numbers, Described("m", "a", "centre of gravity, behind the front axle", above=0)
+    ]
+    cg_height: Annotated[Numbers, Described("m", "h", "centre of gravity, above the ground", above=0)]
+    wheelbase: Annotated[Numbers, Described("m", "L", "distance of the axles", above=0)]
+
+    def __post_init__(self) -> None:
+        keep_checked(self)
+        together(**vars(self))
+        a, L = np.asarray(self.cg_behind_front), np.asarray(self.wheelbase)
+        bound = "it is behind the rear axle, at {other} = {limit}"
+        late = a >= L * (1 - LEAST_MARGIN)
+        refuse(late, "cg_behind_front", a, "m", bound, limit=self.wheelbase, other="wheelbase")
+
+    def arm(self, axle: Axle) -> Numbers:
+        """Distance [m] of the centre of gravity from the other axle, by which an axle is loaded at rest."""
+        return self.wheelbase - self.cg_behind_front if axle == "front" else self.cg_behind_front
+
+    def load_share(self, axle: Axle, ratio: Numbers, leading: Axle) -> Numbers:
+        """Load of an axle over that of both, at a braking ratio; negative past pitching over.
+
+        Parameters
+        ----------
+        axle : {"front", "rear"}
+            The axle.
+        ratio : float or ndarray
+            Braking ratio tau.
+        leading : {"front", "rear"}
+            The axle that leads in the motion, or is the lower one at rest.
+        """
+        moved = ratio * self.cg_height
+        return (self.arm(axle) + (moved if axle == leading else -moved)) / self.wheelbase
+
+    def pitching_ratio(self, leading: Axle) -> Numbers:
+        """Braking ratio at which the axle that does not lead lifts: it pitches over the other one."""
+        return self.arm(other(leading)) / self.cg_height
+
+    def locking_ratio(self, axle: Axle, friction: Numbers, share: Numbers, leading: Axle) -> Numbers:
+        """Braking ratio at which an axle with a share of the braking force locks; inf if it never does.
+
+        Parameters
+        ----------
+        axle, leading : {"front", "rear"}
+            As for `load_share`.
+        friction : float or ndarray
+            Friction mu of the tyres.
+        share : float or ndarray
+            Share of the axle in the braking force, 0 to 1. From share tau = mu load_share follows tau.
+        """
+        sense = 1 if axle == leading else -1
+        left = share * self.wheelbase - sense * friction * self.cg_height
+        locks = (np.asarray(share) > 0) & (left > 0)
+        return np.where(locks, friction * self.arm(axle) / np.where(locks, left, 1.0), np.inf)[()]
+
+    def slipping_ratio(self, friction: Numbers, braked: Braked, leading: Axle) -> Numbers:
+        """Largest braking ratio that the road holds, with all braked wheels at the limit of their friction.
+
+        Parameters
+        ----------
+        friction : float or ndarray
+            Friction mu of the tyres.
+        braked : {"front", "rear", "both"}
+            The axles whose wheels are braked.
+        leading : {"front", "rear"}
+            As for `load_share`.
+        """
+        one_of("braked", braked, ("front", "rear", "both"))
+        alone = 1.0 + 0.0 * friction
+        return alone * friction if braked == "both" else self.locking_ratio(braked, friction, alone, leading)
+
+    @property
+    def overturning_slopes(self) -> tuple[Numbers, Numbers]:
+        """Slopes between which it stands on both axles [rad]: over the front and the rear axle."""
+        return -np.arctan(self.pitching_ratio("front")), np.arctan(self.pitching_ratio("rear"))
+
+
+def other(axle: Axle) -> Axle:
+    """The other axle."""
+    return "rear" if axle == "front" else "front"

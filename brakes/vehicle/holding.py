@@ -1,0 +1,216 @@
+"""Parking and hill hold: whether a vehicle at rest on a slope holds, slips or tips, and the largest slope.
+
+With the braking ratio tau = tan(beta) of `brakes.vehicle.axles`, it slips past tan(beta) = `slipping_ratio`,
+tips over the lower axle past tan(beta) = `pitching_ratio`, and a brake that gives the force R along the
+ground lets it roll past sin(beta) = R / (M g).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, numbers, together
+from beamdyn.common.inputs.checks import kind, one_of, refuse
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.one_line import spanned
+from beamdyn.common.results.result import Result
+from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
+from brakes.vehicle.stop import STANDARD_GRAVITY, SlopeAngle
+
+STEEPEST = np.pi / 4  # [rad] past which no road goes
+_EDGE = 1e-9  # difference of slopes, over the larger one, that is not decided
+
+
+@dataclass(frozen=True)
+class Road:
+    """A road; every value may be an array, one entry per case.
+
+    Parameters
+    ----------
+    slope : float or ndarray
+        Angle beta of the road [rad], 0 to 45 deg.
+    friction : float or ndarray
+        Friction mu of the tyres.
+    gravity : float or ndarray
+        Gravity g [m/s2].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds.
+
+    Examples
+    --------
+    >>> vehicle.Road(slope=0.15, friction=0.7).gravity  # m/s2
+    9.806
+    """
+
+    slope: Annotated[
+        Numbers,
+        SlopeAngle("rad", "beta", "slope of the road", least=0, most=STEEPEST, remedy="no road is steeper"),
+    ]
+    friction: Annotated[
+        Numbers, Described("", "mu", "friction of tyres on the road", above=0, most=2, remedy="70 % is 0.7")
+    ]
+    gravity: Annotated[Numbers, Described("m/s2", "g", "gravity", above=0)] = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        keep_checked(self)
+        together(**vars(self))
+
+
+@dataclass(frozen=True)
+class Holding(Result):
+    """Whether a vehicle holds on a slope; arrays have one entry per case.
+
+    Attributes
+    ----------
+    vehicle, road : Vehicle, Road
+        What stands where.
+    braked : {"front", "rear", "both"}
+        Axles whose wheels are braked.
+    downhill : {"front", "rear"}
+        The axle that is lower.
+    status : str or ndarray of str
+        On the road's slope: ``"holds"``, ``"slips"``, ``"tips"``, ``"rolls"`` (the brake is too weak), or
+        ``"too near to decide"``, within 1e-9 of the largest slope.
+    slipping_slope, tipping_slope, rolling_slope : ndarray
+        Slopes past which the braked wheels slip, the vehicle tips over its lower axle, and the brake gives
+        too little [rad]; pi / 2 where it never does.
+    largest_slope : ndarray
+        The least of these three [rad].
+    needed_force : ndarray
+        Braking force along the ground on the road's slope [N].
+    front_load, rear_load : ndarray
+        Normal forces of the axles on the road's slope [N]; negative past tipping.
+    error : float
+        Bound of the error of the slopes [rad], by rounding.
+
+    Examples
+    --------
+    >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
+    >>> road = vehicle.Road(slope=0.3, friction=0.8)
+    >>> vehicle.hold(bicycle, road, braked="rear", downhill="front").message
+    'slips past 14.6307 deg: on 17.1887 deg it slips'
+    """
+
+    vehicle: Vehicle
+    road: Road
+    braked: Braked
+    downhill: Axle
+    status: Any
+    slipping_slope: Annotated[Numbers, Meaning("rad", "slips past", "deg")]
+    tipping_slope: Annotated[Numbers, Meaning("rad", "tips over the lower axle past", "deg")]
+    rolling_slope: Annotated[Numbers, Meaning("rad", "rolls, as the brake gives too little, past", "deg")]
+    largest_slope: Annotated[Numbers, Meaning("rad", "largest slope", "deg")]
+    needed_force: Annotated[Numbers, Meaning("N", "braking force that the slope needs", "kN")]
+    front_load: Annotated[Numbers, Meaning("N", "front axle's load on the slope", "kN")]
+    rear_load: Annotated[Numbers, Meaning("N", "rear axle's load on the slope", "kN")]
+    error: float
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield f"{self.downhill} axle downhill: largest slope {spanned(np.degrees(self.largest_slope), 'deg')}"
+        yield f"{self.status}" if np.ndim(self.status) == 0 else f"{np.sum(self.status == 'holds')} hold"
+
+    @property
+    def limited_by(self) -> Any:
+        """What ends the largest slope: "slips", "tips" or "rolls"."""
+        ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
+        return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
+
+    @property
+    def message(self) -> str:
+        """What happens past the largest slope and on the given one, in one sentence; of one case."""
+        on, most = np.degrees(float(self.road.slope)), np.degrees(float(self.largest_slope))
+        what = {"too near to decide": "it is too near to decide"}.get(str(self.status), f"it {self.status}")
+        return f"{self.limited_by} past {most:.6g} deg: on {on:.6g} deg {what}"
+
+
+def hold(
+    vehicle: Vehicle,
+    road: Road,
+    braked: Braked = "both",
+    downhill: Axle = "front",
+    brake_force: Numbers = np.inf,
+) -> Holding:
+    """Find whether a vehicle at rest holds on a slope, and the largest slope.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    road : Road
+        The road.
+    braked : {"front", "rear", "both"}
+        Axles whose wheels the parking brake holds.
+    downhill : {"front", "rear"}
+        The lower axle.
+    brake_force : float or ndarray, optional
+        Force along the ground that the brakes can give [N]; they hold the wheels on any slope if not given.
+
+    Returns
+    -------
+    Holding
+        Complete result, arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        If a choice is unknown, the force is negative, or the shapes do not broadcast.
+
+    References
+    ----------
+    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
+
+    Examples
+    --------
+    >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
+    >>> road = vehicle.Road(slope=0.3, friction=0.8)
+    >>> found = vehicle.hold(bicycle, road, braked="both", downhill="front")
+    >>> str(found.limited_by), round(float(np.degrees(found.largest_slope)), 2)
+    ('tips', 29.41)
+    """
+    kind("vehicle", vehicle, Vehicle)
+    kind("road", road, Road)
+    one_of("downhill", downhill, ("front", "rear"))
+    force = (
+        brake_force
+        if np.ndim(brake_force) == 0 and brake_force == np.inf
+        else numbers("brake_force", brake_force, "N")
+    )
+    refuse(np.asarray(force) < 0, "brake_force", force, "N", "it must be 0 or more")
+    together(vehicle=vehicle.mass * vehicle.cg_height * vehicle.wheelbase, brake_force=force, **vars(road))
+    weight = vehicle.mass * road.gravity
+    slips = np.arctan(vehicle.slipping_ratio(road.friction, braked, downhill))
+    tips = np.arctan(vehicle.pitching_ratio(downhill))
+    rolls = np.where(np.asarray(force) < weight, np.arcsin(np.minimum(force / weight, 1.0)), np.pi / 2)
+    slips, tips, rolls, slope = np.broadcast_arrays(slips, tips, rolls, road.slope)
+    most = np.minimum(np.minimum(slips, tips), rolls)
+    near = np.abs(slope - most) <= _EDGE * most
+    kinds = [near, slope < most, slope > tips, slope > slips]
+    status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
+    front, rear = (
+        weight * np.cos(slope) * vehicle.load_share(axle, np.tan(slope), downhill)
+        for axle in ("front", "rear")
+    )
+    return Holding(
+        vehicle=vehicle,
+        road=road,
+        braked=braked,
+        downhill=downhill,
+        status=status[()],
+        slipping_slope=slips[()],
+        tipping_slope=tips[()],
+        rolling_slope=rolls[()],
+        largest_slope=most[()],
+        needed_force=(weight * np.sin(slope))[()],
+        front_load=front[()],
+        rear_load=rear[()],
+        error=float(16 * ROUNDING),
+    )

@@ -1,0 +1,164 @@
+"""`brakes vehicle`, and `brakes forklift` with a pedal: what is printed, exit codes, and bad input."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from brakes.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PEDAL = """
+[pedal]
+ratio = 5
+force = "450 N"
+booster = 3
+travel = "150 mm"
+
+[line]
+master_bore = "22.22 mm"
+cylinder_bore = "31.75 mm"
+piston_travel = "0.5 mm"
+compliance = "0.05 cm3/bar"
+most_pressure = "18 MPa"
+
+[drums]
+drum_mass = "18 kg"
+lining_area = "500 cm2"
+"""
+LINE = '[line]\nmaster_bore = "20 mm"\ncylinder_bore = "20 mm"'
+BARE = '[vehicle]\nmass = "1 kg"\ncg_behind_front = "1 m"\ncg_height = "1 m"\nwheelbase = "2 m"'
+
+
+@pytest.fixture
+def run(capsys, tmp_path):
+    """Run a command on a text with some of it replaced."""
+
+    def run(name: str, text: str, *replaced: tuple[str, str]) -> tuple[int, str, str]:
+        for old, new in replaced:
+            assert old in text
+            text = text.replace(old, new, 1)
+        file = tmp_path / "brake.toml"
+        file.write_text(text)
+        code = main([name, str(file)])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def forklift():
+    text = (EXAMPLES / "forklift.toml").read_text()
+    return text.replace('piston_force = "11650 N"', "lining_friction = 0.390283458") + PEDAL
+
+
+@pytest.fixture
+def truck():
+    return (EXAMPLES / "vehicle.toml").read_text()
+
+
+def row(out: str, words: str) -> list[str]:
+    (line,) = (line for line in out.splitlines() if line.strip().startswith(words + "  "))
+    return line.strip().removeprefix(words).split()
+
+
+def test_a_forklift_is_braked_from_its_pedal(run, forklift):
+    code, out, _ = run("forklift", forklift)
+    assert code == DONE and "the road limits" in out
+    assert row(out, "force on the pedal at which the wheels just lock")[0] == "380.40"
+    assert row(out, "... into the drums")[0] == "57386"
+    assert row(out, "acceleration, wheels locked")[0] == "-1.5715"
+
+
+def test_a_forklift_whose_brakes_are_too_weak_has_no_answer(run, forklift):
+    code, out, err = run("forklift", forklift, ("booster = 3", "booster = 1"))
+    assert code == NO_ANSWER and "the brake limits" in out
+    assert row(out, "acceleration, wheels rolling")[0] == "1.1462"
+    assert "the brakes hold less than the slope pulls" in err
+
+
+def test_both_directions_of_parking(run, truck):
+    code, out, _ = run("vehicle", truck)
+    assert code == DONE
+    assert row(out, "slips past")[:2] == ["41.272", "25.607"]
+    assert row(out, "tips over the lower axle past")[0] == "15.245"
+    code, _, err = run("vehicle", truck, ('slope = "15 %"', 'slope = "28 %"'))
+    assert code == NO_ANSWER
+    assert "front axle downhill: rolls past 14.6061 deg: on 15.6422 deg it tips" in err
+    assert "rear axle downhill: rolls past 14.6061 deg: on 15.6422 deg it rolls" in err
+
+
+def test_force_at_the_lever_holds_on_its_slope(run, truck):
+    """The force that is found, given again: the slope is the largest, which is too near to decide."""
+    _, out, _ = run("vehicle", truck, ('force = "250 N"', 'force = "200 N"'))
+    found = row(out, "force on the lever that holds")[0]
+    code, _, err = run("vehicle", truck, ('force = "250 N"', f'force = "{float(found) * 1.001:.9g} N"'))
+    assert code == DONE and not err
+    code, _, err = run("vehicle", truck, ('force = "250 N"', f'force = "{float(found) * 0.999:.9g} N"'))
+    assert code == NO_ANSWER and "it rolls" in err
+
+
+def test_what_cannot_be_had_says_why(run, truck):
+    _, out, _ = run(
+        "vehicle", truck, ('travel = "300 mm"', 'travel = "200 mm"'), ('slope = "15 %"', 'slope = "30 %"')
+    )
+    said = " ".join(out.split())
+    assert "front downhill: none: the vehicle tips over its lower axle before, whatever the friction" in said
+    assert "none: the travel of the pedal runs out before" in said or "ratio of the lever" in said
+
+
+def test_the_bicycle_pitches_over(run):
+    text = (EXAMPLES / "bicycle.toml").read_text()
+    code, out, _ = run("vehicle", text, ("front_share = 0.7", "front_share = 1"))
+    assert code == DONE
+    assert row(out, "pitches over, g")[0] == "0.5636"
+    assert row(out, "ends the hardest braking") == ["pitching", "over", "front"]
+
+
+def test_files_have_all_numbers(tmp_path, capsys):
+    sheet = tmp_path / "vehicle.csv"
+    assert main(["vehicle", str(EXAMPLES / "vehicle.toml"), "--csv", str(sheet)]) == DONE
+    found = {name: value for name, value, *_ in csv.reader(sheet.read_text().splitlines())}
+    assert float(found["slipping_slope_rear"]) == pytest.approx(25.6072006, abs=1e-6)
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    "old, new, parts",
+    [
+        ('travel = "150 mm"', 'travel = "100 mm"', ('pedal.travel = "100 mm"', "needs a travel of 132.6")),
+        ("18 MPa", "16 MPa", ('line.most_pressure = "16 MPa"', "gives 17.4")),
+        ("booster = 3", "booster = 0.5", ("pedal.booster", "at least 1")),
+        ("ratio = 5", "ratio = 0", ("pedal.ratio", "greater than 0")),
+        ("lining_friction = 0.390283458", 'piston_force = "9 kN"', ("give lining_friction alone",)),
+        ("lining_friction = 0.390283458", "lining_friction = 1.3", ("lining_friction = 1.3", "locked")),
+        ("[line]", "[levers]", ("levers",)),
+    ],
+)
+def test_bad_input_of_a_pedal_is_a_sentence(run, forklift, old, new, parts):
+    code, out, err = run("forklift", forklift, (old, new))
+    assert code == BAD_INPUT and not out.strip()
+    assert [part for part in parts if part not in err] == []
+
+
+@pytest.mark.parametrize(
+    "old, new, part",
+    [
+        ('slope = "15 %"', 'slope = "46 deg"', "at most 45 deg"),
+        ('slope = "15 %"', 'slope = "-5 deg"', "at least 0, at most 45 deg"),
+        ("front_share = 1 ", "front_share = 60 ", "60 % is 0.6"),
+        ("[brakes]\nc_star = 4.6", "# none\n#", "go together"),
+        ("\n[cable]\n", f"\n{LINE}\n[cable]\n", "do not go together"),
+        ("[road]", f"{BARE}\n[road]", "either [truck]"),
+        ('travel = "300 mm"', 'travel = "100 mm"', "needs a travel of 192 mm"),
+    ],
+)
+def test_bad_input_of_a_vehicle_is_a_sentence(run, truck, old, new, part):
+    if old.startswith("[brakes]"):
+        truck, old, new = truck[: truck.index("\n[brakes]")], "[road]", "[road]"
+    code, out, err = run("vehicle", truck, (old, new))
+    assert code == BAD_INPUT and not out.strip()
+    assert part in err
