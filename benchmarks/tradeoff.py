@@ -266,8 +266,8 @@ To 55 rad/s it is the published scene, to 6 rad/s the outward blade.
 {steady}
 ## What each digit of each analysis costs
 
-The published scene at 55 rad/s, at a setting angle of 45 deg where that is said: the time of the whole call at
-the loosest tolerance, and that of tighter ones over it.
+The published scene at 55 rad/s, at a setting angle of 45 deg where that is said: the time of the whole
+call at the loosest tolerance, and that of tighter ones over it.
 
 {digits}
 ## What `tolerance=` makes of it
