@@ -5,30 +5,23 @@ Types of brakes with no options of their own are listed in `STANDARD`: a command
 
 from __future__ import annotations
 
+from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from brakes.answers.base import BrakeType
 
-
-def _drum() -> BrakeType[Any]:
-    """Drum brakes, imported when they are wanted: a command imports no other brake than its own."""
-    from brakes.answers.drum import BRAKE
-
-    return BRAKE
-
-
-def _vehicle() -> BrakeType[Any]:
-    """Vehicles, imported when they are wanted."""
-    from brakes.answers.vehicle import BRAKE
-
-    return BRAKE
-
-
-STANDARD = {  # by the name of the command: what it shows, and what gives the type
-    "drum": ("Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.", _drum),
-    "vehicle": (
-        "Parking on a slope in both directions, pitching over, and which axle locks first.",
-        _vehicle,
-    ),
+_SHOWN = {  # by the name of the command and of its module: what it shows
+    "drum": "Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.",
+    "band": "Torque, tensions, pressure and self-locking of a simple or differential band brake.",
+    "vehicle": "Parking on a slope in both directions, pitching over, and which axle locks first.",
 }
+
+
+def _load(name: str) -> BrakeType[Any]:
+    """A type, imported when it is wanted: a command imports no other brake than its own."""
+    return import_module(f"brakes.answers.{name}").BRAKE
+
+
+STANDARD = {name: (shown, partial(_load, name)) for name, shown in _SHOWN.items()}

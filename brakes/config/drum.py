@@ -8,14 +8,15 @@ from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, parse, read, validated
-from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.inputs import Section
 from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.inputs.checks import InvalidValue
-from brakes.drum import BrakeResult, DrumBrake, Shoe, brake_torque, duplex, simplex, wheel_cylinder_force
+from brakes.config.load import LoadInput, RubbingInput
+from brakes.drum import BrakeResult, DrumBrake, Shoe, brake_torque, duplex, simplex
 
 __all__ = ["DrumInput", "drum_from_dict", "load_drum", "parse_drum"]
 
@@ -74,40 +75,7 @@ else:
     _SecondShoeInput = create_model("SecondShoeInput", __base__=Section, **_DIFFERENCES)
 
 
-class LoadInput(Section):
-    """[load]: the force on the shoes, or the torque or pressure that the brake is to give: exactly one."""
-
-    force: Annotated[float | None, Quantity("N", "P", "force on each shoe", above=0)] = None
-    cylinder_bore: Annotated[
-        float | None, Quantity("m", "d", "bore of the wheel cylinder, with line_pressure", above=0)
-    ] = None
-    line_pressure: Annotated[
-        float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
-    ] = None
-    torque: Annotated[float | None, Quantity("N m", "M", "torque that the brake is to give", above=0)] = None
-    peak_pressure: Annotated[
-        float | None, Quantity("Pa", "p_max", "largest pressure on any lining", above=0)
-    ] = None
-
-    @model_validator(mode="after")
-    def _one(self) -> LoadInput:
-        given = [name for name, value in self if value is not None]
-        if given not in (["force"], ["cylinder_bore", "line_pressure"], ["torque"], ["peak_pressure"]):
-            raise ValueError(
-                "give one of force, torque, peak_pressure, or cylinder_bore with line_pressure; "
-                f"got {' and '.join(given) or 'none'}"
-            )
-        return self
-
-    @property
-    def given(self) -> dict[str, Any]:
-        """The load as an argument of `brake_torque`."""
-        if self.line_pressure is not None:
-            return {"force": wheel_cylinder_force(self.cylinder_bore, self.line_pressure)}
-        return {name: value for name, value in self if value is not None}
-
-
-class DrumBrakeInput(Section):
+class DrumBrakeInput(RubbingInput):
     """[brake]: which shoes lead, the direction of the drum, and the friction of the linings."""
 
     assembly: Annotated[
@@ -116,12 +84,6 @@ class DrumBrakeInput(Section):
             description="simplex: one shoe leads, one trails; duplex: both lead forward; "
             "single: one shoe, which leads forward"
         ),
-    ]
-    direction: Annotated[Literal["forward", "reverse"], Field(description="direction of the drum")] = (
-        "forward"
-    )
-    friction: Annotated[
-        float, Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
     ]
 
 

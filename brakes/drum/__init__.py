@@ -7,17 +7,9 @@ on the other side as if it lay on the +x side; its vectors are in these axes of 
 where the drum's surface moves towards the pin, on the +x side in a drum that turns clockwise.
 """
 
-from brakes.drum.assembly import (
-    BrakeResult,
-    DrumBrake,
-    brake_torque,
-    duplex,
-    shoe_torque,
-    simplex,
-    stop_energy,
-    temperature_rise,
-    wheel_cylinder_force,
-)
+from brakes.common.energy import stop_energy, temperature_rise
+from brakes.common.loads import wheel_cylinder_force
+from brakes.drum.assembly import BrakeResult, DrumBrake, brake_torque, duplex, shoe_torque, simplex
 from brakes.drum.shoe import Shoe, ShoeResult
 
 __all__ = [

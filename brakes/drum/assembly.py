@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, not_negative, numbers, positive, together
+from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
-from brakes.drum.shoe import Shoe, ShoeResult, SlidesOrLocks, integrals, solve_shoe
+from brakes.common.loads import take_load
+from brakes.common.locking import SlidesOrLocks
+from brakes.drum.shoe import Shoe, ShoeResult, integrals, solve_shoe
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,8 @@ class BrakeResult(SlidesOrLocks):
     (True, False)
     """
 
+    grips = "shoe"
+
     brake: DrumBrake
     reverse: bool
     shoes: tuple[ShoeResult, ...]
@@ -188,8 +192,7 @@ def brake_torque(
     """
     kind("brake", brake, DrumBrake)
     reverse = flag("reverse", reverse)
-    name, value = _take_only({"force": force, "peak_pressure": peak_pressure, "torque": torque})
-    value = positive(name, value, {"force": "N", "peak_pressure": "Pa", "torque": "N m"}[name])
+    name, value = take_load(force=force, peak_pressure=peak_pressure, torque=torque)
     mu = not_negative("friction", friction)
     shapes = {f"shoes[{k}]": integrals(shoe).n for k, shoe in enumerate(brake.shoes)}
     together(friction=mu, **{name: value}, **shapes)
@@ -278,128 +281,6 @@ def shoe_torque(
     return found.shoes[0]
 
 
-def _take_only(given: dict[str, Any]) -> tuple[str, Any]:
-    """Name and value of the one input that is given; a ValueError unless it is exactly one."""
-    present = {name: value for name, value in given.items() if value is not None}
-    if len(present) != 1:
-        got = " and ".join(present) or "none"
-        raise ValueError(f"give exactly one of {', '.join(given)}; got {got}")
-    return next(iter(present.items()))
-
-
 def _over(function: np.ufunc, values: Sequence[Numbers]) -> Numbers:
     """The least, the largest, or whether any, of the shoes' values in each case."""
     return function.reduce(np.broadcast_arrays(*values))[()]
-
-
-def wheel_cylinder_force(bore: Numbers, line_pressure: Numbers) -> Numbers:
-    """Compute the force [N] of a wheel cylinder's piston from its bore [m] and the line pressure [Pa].
-
-    References
-    ----------
-    Standard: pressure times area.
-
-    Examples
-    --------
-    >>> round(float(drum.wheel_cylinder_force(bore=0.02, line_pressure=5e6)), 1)  # N: p pi d^2 / 4
-    1570.8
-    """
-    return np.pi / 4 * positive("bore", bore, "m") ** 2 * not_negative("line_pressure", line_pressure, "Pa")
-
-
-def stop_energy(
-    mass: Numbers,
-    speed: Numbers,
-    final_speed: Numbers = 0.0,
-    *,
-    descent: Numbers = 0.0,
-    inertia: Numbers = 0.0,
-    rolling_radius: Numbers | None = None,
-    g: float = 9.806,
-) -> Numbers:
-    """Compute the energy that the brakes absorb in a stop [J].
-
-    Parameters
-    ----------
-    mass : float or ndarray
-        Mass of the vehicle [kg].
-    speed, final_speed : float or ndarray
-        Speed before and after [m/s].
-    descent : float or ndarray
-        Height lost during the stop [m]; negative uphill.
-    inertia : float or ndarray
-        Moment of inertia of the wheels and all that turns with them [kg m2]; needs `rolling_radius`.
-    rolling_radius : float or ndarray, optional
-        Radius of the wheels [m].
-    g : float
-        Gravity [m/s2].
-
-    Returns
-    -------
-    float or ndarray
-        Energy [J].
-
-    Raises
-    ------
-    ValueError
-        If a value is out of bounds, the final speed is not below the first, or the radius is missing.
-
-    References
-    ----------
-    Standard: kinetic and potential energy.
-
-    Examples
-    --------
-    >>> drum.stop_energy(mass=1000.0, speed=20.0)  # J: m v^2 / 2
-    200000.0
-    """
-    m, v1 = positive("mass", mass, "kg"), positive("speed", speed, "m/s")
-    v2 = numbers("final_speed", final_speed)
-    refuse((np.asarray(v2) < 0) | (v2 >= v1), "final_speed", v2, "m/s", "give 0 or more, below speed")
-    rotating = not_negative("inertia", inertia, "kg m2")
-    if np.any(rotating) and rolling_radius is None:
-        raise ValueError("inertia is given without rolling_radius: give the wheels' radius in m")
-    rolling = 1.0 if rolling_radius is None else positive("rolling_radius", rolling_radius, "m")
-    kinetic = (m + rotating / rolling**2) * (v1**2 - v2**2) / 2
-    return kinetic + m * not_negative("g", g, "m/s2") * numbers("descent", descent, "m")
-
-
-def temperature_rise(
-    energy: Numbers, drum_mass: Numbers, specific_heat: Numbers = 500.0, share: Numbers = 1.0
-) -> Numbers:
-    """Compute the mean temperature rise of a drum in one stop [K], without loss of heat.
-
-    Parameters
-    ----------
-    energy : float or ndarray
-        Energy of the stop [J].
-    drum_mass : float or ndarray
-        Total mass of the drums that share the energy [kg].
-    specific_heat : float or ndarray
-        Specific heat of the drums [J/(kg K)]; 500 for cast iron.
-    share : float or ndarray
-        Fraction of the energy that goes into the drums, from 0 to 1.
-
-    Returns
-    -------
-    float or ndarray
-        Temperature rise [K].
-
-    Raises
-    ------
-    ValueError
-        If a value is out of bounds.
-
-    References
-    ----------
-    Standard: all energy stays in the drum, of one temperature.
-
-    Examples
-    --------
-    >>> drum.temperature_rise(energy=100e3, drum_mass=5.0)  # K
-    40.0
-    """
-    part = not_negative("share", share)
-    refuse(np.asarray(part) > 1, "share", part, "", "give a fraction of the energy, from 0 to 1")
-    heated = positive("drum_mass", drum_mass, "kg") * positive("specific_heat", specific_heat, "J/(kg K)")
-    return not_negative("energy", energy, "J") * part / heated

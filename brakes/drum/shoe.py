@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
-from beamdyn.common.results.result import Result
+from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
 
 _START = "start of the lining, from straight down, where the pin is"
 _END = "end of the lining, from straight down"
@@ -32,7 +32,6 @@ _PRESSURE_ZERO = (
 )
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 _EPS = np.finfo(float).eps
-_LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 
 
 @dataclass(frozen=True)
@@ -94,7 +93,7 @@ class Shoe:
         (a1, a2), (b, y) = self.lining, self.pivot
         together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,
                  lining_start=a1, lining_end=a2, pivot_x=b, pivot_y=y)  # fmt: skip
-        y, least = np.asarray(y), _LEAST_MARGIN * np.asarray(self.drum_radius)
+        y, least = np.asarray(y), LEAST_MARGIN * np.asarray(self.drum_radius)
         bound, remedy = "the pin lies below the centre", "give (b, -c), c > 0"
         refuse(y >= -least, "pivot[1]", self.pivot[1], "m", bound, remedy)
         far = np.hypot(b, y)
@@ -176,47 +175,6 @@ def integrals(shoe: Shoe) -> _Integrals:
     return _Integrals(K, S, C, n, d, peak, dK / K, (dS + dC) / np.hypot(S, C), dn, dd)
 
 
-class SlidesOrLocks(Result):
-    """Base of results of shoes that slide, or lock by themselves if the friction is large enough."""
-
-    friction: Numbers
-    locking_friction: Numbers
-    locked: Numbers
-
-    @property
-    def status(self) -> Any:
-        """``"slides"`` or ``"locked"``; an array of these for many cases."""
-        return np.where(self.locked, "locked", "slides")[()]
-
-    @property
-    def message(self) -> str:
-        """Meaning of the status, in one sentence."""
-        locked = np.asarray(self.locked)
-        if not locked.any():
-            return "slides: the friction is below self-locking"
-        where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
-        mu, least = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
-        return _say_locked(mu, least, where)
-
-    def messages_of_locked(self, count: int) -> dict[int, str]:
-        """The message of each case that locks, of as many cases, by its row."""
-        given = self.friction, self.locking_friction, self.locked
-        mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
-        return {i: _say_locked(mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}
-
-
-def _say_locked(friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
-    """Say that shoes lock, with the ranges of their friction and of that at which they do."""
-    mu, least = (
-        " to ".join(dict.fromkeys(f"{float(end(values)):.4g}" for end in (np.min, np.max)))
-        for values in (friction, locking)
-    )
-    return (
-        f"locked{where}: friction {mu} is at or past self-locking, {least}; "
-        "the shoe grips by itself, and its torque does not follow from what presses it"
-    )
-
-
 @dataclass(frozen=True)
 class ShoeResult(SlidesOrLocks):
     """Forces on a shoe; vectors are in its own axes, their components last.
@@ -257,6 +215,7 @@ class ShoeResult(SlidesOrLocks):
     (False, 0.999)
     """
 
+    grips = "shoe"
     field_units: ClassVar[dict[str, str]] = {"N": "force normal tangential pin_reaction"}
 
     shoe: Shoe
@@ -301,7 +260,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     with np.errstate(divide="ignore"):
         limit = np.where(s * d < -i.d_error, n / np.abs(d), np.inf)
     bracket_error = i.n_error + mu * i.d_error + _EPS * (n + mu * np.abs(d))
-    locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(_LEAST_MARGIN * n, bracket_error))
+    locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(LEAST_MARGIN * n, bracket_error))
     bracket = np.where(locked, np.nan, n + s * mu * d)
     load = force * arm / bracket  # A p0
     normal = _turn(load[..., None] * _vector(-i.S, i.C), shoe.phase)

@@ -48,10 +48,15 @@ def examples_of(program: Program) -> tuple[Example, ...]:
     return _KNOWN[program.name]
 
 
-def _accepted(program: Program) -> Iterator[Example]:
-    """Check the TOML files of the installed package, or of the source tree around it."""
+def examples_folder() -> Path:
+    """The examples of the installed package, or of the source tree around it."""
     packed = Path(__file__).with_name("shipped_examples")
-    folder = packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
+    return packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
+
+
+def _accepted(program: Program) -> Iterator[Example]:
+    """Check the TOML files of the examples."""
+    folder = examples_folder()
     found = [file for place in (folder, folder / "calipers") for file in place.glob("*.toml")]
     for file in sorted(found, key=lambda file: file.name):
         text, name = file.read_text(encoding="utf-8"), file.name.removesuffix(".toml")

@@ -1,0 +1,206 @@
+"""Answers on brakes whose linings are pressed by one force: each type names its class and its drawings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import RenderableType
+
+from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.input_sweep import Output
+from beamdyn.common.edge.tables import table
+from beamdyn.common.inputs.checks import InvalidValue
+from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.doubts import doubt
+from brakes.answers.tables import list_outputs, outputs_csv, take_fields, take_from
+from brakes.config.machine import MachineInput, file_of
+from brakes.drawings.machine import charts_of, machine_figure
+from brakes.machines import LiningResult, Machine, MachineResult, solve_brake
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_WHOLE = take_fields(
+    MachineResult,
+    "torque c_star c_star_slope force peak_pressure radius locking_friction margin error",
+)
+_LINING = take_fields(LiningResult, "torque peak_pressure")
+Draw = Callable[[MachineResult], Drawing]
+
+
+def _of_lining(brake: Machine) -> tuple[Output, ...]:
+    """Numbers of a lining of a brake."""
+    forces = (
+        Output(name, stated.words, lambda lining, name=name: lining.reactions[name], stated.unit)
+        for name, stated in brake.reactions.items()
+    )
+    return *_LINING, *forces
+
+
+def _outputs(brake: Machine) -> tuple[Output, ...]:
+    """All numbers of a brake; those of a lining end in its number."""
+    count = len(brake.linings(0.0, False))
+    return take_from(lambda answer: answer.result, _WHOLE) + tuple(
+        Output(f"{o.name}_{i + 1}", f"{o.words}, lining {i + 1}", o.of, o.unit, o.scale)
+        for i in range(count)
+        for o in take_from(lambda answer, i=i: answer.result.linings[i], _of_lining(brake))
+    )
+
+
+@dataclass(frozen=True)
+class MachineAnswer(Answer):
+    """Forces in a brake whose linings are pressed by one force.
+
+    Attributes
+    ----------
+    design : MachineInput
+        The file.
+    result : MachineResult
+        The forces.
+    """
+
+    design: MachineInput
+    result: MachineResult
+
+    @property
+    def error(self) -> Any:
+        """Bound of the relative error of torque, forces and C*; nan where the brake locks."""
+        return self.result.error
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """What else a designer must know."""
+        return self.result.brake.remarks(self.result.friction)
+
+    @property
+    def refusals(self) -> Sequence[str]:
+        """A sentence if the brake locks."""
+        return (self.result.message,) if np.any(self.result.locked) else ()
+
+    def refusals_of_cases(self, count: int) -> dict[int, str]:
+        """A sentence on each design whose brake locks, by row."""
+        return self.result.messages_of_locked(count)
+
+    def by_law(self) -> dict[str, MachineResult]:
+        """The result under each law of the pressure, by its words, the chosen law first.
+
+        A law under which there is no result, such as that of a block that would lift, is left out.
+        """
+        brake, found = self.result.brake, {}
+        for law in sorted(brake.laws, key=lambda law: law != brake.law):
+            try:
+                given = self.design.load.given | {"reverse": self.result.reverse}
+                found[brake.laws[law]] = solve_brake(
+                    brake.with_law(law), friction=self.result.friction, **given
+                )
+            except InvalidValue:
+                continue
+        return found or {"value": self.result}
+
+    def tables(self) -> list[RenderableType]:
+        """The brake under each law, its linings, and what the numbers hang on."""
+        result, laws = self.result, self.by_law()
+        direction = "reverse" if result.reverse else "forward"
+        title = f"{type(result.brake).__name__} brake, {direction}, friction {result.friction:g}"
+        names, parts = [each.name for each in result.linings], _of_lining(result.brake)
+        heads = ("", *laws, "unit"), ("", *names, "unit")
+        made: list[RenderableType] = [
+            table(title, heads[0], list_outputs(_WHOLE, [*laws.values()]), (0, len(laws) + 1)),
+            table("Linings", heads[1], list_outputs(parts, result.linings), (0, len(names) + 1)),
+        ]
+        return (
+            made if result.locked else [*made, doubt(self.torque_at(), result.torque, self.at_same_force())]
+        )
+
+    def torque_at(self) -> Callable[[float], MachineResult]:
+        """The result at another friction, in parts of the given one, with the same force."""
+        result = self.result
+        return lambda part: solve_brake(
+            result.brake, friction=part * result.friction, force=result.force, reverse=result.reverse
+        )
+
+    def at_same_force(self) -> Iterator[tuple[str, float]]:
+        """Words and torque of the other laws of the pressure, with the same force."""
+        result = self.result
+        for law, words in result.brake.laws.items():
+            try:
+                other = result.brake.with_law(law)
+            except InvalidValue:
+                continue
+            if law != result.brake.law:
+                given = {"friction": result.friction, "force": result.force, "reverse": result.reverse}
+                yield words, solve_brake(other, **given).torque
+
+    def rows(self) -> Iterable[Sequence[object]]:
+        """Names, values and units of all numbers."""
+        return outputs_csv(_outputs(self.result.brake), value=self)
+
+    def figure(self, place: float | None = None) -> Figure:
+        """The brake with its forces, pressures and factors."""
+        return machine_figure(self.drawings(0.0), self.result)
+
+    def drawings(self, place: float) -> Rows:
+        """The brake with its forces; of one that locks without."""
+        return ((TYPES[type(self.result.brake)].draw(self.result),),)
+
+    def charts(self, place: float) -> Sequence[Chart]:
+        """Pressures and factors."""
+        return charts_of(self.result)
+
+    def loadable(self) -> MachineResult:
+        """The result of the mechanics."""
+        return self.result
+
+    def values(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings."""
+        return self.result.to_dict()
+
+
+TYPES: dict[type[Machine], MachineType] = {}  # by class of the brake
+
+
+class MachineType(ArrayBrakeType[MachineInput]):
+    """A type of brake whose linings are pressed by one force.
+
+    Parameters
+    ----------
+    made : type of Machine
+        Class of the brake.
+    name, title, purpose : str
+        As of `BrakeType`.
+    draw : callable
+        Makes the drawing of a result of one case.
+    sketch : callable
+        Makes the drawings that explain the symbols of the form.
+    """
+
+    method = "pressure and friction of each lining integrated in closed form"
+    error_from = "rounding of inputs and sums, over the margin to self-locking"
+    key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
+    example_sweep = "brake.friction=0.1:0.25:16"
+    sweep_results = "torque,c_star,peak_pressure"
+
+    def __init__(
+        self, made: type[Machine], name: str, title: str, purpose: str, draw: Draw, sketch: Callable[[], Rows]
+    ) -> None:
+        self.name, self.title, self.purpose = name, title, purpose  # type: ignore[misc]
+        self.model, self.draw, self.sketched = file_of(made, name), draw, sketch
+        self.sections = self.needs = ("brake", name, "load")
+        TYPES[made] = self
+
+    def solve(self, design: MachineInput) -> MachineAnswer:
+        """Forces in the brake."""
+        return MachineAnswer(design, design.solve())
+
+    def sketch(self, entries: Mapping[str, str]) -> Rows:
+        """Explain the symbols of the form."""
+        return self.sketched()
+
+    def outputs(self, design: MachineInput) -> Sequence[Output]:
+        """Numbers of the brake and of its linings."""
+        return _outputs(design.core)

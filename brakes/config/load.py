@@ -1,0 +1,56 @@
+"""Tables of files that all brakes share: what presses them, how they turn, and their friction."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from beamdyn.common.edge.inputs import Quantity, Section
+from brakes.common.loads import wheel_cylinder_force
+
+
+class RubbingInput(Section):
+    """[brake]: direction of rotation, and friction of the linings."""
+
+    direction: Annotated[Literal["forward", "reverse"], Field(description="direction of the drum")] = (
+        "forward"
+    )
+    friction: Annotated[
+        float, Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
+    ]
+
+
+class LoadInput(Section):
+    """[load]: the actuating force, or the torque or pressure that the brake is to give: exactly one."""
+
+    force: Annotated[
+        float | None, Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0)
+    ] = None
+    cylinder_bore: Annotated[
+        float | None, Quantity("m", "d", "bore of the cylinder, with line_pressure", above=0)
+    ] = None
+    line_pressure: Annotated[
+        float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
+    ] = None
+    torque: Annotated[float | None, Quantity("N m", "M", "torque that the brake is to give", above=0)] = None
+    peak_pressure: Annotated[
+        float | None, Quantity("Pa", "p_max", "largest pressure on any lining", above=0)
+    ] = None
+
+    @model_validator(mode="after")
+    def _one(self) -> LoadInput:
+        given = [name for name, value in self if value is not None]
+        if given not in (["force"], ["cylinder_bore", "line_pressure"], ["torque"], ["peak_pressure"]):
+            raise ValueError(
+                "give one of force, torque, peak_pressure, or cylinder_bore with line_pressure; "
+                f"got {' and '.join(given) or 'none'}"
+            )
+        return self
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The load as an argument of what solves the brake."""
+        if self.line_pressure is not None:
+            return {"force": wheel_cylinder_force(self.cylinder_bore, self.line_pressure)}
+        return {name: value for name, value in self if value is not None}

@@ -1,0 +1,53 @@
+"""Brakes whose linings are pressed by one force in TOML: [brake], a table of dimensions, [load]."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+from pydantic import create_model
+
+from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.sections import MadeSection, section_of
+from beamdyn.common.edge.wording import in_range, of_file
+from brakes.config.load import LoadInput, RubbingInput
+from brakes.machines import Machine, MachineResult, solve_brake
+
+
+class MachineInput(CoreSection):
+    """A brake; its dimensions stand in a table of its own name, made from its class."""
+
+    table: ClassVar[str]
+
+    brake: RubbingInput
+    load: LoadInput
+
+    @property
+    def dimensions(self) -> MadeSection:
+        """The table of its dimensions."""
+        return getattr(self, self.table)
+
+    @cached_property
+    def core(self) -> Machine:
+        """The brake."""
+        return self.dimensions.core
+
+    def solve(self) -> MachineResult:
+        """Compute the forces in the brake.
+
+        Raises
+        ------
+        ValueError
+            As for `brakes.machines.solve_brake`.
+        """
+        reverse = self.brake.direction == "reverse"
+        with in_range(self), of_file(self.dimensions.key_of):
+            return solve_brake(self.core, friction=self.brake.friction, **self.load.given, reverse=reverse)
+
+
+def file_of(made: type[Machine], table: str) -> type[MachineInput]:
+    """Make the description of the file of a brake, whose dimensions stand in a table of this name."""
+    fields: dict[str, Any] = {table: (section_of(made), ...)}
+    model = create_model(f"{made.__name__}File", __base__=MachineInput, __doc__=made.__doc__, **fields)
+    model.table = table
+    return model

@@ -1,0 +1,91 @@
+"""Drawings of band brakes: drum, band and lever with their forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketch
+from brakes.drawings.arrows import ForceArrows
+from brakes.machines import Band, MachineResult
+
+
+def draw_band(result: MachineResult) -> Drawing:
+    """The drum, its band and the lever, with the forces on the lever to one scale; of one case.
+
+    The arms of the lever are to scale; its distance from the drum, and so the direction of the band's free
+    ends, is not given: it is drawn near to the drum.
+    """
+    band = result.brake
+    assert isinstance(band, Band)
+    r, lining = float(band.drum_radius), result.linings[0]
+    forces = {name: float(lining.reactions[name]) for name in ("first", "second")}
+    largest = max(*forces.values(), float(result.force))
+    arrows = ForceArrows(0.0 if result.locked else 0.8 * r / largest)
+    rim, (first, second, fulcrum, end) = _places(band)
+    _add_body(arrows.shapes, band)
+    turn = arc((0, 0), 0.6 * r, *np.radians((70.0, 110.0) if result.reverse else (110.0, 70.0)))
+    arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
+    if result.locked:
+        arrows.labels.append(Label("the band grips by itself", (0.0, 0.2 * r), "inside", priority=4))
+        title = f"Friction {float(result.friction):.3g}: the brake locks itself"
+        return arrows.drawing(title, "A band brake that locks: drum, band and lever", {})
+    for name, at, on in (("first", first, rim[-1]), ("second", second, rim[0])):
+        way = (on - at) / np.hypot(*(on - at))
+        arrows.add(at, forces[name] * way, "T_1" if name == "first" else "T_2", "tension")
+    arrows.add(end, np.array([0.0, -float(result.force)]), "P", "load")
+    title = f"Forces on the lever at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    key = {"load": "actuating force P", "tension": "tension of an end"}
+    return arrows.drawing(title, "A band brake: drum, band and lever with the forces on the lever", key)
+
+
+def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """Points of the band from its second end over the top to its first, and of the lever."""
+    r, half = float(band.drum_radius), float(band.wrap) / 2
+    a, s, far = (float(arm) for arm in (band.first_arm, band.second_arm, band.force_arm))
+    rim = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half, 121)
+    middle = np.array([(s - a) / 2, -1.45 * r])  # the fulcrum, with the two ends on both sides of the drum
+    return rim, tuple(middle + (x, 0.0) for x in (a, -s, 0.0, far))
+
+
+def _add_body(shapes: list[DrawnShape], band: Band) -> None:
+    """Add drum, band, lever and fulcrum."""
+    rim, (first, second, fulcrum, end) = _places(band)
+    left = min(second[0], fulcrum[0])
+    shapes += [
+        Disc((0, 0), float(band.drum_radius), "neutral", 1.4),
+        Symbol("cross", (0, 0), "axis", 9.0),
+        Outline([(left, fulcrum[1]), end], "body", 6.0),
+        Outline(np.vstack([second, rim, first]), "support", 4.0),
+        *(Symbol("dot", at, "pin", 5.0) for at in (first, second)),
+        Symbol("ground", fulcrum, "ground", 12.0),
+        Symbol("pin", fulcrum, "pin", 8.0),
+    ]
+
+
+def band_sketch() -> Rows:
+    """Dimensions of a differential band brake."""
+    s = Sketch()
+    band = Band(1.0, 0.2, np.radians(230.0), force_arm=2.0, first_arm=0.7, second_arm=0.45)
+    rim, (first, second, fulcrum, end) = _places(band)
+    _add_body(s.shapes, band)
+    s.length("r", (0.0, 0.0), (np.cos(2.6), np.sin(2.6)), (0.3, 1.0))
+    s.dashed((0.0, 0.0), rim[0])
+    s.dashed((0.0, 0.0), rim[-1])
+    s.angle("phi", (0.0, 0.0), 0.4, np.pi / 2 + float(band.wrap) / 2, np.pi / 2 - float(band.wrap) / 2)
+    for symbol, at, low in (("a", first, 0.45), ("s", second, 0.45), ("c", end, 0.85)):
+        level = fulcrum - (0.0, low)
+        s.dashed(at, (at[0], level[1] - 0.08))
+        s.length(symbol, level, (at[0], level[1]), (0.0, -1.0))
+    s.dashed(fulcrum, fulcrum - (0.0, 0.95))
+    s.arrow("P", end + (0.0, 0.75), end + (0.0, 0.08))
+    s.moment("M", (0.0, 0.0), 1.15, 2.0, 1.1, "load")
+    return [[s.drawing("A differential band", "A band brake: r, phi, a, s, c, P, M"), _width()]]
+
+
+def _width() -> Drawing:
+    s = Sketch()
+    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
+    s.length("w", (0.2, 0.4), (0.8, 0.4), (0.0, 1.0))
+    return s.drawing("Along the axis", "The width of the band along the drum's axis: w")

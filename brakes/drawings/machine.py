@@ -1,0 +1,79 @@
+"""Figures of brakes whose linings are pressed by one force: pressure over the lining, C* over friction."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
+from beamdyn.common.drawing.chart_on_axes import plot_chart
+from beamdyn.common.drawing.on_axes import draw_in
+from beamdyn.common.drawing.sheet import Rows
+from brakes.machines import MachineResult, solve_brake
+
+_POINTS = 101  # of the curves
+_FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
+_SCALES = {"deg": 180 / np.pi, "mm": 1e3}
+
+
+def machine_figure(drawings: Rows, result: MachineResult) -> Figure:
+    """Draw a brake of one case beside its charts."""
+    figure, charts = Figure(figsize=(11.5, 7.0)), charts_of(result)
+    draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawings[0][0])
+    rows = len(charts)
+    cells = figure.add_gridspec(rows, 1, left=0.62, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
+    for row, chart in enumerate(charts):
+        plot_chart(figure.add_subplot(cells[row, 0]), chart)
+    return figure
+
+
+def charts_of(result: MachineResult) -> list[Chart]:
+    """Pressure, if there is any, and brake factor of a result of one case."""
+    return [factor_chart(result)] if result.locked else [pressure_chart(result), factor_chart(result)]
+
+
+def pressure_chart(result: MachineResult) -> Chart:
+    """The pressure on each lining, down to zero at its ends."""
+    brake = result.brake
+    low, high = (float(end) for end in brake.reach())
+    at, scale = np.linspace(low, high, _POINTS), _SCALES[brake.place.shown]
+    shape = brake.pressure(at, float(result.friction))
+    curves = [
+        ChartCurve(
+            lining.name,
+            scale * np.r_[low, at, high],
+            1e-6 * float(lining.peak_pressure) * np.r_[0.0, shape, 0.0],
+            dashed=bool(i % 2),
+        )
+        for i, lining in enumerate(result.linings)
+    ]
+    across = ChartAxis(brake.place.words, brake.place.shown)
+    return Chart("Pressure on the linings", across, ChartAxis("pressure", "MPa", low=0.0), curves)
+
+
+def factor_chart(result: MachineResult) -> Chart:
+    """C* over friction, forward and in reverse, with the friction at which the brake locks."""
+    mu, limit = float(result.friction), float(result.locking_friction)
+    top = 0.995 * limit if 0 < limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * mu)
+    at = np.linspace(1e-3 * top, top, _POINTS)
+    curves = [
+        ChartCurve(
+            "reverse" if way else "forward",
+            at,
+            solve_brake(result.brake, friction=at, force=1.0, reverse=way).c_star,
+            dashed=way,
+        )
+        for way in (False, True)
+    ]
+    own = curves[result.reverse]
+    marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
+    if 0 < limit < _LIMIT_SHOWN:
+        marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
+    near = float(np.interp(min(mu, 0.6 * top), at, own.y))  # C* grows without bound towards locking
+    return Chart(
+        "Brake factor",
+        ChartAxis("friction of the linings", low=0.0),
+        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0)),
+        curves,
+        marks=marks,
+    )

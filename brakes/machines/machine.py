@@ -1,0 +1,311 @@
+"""The pattern of a brake whose linings are pressed by one force, and its solution.
+
+The pressure on a lining is its largest value times a known shape, so that its torque and the force that
+presses it are proportional to that value. A brake says what they are at 1 Pa: the rest follows here.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import reduce
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative, together
+from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
+from beamdyn.common.inputs.described import descriptions
+from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.one_line import error_at_most, spanned
+from brakes.common.loads import take_load
+from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
+
+_EPS = np.finfo(float).eps
+_STEP = 1e-30  # imaginary part of a friction, of which functions without differences give the derivative
+_ROUNDINGS = 16.0  # operations whose rounding adds up in a lining's force
+
+
+@dataclass(frozen=True)
+class Lining:
+    """What a lining needs and gives while its largest pressure is 1 Pa, as functions of the friction.
+
+    Parameters
+    ----------
+    torque : float or ndarray
+        Torque [N m].
+    force : float or ndarray
+        Actuating force that it takes [N]: of zero or below, the lining locks.
+    size : float or ndarray
+        Sum of the sizes of the terms of `force` [N], for its rounding.
+    locks_at : float or ndarray
+        Friction at which it locks; inf if it never does.
+    reactions : mapping of str to float or ndarray
+        Forces by the names in the brake's `reactions` [N].
+    share : float or ndarray
+        Share of the actuating force that reaches this lining.
+    """
+
+    torque: Numbers
+    force: Numbers
+    size: Numbers
+    locks_at: Numbers = np.inf
+    reactions: Mapping[str, Numbers] = field(default_factory=lambda: MappingProxyType({}))
+    share: Numbers = 1.0
+
+
+class Machine(ABC):
+    """Base of brakes whose linings are pressed by one force: frozen dataclasses of described numbers.
+
+    A brake has a field for each input, says below what is particular to it, and gives its linings. A brake
+    whose pressure may follow several laws has a field `pressure_law`, which names one of its `laws`.
+
+    Attributes
+    ----------
+    grips : str
+        What locks in the words of messages, such as "band".
+    reactions : mapping of str to Meaning
+        Meaning of the forces on a lining's parts.
+    laws : mapping of str to str
+        Words for each law of the pressure, by its name; none if there is only one.
+    place : Meaning
+        What the pressure is plotted over.
+    """
+
+    grips: ClassVar[str] = "brake"
+    reactions: ClassVar[Mapping[str, Meaning]] = MappingProxyType({})
+    laws: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    place: ClassVar[Meaning]
+
+    def __post_init__(self) -> None:
+        if self.laws:
+            one_of("pressure_law", self.law, tuple(self.laws))
+        keep_checked(self)
+        together(**{name: v for name in descriptions(type(self)) if _is_number(v := getattr(self, name))})
+        self.check()
+
+    @property
+    def law(self) -> str:
+        """Name of the law of the pressure; empty if there is only one."""
+        return getattr(self, "pressure_law", "")
+
+    @abstractmethod
+    def check(self) -> None:
+        """Refuse numbers that do not go together; each is within the bounds of its description already."""
+
+    @abstractmethod
+    def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
+        """Linings by name, for a friction that may be complex: formulas without case or absolute value."""
+
+    @property
+    @abstractmethod
+    def reference_radius(self) -> Numbers:
+        """Radius that C* refers to [m]."""
+
+    @abstractmethod
+    def reach(self) -> tuple[Numbers, Numbers]:
+        """Least and largest place on a lining, in the SI unit of `place`."""
+
+    @abstractmethod
+    def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
+        """Pressure over its largest value, at places on a lining."""
+
+    def remarks(self, friction: Numbers) -> Sequence[str]:
+        """What else a designer must know at a friction: one sentence each."""
+        return ()
+
+    def with_law(self, law: str) -> Machine:
+        """The same brake with another law of the pressure; raises ValueError where that is impossible."""
+        return replace(self, pressure_law=law)  # type: ignore[type-var]
+
+
+def _is_number(value: object) -> bool:
+    return value is not None and not isinstance(value, str)
+
+
+@dataclass(frozen=True)
+class LiningResult:
+    """Torque, largest pressure and forces of a lining; nan where the brake locks.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    torque, peak_pressure : ndarray
+        Torque [N m], largest pressure [Pa].
+    reactions : dict of str to ndarray
+        Forces by the names in the brake's `reactions` [N].
+    """
+
+    name: str
+    torque: Annotated[Numbers, Meaning("N m", "torque")]
+    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure", "MPa")]
+    reactions: dict[str, Numbers]
+
+
+@dataclass(frozen=True)
+class MachineResult(SlidesOrLocks):
+    """Forces in a brake whose linings are pressed by one force.
+
+    At or past self-locking the formulas do not hold: force, torque, pressure and factors are then nan,
+    `locked` is true, and `message` says so.
+
+    Attributes
+    ----------
+    brake : Machine
+        The brake.
+    reverse : bool
+        Whether it turns backward.
+    friction : ndarray
+        Coefficient of friction.
+    force, torque, peak_pressure : ndarray
+        Actuating force [N], torque [N m], largest pressure on any lining [Pa].
+    c_star, c_star_slope : ndarray
+        Brake factor torque / (force radius), and its derivative with respect to the friction.
+    radius : ndarray
+        Radius that the brake factor refers to [m].
+    locking_friction, margin : ndarray
+        Friction at which the brake locks, inf if it never does; 1 - friction / locking friction.
+    locked : ndarray of bool
+        Whether the friction is past self-locking, or at it up to a margin of 5e-13 or rounding.
+    error : ndarray
+        Bound of the relative error of torque, force and pressure: rounding, which grows as 1 / margin.
+    linings : tuple of LiningResult
+        The linings one by one.
+
+    Examples
+    --------
+    >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
+    >>> found = machines.solve_brake(band, friction=0.25, force=100.0)
+    >>> found.status, found.linings[0].name
+    ('slides', 'band')
+    """
+
+    brake: Machine
+    reverse: bool
+    friction: Numbers
+    force: Annotated[Numbers, Meaning("N", "actuating force")]
+    torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
+    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
+    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
+    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
+    radius: Annotated[Numbers, Meaning("m", "radius that C* refers to", "mm")]
+    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
+    margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]
+    locked: Numbers
+    error: Annotated[Numbers, Meaning("", "bound of the relative error")]
+    linings: tuple[LiningResult, ...]
+
+    @property
+    def grips(self) -> str:  # type: ignore[override]
+        """What locks, in the words of messages."""
+        return self.brake.grips
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield f"{type(self.brake).__name__}, torque {spanned(self.torque, 'N m')}"
+        yield f"C* {spanned(self.c_star)}"
+        yield error_at_most(self.error)
+        yield "locked" if np.any(self.locked) else "slides"
+
+
+def solve_brake(
+    brake: Machine,
+    *,
+    friction: Numbers,
+    force: Numbers | None = None,
+    peak_pressure: Numbers | None = None,
+    torque: Numbers | None = None,
+    reverse: bool = False,
+) -> MachineResult:
+    """Compute the forces in a brake from its actuating force, its largest pressure or its torque.
+
+    Parameters
+    ----------
+    brake : Machine
+        The brake: band, disc, cone, plates or block.
+    friction : float or ndarray
+        Coefficient of friction.
+    force, peak_pressure, torque : float or ndarray, optional
+        Exactly one of: actuating force [N], largest pressure on any lining [Pa], torque [N m].
+    reverse : bool
+        Whether it turns backward.
+
+    Returns
+    -------
+    MachineResult
+        Complete result; arrays broadcast over all inputs.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of the three is given, a value is out of bounds, or a torque is demanded
+        with friction 0, or at or past self-locking.
+
+    References
+    ----------
+    Standard: force and torque of each lining at one largest pressure, here 1 Pa; see its class.
+
+    Examples
+    --------
+    >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
+    >>> round(float(machines.solve_brake(band, friction=0.25, force=100.0).torque), 2)  # N m
+    165.12
+    """
+    kind("brake", brake, Machine)
+    reverse = flag("reverse", reverse)
+    name, value = take_load(force=force, peak_pressure=peak_pressure, torque=torque)
+    mu = not_negative("friction", friction)
+    linings = brake.linings(np.asarray(mu), reverse)
+    together(friction=mu, **{name: value}, brake=sum(each.force + each.share for each in linings.values()))
+    locked = reduce(np.logical_or, (_locks(each) for each in linings.values()))
+    gain, slope = _torque_per_force(brake, mu, reverse, locked)
+    pressures = {key: each.share / np.where(locked, np.nan, each.force) for key, each in linings.items()}
+    if name == "torque":
+        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
+        bound = "the brake locks: no torque can be demanded of it"
+        refuse(locked, "friction", mu, "", bound, "give a force, or less friction")
+    made = {"force": 1.0, "torque": gain, "peak_pressure": reduce(np.maximum, pressures.values())}[name]
+    limit = reduce(np.minimum, (each.locks_at for each in linings.values()))
+    radius = brake.reference_radius
+    load, mu, limit, gain, slope, radius, locked = np.broadcast_arrays(
+        value / made, mu, limit, gain, slope, radius, locked
+    )
+    parts = tuple(_pressed(key, linings[key], load * p) for key, p in pressures.items())
+    worst = reduce(np.maximum, (linings[key].size * p for key, p in pressures.items()))
+    return MachineResult(
+        brake=brake,
+        reverse=reverse,
+        friction=mu[()],
+        force=load[()],
+        torque=(load * gain)[()],
+        peak_pressure=reduce(np.maximum, (part.peak_pressure for part in parts)),
+        c_star=(gain / radius)[()],
+        c_star_slope=(slope / radius)[()],
+        radius=radius[()],
+        locking_friction=limit[()],
+        margin=(1 - mu / limit)[()],
+        locked=locked[()],
+        error=_ROUNDINGS * _EPS * worst,
+        linings=parts,
+    )
+
+
+def _locks(lining: Lining) -> Numbers:
+    """Whether a lining locks, or is so near to it that rounding would say."""
+    return lining.force <= max(LEAST_MARGIN, _ROUNDINGS * _EPS) * lining.size
+
+
+def _torque_per_force(brake: Machine, mu: Numbers, reverse: bool, locked: Numbers) -> tuple[Any, Any]:
+    """Torque at 1 N [m], and its derivative with respect to the friction [m]; nan where it locks."""
+    stepped = brake.linings(np.asarray(mu) + 1j * _STEP, reverse).values()
+    gain = sum(each.share * each.torque / np.where(locked, 1.0, each.force) for each in stepped)
+    return np.where(locked, np.nan, gain.real), np.where(locked, np.nan, gain.imag / _STEP)
+
+
+def _pressed(name: str, lining: Lining, pressure: Numbers) -> LiningResult:
+    """A lining at its largest pressure [Pa]."""
+    forces = {each: value * pressure for each, value in lining.reactions.items()}
+    return LiningResult(name, (lining.torque * pressure)[()], pressure[()], forces)
