@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 _SHOWN = {  # by the name of the command and of its module: what it shows
     "drum": "Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.",
     "band": "Torque, tensions, pressure and self-locking of a simple or differential band brake.",
+    "block": "Torque, forces, pressure and self-locking of a block brake with one or two levers.",
+    "cone": "Torque, pressure and sticking of a cone brake.",
+    "disc": "Torque, forces and pressure of a disc brake with a fixed or floating caliper.",
+    "plates": "Torque and pressure of a multi-plate brake.",
     "vehicle": "Parking on a slope in both directions, pitching over, and which axle locks first.",
 }
 

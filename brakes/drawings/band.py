@@ -23,7 +23,7 @@ def draw_band(result: MachineResult) -> Drawing:
     forces = {name: float(lining.reactions[name]) for name in ("first", "second")}
     largest = max(*forces.values(), float(result.force))
     arrows = ForceArrows(0.0 if result.locked else 0.8 * r / largest)
-    rim, (first, second, fulcrum, end) = _places(band)
+    rim, (first, second, _, end) = _places(band)
     _add_body(arrows.shapes, band)
     turn = arc((0, 0), 0.6 * r, *np.radians((70.0, 110.0) if result.reverse else (110.0, 70.0)))
     arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
@@ -46,7 +46,7 @@ def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
     a, s, far = (float(arm) for arm in (band.first_arm, band.second_arm, band.force_arm))
     rim = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half, 121)
     middle = np.array([(s - a) / 2, -1.45 * r])  # the fulcrum, with the two ends on both sides of the drum
-    return rim, tuple(middle + (x, 0.0) for x in (a, -s, 0.0, far))
+    return rim, tuple(middle + np.array([x, 0.0]) for x in (a, -s, 0.0, far))
 
 
 def _add_body(shapes: list[DrawnShape], band: Band) -> None:
@@ -79,7 +79,7 @@ def band_sketch() -> Rows:
         s.dashed(at, (at[0], level[1] - 0.08))
         s.length(symbol, level, (at[0], level[1]), (0.0, -1.0))
     s.dashed(fulcrum, fulcrum - (0.0, 0.95))
-    s.arrow("P", end + (0.0, 0.75), end + (0.0, 0.08))
+    s.arrow("P", end + np.array([0.0, 0.75]), end + np.array([0.0, 0.08]))
     s.moment("M", (0.0, 0.0), 1.15, 2.0, 1.1, "load")
     return [[s.drawing("A differential band", "A band brake: r, phi, a, s, c, P, M"), _width()]]
 

@@ -1,0 +1,150 @@
+"""Drawings of disc brakes, plates and cones: the disc from the front, or a section with the force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outline, Symbol, arc
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketch
+from brakes.drawings.arrows import ForceArrows
+from brakes.machines import Cone, MachineResult, Plates
+from brakes.machines import Disc as DiscBrake
+
+_UP, _LEFT, _BOTH = (0.0, 1.0), (-1.0, 0.0), (1.0, -1.0)
+
+
+# Results --------------------------------------------------------------------------------------------------
+
+
+def draw_disc(result: MachineResult) -> Drawing:
+    """The disc from the front, with the friction of both pads together on it; of one case."""
+    disc = result.brake
+    assert isinstance(disc, DiscBrake)
+    r, sense = float(disc.reference_radius), 1.0 if result.reverse else -1.0  # the sense of its rotation
+    drag = float(result.torque) / r
+    arrows = ForceArrows(0.8 * r / drag if drag else 0.0)
+    _add_disc(arrows.shapes, disc)
+    inner = 0.55 * float(disc.inner_radius)
+    turn = arc((0, 0), inner, np.pi / 2 - 0.4 * sense, np.pi / 2 + 0.4 * sense)
+    arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
+    if drag:
+        arrows.add((0.0, r), np.array([sense * drag, 0.0]), "T", "friction")
+    title = f"Pads pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    key = {"friction": "torque over effective radius"}
+    return arrows.drawing(title, "A disc brake from the front: disc, pad and friction", key)
+
+
+def draw_plates(result: MachineResult) -> Drawing:
+    """A section through the plates with the force that presses them; of one case."""
+    plates = result.brake
+    assert isinstance(plates, Plates)
+    arrows = ForceArrows(0.6 * float(plates.outer_radius) / float(result.force))
+    _add_plates(arrows.shapes, plates)
+    return _with_force(arrows, result, "A multi-plate brake, cut along its axis")
+
+
+def draw_cone(result: MachineResult) -> Drawing:
+    """A section through the cone with the force that presses it; of one case."""
+    cone = result.brake
+    assert isinstance(cone, Cone)
+    arrows = ForceArrows(0.6 * float(cone.outer_radius) / float(result.force))
+    _add_cone(arrows.shapes, cone)
+    return _with_force(arrows, result, "A cone brake, cut along its axis")
+
+
+def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
+    """A section with the force along its axis."""
+    arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
+    title = f"Pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    return arrows.drawing(title, words, {"load": "actuating force P"})
+
+
+# The machines ---------------------------------------------------------------------------------------------
+
+
+def _add_disc(shapes: list[DrawnShape], disc: DiscBrake) -> None:
+    """Add the disc and the pad at its top."""
+    low, high, half = float(disc.inner_radius), float(disc.outer_radius), float(disc.pad_angle) / 2
+    ends = np.pi / 2 - half, np.pi / 2 + half
+    pad = np.vstack([arc((0, 0), low, *ends), arc((0, 0), high, *ends)[::-1]])
+    shapes += [
+        Disc((0, 0), 1.04 * high, "wheel", 1.4, filled=True),
+        Disc((0, 0), 0.9 * low, "body", 1.2, filled=True),
+        Outline(pad, "support", 1.2, closed=True, filled=True),
+        Symbol("cross", (0, 0), "axis", 9.0),
+    ]
+
+
+def _add_plates(shapes: list[DrawnShape], plates: Plates) -> None:
+    """Add one plate more than there are pairs of faces, above and below the axis."""
+    low, high, faces = float(plates.inner_radius), float(plates.outer_radius), int(plates.faces)
+    step = min(0.25 * high, 1.2 * high / (faces + 1))
+    shapes.append(Outline([(-0.3 * high, 0.0), ((faces + 1) * step + 0.2 * high, 0.0)], "axis", 0.8, (6, 2)))
+    for k in range(faces + 1):  # plates of the shaft reach inward, those of the housing outward
+        ends = (0.75 * low, high) if k % 2 else (low, high + 0.25 * low)
+        for side in _BOTH:
+            box = [(k * step, ends[0]), (k * step, ends[1]), ((k + 0.8) * step, ends[1])]
+            points = np.array([*box, ((k + 0.8) * step, ends[0])]) * (1.0, side)
+            shapes.append(Outline(points, "body" if k % 2 else "wheel", 1.0, closed=True, filled=True))
+
+
+def _add_cone(shapes: list[DrawnShape], cone: Cone) -> None:
+    """Add the cone in its cup; its small end is where the force pushes it."""
+    low, high, width = float(cone.inner_radius), float(cone.outer_radius), float(cone.width)
+    body = [(0.0, -high), (0.0, high), (width, low), (width, -low)]
+    shapes += [
+        Outline(body, "body", 1.2, closed=True, filled=True),
+        Outline([(-0.4 * high, 0.0), (width + 0.4 * high, 0.0)], "axis", 0.8, (6, 2)),
+    ]
+    for side in _BOTH:
+        lining = np.array([(0.0, high), (width, low)]) * (1.0, side)
+        shapes += [Outline(lining, "support", 5.0), Outline(lining * (1.0, 1.06), "wheel", 3.0)]
+
+
+# Sketches -------------------------------------------------------------------------------------------------
+
+
+def disc_sketch() -> Rows:
+    """Dimensions of a pad."""
+    s, disc = Sketch(), DiscBrake(0.6, 1.0, np.radians(80.0))
+    _add_disc(s.shapes, disc)
+    _radii(s, disc.inner_radius, disc.outer_radius)
+    s.angle("theta", (0, 0), 0.32, np.radians(50.0), np.radians(130.0))
+    for end in np.radians((50.0, 130.0)):
+        s.dashed((0, 0), (0.6 * np.cos(end), 0.6 * np.sin(end)))
+    return [[s.drawing("Disc and pad", "A pad on its disc: r_i, r_o, theta")]]
+
+
+def _radii(s: Sketch, low: float, high: float) -> None:
+    """Inner and outer radius, from the centre."""
+    for symbol, radius, angle in (("r_i", low, -0.5), ("r_o", high, -2.4)):
+        tip = radius * np.array([np.cos(angle), np.sin(angle)])
+        s.add(Disc((0, 0), radius, "axis", 0.8, (4.0, 2.5)))
+        s.length(symbol, (0, 0), tip, (-tip[1], tip[0]))
+
+
+def plates_sketch() -> Rows:
+    """Dimensions of a set of plates."""
+    s = Sketch()
+    _add_plates(s.shapes, Plates(0.6, 1.0, faces=4))
+    s.length("r_o", (1.5, 0.0), (1.5, 1.0), (1.0, 0.0))
+    s.length("r_i", (-0.35, 0.0), (-0.35, 0.6), _LEFT)
+    for at, x in ((1.0, 1.6), (0.6, -0.45)):
+        s.dashed((0.2, at), (x, at))
+    s.arrow("P", (-0.75, 0.0), (-0.05, 0.0))
+    return [[s.drawing("Plates, cut along the axis", "Plates on their axis: r_i, r_o, P")]]
+
+
+def cone_sketch() -> Rows:
+    """Dimensions of a cone."""
+    s = Sketch()
+    _add_cone(s.shapes, Cone(0.7, 1.0, width=0.9))
+    s.length("r_o", (-0.25, 0.0), (-0.25, 1.0), _LEFT)
+    s.length("r_i", (1.15, 0.0), (1.15, 0.7), (1.0, 0.0))
+    s.length("w", (0.0, 1.3), (0.9, 1.3), _UP)
+    for start, end in (((0, 1.0), (0, 1.38)), ((0.9, 0.7), (0.9, 1.38)), ((0, 1.0), (-0.35, 1.0))):
+        s.dashed(start, end)
+    s.dashed((0.9, 0.7), (1.25, 0.7))
+    s.arrow("P", (-0.9, 0.0), (-0.02, 0.0))
+    return [[s.drawing("Cone, cut along the axis", "A cone on its axis: r_i, r_o, w, P")]]

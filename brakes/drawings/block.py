@@ -1,0 +1,109 @@
+"""Drawings of block brakes: drum, blocks and levers with their forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outline, Symbol, arc
+from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.sketch import Sketch
+from brakes.drawings.arrows import ForceArrows
+from brakes.machines import Block, MachineResult
+
+_SIDES = (np.eye(2), np.diag((1.0, -1.0)))  # from the axes of a block to the drawing: on top, and below
+
+
+def draw_block(result: MachineResult) -> Drawing:
+    """The drum, its blocks and levers, with the forces on the levers to one scale; of one case."""
+    block = result.brake
+    assert isinstance(block, Block)
+    r, force = float(block.drum_radius), float(result.force)
+    sizes = [float(x) for each in result.linings for x in each.reactions.values()]
+    arrows = ForceArrows(0.0 if result.locked else 0.9 * r / max(force, *map(abs, sizes)))
+    _add_drum(arrows.shapes, r, reverse=result.reverse)
+    for i, (lining, placed) in enumerate(zip(result.linings, _SIDES, strict=False), 1):
+        _add_lever(arrows.shapes, block, placed)
+        if not result.locked:
+            ahead = (-1.0 if result.reverse else 1.0) * (1.0 if i == 1 else -1.0)  # towards the fulcrum
+            normal, drag = (float(lining.reactions[name]) for name in ("normal", "tangential"))
+            pin = np.array([float(lining.reactions["pin_x"]), float(lining.reactions["pin_y"])])
+            _, fulcrum, end = _places(block)
+            arrows.add(np.array([0.0, r]) @ placed, np.array([0.0, normal]) @ placed, f"N_{i}", "normal")
+            way = np.array([-ahead * drag, 0.0]) @ placed
+            arrows.add(np.array([0.0, r]) @ placed, way, f"T_{i}", "friction")
+            arrows.add(fulcrum @ placed, pin @ placed, f"R_{i}", "reaction")
+            arrows.add(end @ placed, np.array([0.0, -force]) @ placed, f"P_{i}", "load", ends_here=True)
+    if result.locked:
+        title = f"Friction {float(result.friction):.3g}: the brake locks itself"
+        return arrows.drawing(title, "A block brake that locks: drum, blocks and levers", {})
+    title = f"Forces on the levers at {force:.4g} N; torque {float(result.torque):.5g} N m"
+    key = {
+        "load": "actuating force P",
+        "normal": "pressure N",
+        "friction": "friction T",
+        "reaction": "fulcrum R",
+    }
+    return arrows.drawing(title, "A block brake: drum, blocks and levers with their forces", key)
+
+
+def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The block's face (k, 2), the fulcrum, and where the force acts; the block is on top of the drum."""
+    half, r = float(block.block_angle) / 2, float(block.drum_radius)
+    face = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half)
+    fulcrum = np.array([-float(block.block_arm), float(block.height)])
+    end = np.array([fulcrum[0] + float(block.force_arm), max(fulcrum[1], 1.3 * r)])
+    return face, fulcrum, end
+
+
+def _add_drum(shapes: list[DrawnShape], r: float, *, reverse: bool) -> None:
+    """Add the drum and its rotation; forward its top moves to the left, where the fulcrum is."""
+    sense = -1.0 if reverse else 1.0
+    turn = arc((0, 0), 0.6 * r, np.pi / 2 - 0.35 * sense, np.pi / 2 + 0.35 * sense)
+    shapes += [
+        Disc((0, 0), r, "neutral", 1.4),
+        Symbol("cross", (0, 0), "axis", 9.0),
+        Outline(turn[:-4], "neutral", 1.5),
+        Arrow(turn[-6], turn[-1], "neutral", width=1.5),
+    ]
+
+
+def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> None:
+    """Add a block on its lever by the matrix from its own axes."""
+    face, fulcrum, end = _places(block)
+    r = float(block.drum_radius)
+    back = face * (1.0, 0.0) + (0.0, 1.3 * r)
+    knee = np.array([fulcrum[0], end[1]])
+    shapes += [
+        Outline(np.vstack([fulcrum, knee, end]) @ placed, "body", 5.0),
+        Outline(np.vstack([face, back[::-1]]) @ placed, "support", 1.2, closed=True, filled=True),
+        Symbol("pin", fulcrum @ placed, "pin", 8.0),
+    ]
+
+
+def block_sketch() -> Rows:
+    """Dimensions of a block and its lever."""
+    s, block = Sketch(), Block(1.0, 0.3, np.radians(50.0), force_arm=3.2, block_arm=1.7, offset=0.3)
+    _add_drum(s.shapes, 1.0, reverse=False)
+    _add_lever(s.shapes, block, _SIDES[0])
+    _, fulcrum, end = _places(block)
+    s.dashed((0, 0), (0.0, 2.2))
+    s.dashed(fulcrum, (fulcrum[0], 2.65))
+    s.dashed((-2.3, 1.0), (0.0, 1.0))
+    s.dashed((-2.3, fulcrum[1]), fulcrum)
+    s.length("b", (fulcrum[0], 1.95), (0.0, 1.95), (0.0, 1.0))
+    s.length("c", (fulcrum[0], 2.5), (end[0], 2.5), (0.0, 1.0))
+    s.dashed(end, (end[0], 2.6))
+    s.length("e", (-2.15, 1.0), (-2.15, fulcrum[1]), (-1.0, 0.0))
+    s.length("r", (0.0, 0.0), (np.cos(0.3), np.sin(0.3)), (0.3, -1.0))
+    for angle in np.radians((65.0, 115.0)):
+        s.dashed((0, 0), (np.cos(angle), np.sin(angle)))
+    s.angle("theta", (0, 0), 0.45, np.radians(65.0), np.radians(115.0))
+    s.arrow("P", end + np.array([0.0, 0.9]), end + np.array([0.0, 0.05]))
+    return [[s.drawing("Block and lever", "A block on its drum: r, theta, b, c, e, P")], [_width()]]
+
+
+def _width() -> Drawing:
+    s = Sketch()
+    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
+    s.length("w", (0.2, 0.4), (0.8, 0.4), (0.0, 1.0))
+    return s.drawing("Along the axis", "The width of the block along the drum's axis: w")
