@@ -15,11 +15,12 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.doubts import doubt
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
-from brakes.drum import BrakeResult, ShoeResult
+from brakes.drum import BrakeResult, ShoeResult, brake_torque
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,10 +81,16 @@ class DrumAnswer(Answer):
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
-        return [
+        made: list[RenderableType] = [
             outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
             table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes), (0, len(names) + 1)),
         ]
+        return made if brake.locked else [*made, doubt(self._at_friction, brake.torque)]
+
+    def _at_friction(self, part: float) -> BrakeResult:
+        """The result at a part of the friction, with the same force."""
+        given = {"force": self.result.force, "reverse": self.result.reverse}
+        return brake_torque(self.result.brake, friction=part * self.result.friction, **given)
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""

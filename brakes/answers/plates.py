@@ -1,7 +1,7 @@
 """Answers on multi-plate brakes."""
 
 from brakes.answers.machine import MachineType
-from brakes.drawings.annulus import plates_sketch, draw_plates
+from brakes.drawings.annulus import draw_plates, plates_sketch
 from brakes.machines import Plates
 
 BRAKE = MachineType(

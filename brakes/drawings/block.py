@@ -8,7 +8,7 @@ from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outl
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows
-from brakes.machines import Block, MachineResult
+from brakes.machines import Block, LiningResult, MachineResult
 
 _SIDES = (np.eye(2), np.diag((1.0, -1.0)))  # from the axes of a block to the drawing: on top, and below
 
@@ -24,15 +24,10 @@ def draw_block(result: MachineResult) -> Drawing:
     for i, (lining, placed) in enumerate(zip(result.linings, _SIDES, strict=False), 1):
         _add_lever(arrows.shapes, block, placed)
         if not result.locked:
-            ahead = (-1.0 if result.reverse else 1.0) * (1.0 if i == 1 else -1.0)  # towards the fulcrum
-            normal, drag = (float(lining.reactions[name]) for name in ("normal", "tangential"))
-            pin = np.array([float(lining.reactions["pin_x"]), float(lining.reactions["pin_y"])])
-            _, fulcrum, end = _places(block)
-            arrows.add(np.array([0.0, r]) @ placed, np.array([0.0, normal]) @ placed, f"N_{i}", "normal")
-            way = np.array([-ahead * drag, 0.0]) @ placed
-            arrows.add(np.array([0.0, r]) @ placed, way, f"T_{i}", "friction")
-            arrows.add(fulcrum @ placed, pin @ placed, f"R_{i}", "reaction")
-            arrows.add(end @ placed, np.array([0.0, -force]) @ placed, f"P_{i}", "load", ends_here=True)
+            leads = result.reverse is (i == 2)  # whether the surface moves towards the fulcrum
+            _add_forces(arrows, block, lining, placed, f"_{i}", leads)
+            end = _places(block)[2] @ placed
+            arrows.add(end, np.array([0.0, -force]) @ placed, f"P_{i}", "load", ends_here=True)
     if result.locked:
         title = f"Friction {float(result.friction):.3g}: the brake locks itself"
         return arrows.drawing(title, "A block brake that locks: drum, blocks and levers", {})
@@ -44,6 +39,20 @@ def draw_block(result: MachineResult) -> Drawing:
         "reaction": "fulcrum R",
     }
     return arrows.drawing(title, "A block brake: drum, blocks and levers with their forces", key)
+
+
+def _add_forces(
+    arrows: ForceArrows, block: Block, lining: LiningResult, placed: np.ndarray, index: str, leads: bool
+) -> None:
+    """Add the resultants of pressure and friction where their lines cross, and the fulcrum's force."""
+    c, s, q = (float(each) for each in block.integrals())
+    way = np.array([s, c]) / np.hypot(s, c)
+    at = float(block.drum_radius) * q / np.hypot(s, c) * way
+    normal, drag, *pin = (float(lining.reactions[each]) for each in block.reactions)
+    across = np.array([-way[1], way[0]]) * (1.0 if leads else -1.0)
+    arrows.add(at @ placed, normal * way @ placed, f"N{index}", "normal")
+    arrows.add(at @ placed, drag * across @ placed, f"T{index}", "friction")
+    arrows.add(_places(block)[1] @ placed, np.array(pin) @ placed, f"R{index}", "reaction")
 
 
 def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

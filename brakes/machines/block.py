@@ -134,7 +134,7 @@ class Block(Machine):
             self.height,
             self.face_width * np.asarray(self.drum_radius),
         )
-        C, S, Q = self._integrals()
+        C, S, Q = self.integrals()
         n, d = b * C + h * S, sense * (h * C - b * S - r * Q)
         of_normal, of_friction = (area * each / self.force_arm for each in (n, mu * d))
         force = of_normal - of_friction
@@ -149,7 +149,7 @@ class Block(Machine):
         }
         return Lining(mu * area * r * Q, force, size, limit, forces)
 
-    def _integrals(self) -> tuple[Numbers, Numbers, Numbers]:
+    def integrals(self) -> tuple[Numbers, Numbers, Numbers]:
         """Integrals C, S, Q of q cos x, q sin x and q over the block."""
         half, b, h = np.asarray(self.block_angle) / 2, self.block_arm, self.height
         chord = 2 * np.sin(half)

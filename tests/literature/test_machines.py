@@ -1,0 +1,84 @@
+"""Band, disc, cone and block brakes against worked examples and numbers recomputed by two routes.
+
+The inputs are those of textbook problems: Shigley's band of 14 in and cone (16-19), Juvinall's differential
+band (figure 18.17); others, whose source was not opened, are checked by quadrature in tests/invariants.
+"""
+
+import numpy as np
+import pytest
+
+from brakes import machines
+from brakes.common.loads import wheel_cylinder_force
+
+INCH, LBF = 0.0254, 4.4482216152605
+PSI = LBF / INCH**2
+DIGITS = 5e-9  # half a unit of the last digit that is stated, of the numbers with the fewest
+
+
+def differential(second=0.5):
+    return machines.Band(4 * INCH, INCH, np.radians(270), 9 * INCH, 2 * INCH, second * INCH)
+
+
+def test_differential_band():
+    found = machines.solve_brake(differential(), friction=0.2, peak_pressure=75 * PSI)
+    assert found.torque / LBF / INCH == pytest.approx(732.406635, rel=DIGITS)
+    assert found.force / LBF == pytest.approx(9.310742, rel=1e-7)
+    assert found.c_star == pytest.approx(19.6656345, rel=DIGITS)
+    assert found.locking_friction == pytest.approx(0.294180800, rel=DIGITS)
+    back = machines.solve_brake(differential(), friction=0.2, torque=found.torque, reverse=True)
+    assert back.force / LBF == pytest.approx(60.172314, rel=1e-8)
+
+
+@pytest.mark.parametrize(("second", "status"), [(0.779321, "slides"), (0.779323, "locked")])
+def test_arm_at_which_the_differential_band_locks(second, status):
+    assert machines.solve_brake(differential(second), friction=0.2, force=1.0).status == status
+
+
+def test_simple_band_by_its_pressure():
+    band = machines.Band(7 * INCH, 4 * INCH, np.radians(270), 9 * INCH, 2 * INCH)
+    found = machines.solve_brake(band, friction=0.25, peak_pressure=90 * PSI)
+    tensions = found.linings[0].reactions
+    assert tensions["second"] / LBF == pytest.approx(2520, rel=1e-12)
+    assert tensions["first"] / LBF == pytest.approx(775.817208, rel=DIGITS)
+    assert found.torque / LBF / INCH == pytest.approx(12209.27955, rel=DIGITS)
+
+
+def test_simple_band_by_its_torque():
+    band = machines.Band(0.2, 0.05, np.radians(225), 0.5, 0.1)
+    tensions = machines.solve_brake(band, friction=0.25, torque=375.0).linings[0].reactions
+    assert tensions["second"] == pytest.approx(2998.348456, rel=DIGITS)
+    assert tensions["first"] == pytest.approx(1123.348456, rel=DIGITS)
+
+
+@pytest.mark.parametrize(
+    ("law", "pressure", "force", "radius", "line"),
+    [
+        ("wear", 315.750580, 3747.747748, 4.6875, 2120.791),
+        ("pressure", 258.432327, 3710.586907, 4.734444, None),
+    ],
+)
+def test_annular_pads(law, pressure, force, radius, line):
+    disc = machines.Disc(3.875 * INCH, 5.5 * INCH, np.radians(108), pressure_law=law)
+    found = machines.solve_brake(disc, friction=0.37, torque=13000 * LBF * INCH)
+    assert found.peak_pressure / PSI == pytest.approx(pressure, rel=DIGITS)
+    assert found.force / LBF == pytest.approx(force, rel=DIGITS)
+    assert found.radius / INCH == pytest.approx(radius, rel=1e-7)
+    if line:
+        assert found.force / wheel_cylinder_force(1.5 * INCH, PSI) == pytest.approx(line, rel=3e-7)
+
+
+@pytest.mark.parametrize(("width", "pressure", "force"), [(0.06, 82.247, 0.948796), (None, 83.876, 0.9676)])
+def test_cone(width, pressure, force):
+    """Along the axis as the book means, or a slant face of 60 mm."""
+    width = width or np.sqrt(0.06**2 - 0.012**2)
+    found = machines.solve_brake(machines.Cone(0.153, 0.165, width), friction=0.26, torque=200.0)
+    assert found.peak_pressure / 1e3 == pytest.approx(pressure, abs=5e-4)
+    assert found.force / 1e3 == pytest.approx(force, abs=5e-5)
+
+
+@pytest.mark.parametrize(("reverse", "torque"), [(False, 78.2608696), (True, 66.6666667)])
+def test_short_block(reverse, torque):
+    """The mechanism of examples/block_brake.toml, solved there part by part."""
+    block = machines.Block(0.15, 0.05, 0.5, 0.6, 0.25, 0.05, pressure_law="short")
+    found = machines.solve_brake(block, friction=0.4, force=500.0, reverse=reverse)
+    assert found.torque == pytest.approx(torque, rel=DIGITS)

@@ -1,0 +1,84 @@
+"""`brakes band` and the other brakes pressed by one force: exit codes, sentences, sweeps, spreads."""
+
+from pathlib import Path
+
+import pytest
+
+from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from brakes.answers import STANDARD
+from brakes.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture
+def answer(tmp_path, capsys):
+    """Run a command on its example with a text replaced."""
+
+    def answer(name, old="", new="", *options):
+        text = (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+        assert old in text
+        path = tmp_path / f"{name}.toml"
+        path.write_text(text.replace(old, new, 1), encoding="utf-8")
+        return main([name, str(path), *options]), *capsys.readouterr()
+
+    return answer
+
+
+def test_a_band_that_locks_is_refused_in_one_sentence_without_a_number(answer):
+    code, out, err = answer("band", "friction = 0.2", "friction = 0.5")
+    assert code == NO_ANSWER
+    assert "locked: friction 0.5 is at or past self-locking, 0.331; the band grips by itself" in err
+    (row,) = (line for line in out.splitlines() if "torque of the brake" in line)
+    assert row.split()[4:] == ["-", "N", "m"]
+    assert "At this force" not in out
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "parts"),
+    [
+        (
+            "band",
+            '"25 mm"',
+            '"100 mm"',
+            ["band.second_arm", '"100 mm"', "below first_arm", "loosen", "exchange"],
+        ),
+        ("band", '"240 deg"', '"400 deg"', ["band.wrap", "at most 360 deg"]),
+        ("band", 'force = "200 N"', 'torque = "0 N m"', ["load.torque", "greater than 0"]),
+        ("disc", '"120 mm"', '"80 mm"', ["disc.outer_radius", "empty", "inner_radius"]),
+        ("disc", '"floating"', '"fixed"', ["disc.guide_loss", "has no slide", "leave it out"]),
+        ("plates", "faces = 4", "faces = 2.5", ["plates.faces", "whole number"]),
+        ("cone", '"60 mm"', '"0 mm"', ["cone.width", "greater than 0"]),
+        ("block", '"40 deg"', '"120 deg"', ["block.block_angle", "would lift", "below", "shorten"]),
+    ],
+)
+def test_bad_input_names_key_value_bound_and_remedy(answer, name, old, new, parts):
+    code, out, err = answer(name, old, new)
+    assert (code, out) == (BAD_INPUT, "")
+    assert [part for part in parts if part not in err] == []
+
+
+def test_a_torque_of_a_brake_that_locks_cannot_be_demanded(answer):
+    code, _, err = answer("band", 'force = "200 N"', 'torque = "100 N m"', "--vary", "friction=0.5:0.6:2")
+    assert code in (BAD_INPUT, NO_ANSWER) and "the brake locks: no torque can be demanded of it" in err
+
+
+@pytest.mark.parametrize("name", STANDARD)
+def test_every_standard_brake_sweeps_spreads_and_states_what_it_hangs_on(answer, name):
+    code, out, err = answer(name)
+    assert (code, err) == (DONE, "")
+    assert "At this force, torque" in out and "friction -+10 %" in out
+    assert answer(name, "", "", "--vary", "friction=0.1:0.2:3", "--what", "torque,c_star")[0] == DONE
+    spread = ("--spread", "friction=+-5%", "--samples", "128", "--what", "torque")
+    assert answer(name, "", "", *spread)[0] == DONE
+
+
+def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
+    """230.541 and 298.001 N m: recomputed at 0.315 and 0.385, by a second program."""
+    _, out, _ = answer("drum")
+    assert "230.54 N m (-12.3 %), 298.00 N m (+13.3 %)" in " ".join(out.split())
+
+
+def test_reverse_turns_leading_into_trailing(answer):
+    _, out, _ = answer("band", '"forward"', '"reverse"')
+    assert "reverse" in out and "never" in out
