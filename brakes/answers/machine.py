@@ -20,6 +20,7 @@ from brakes.answers.doubts import doubt
 from brakes.answers.tables import list_outputs, outputs_csv, take_fields, take_from
 from brakes.config.machine import MachineInput, file_of
 from brakes.drawings.machine import charts_of, machine_figure
+from brakes.drawings.sketches import cylinder_sketch
 from brakes.machines import LiningResult, Machine, MachineResult, solve_brake
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ class MachineType(ArrayBrakeType[MachineInput]):
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """Explain the symbols of the form."""
-        return self.sketched()
+        return *self.sketched(), (cylinder_sketch(),)
 
     def outputs(self, design: MachineInput) -> Sequence[Output]:
         """Numbers of the brake and of its linings."""

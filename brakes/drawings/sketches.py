@@ -131,7 +131,7 @@ def _force_with_arm(s: Sketch, names: tuple[str, str], along: np.ndarray, arm: n
 
 def drum_sketch() -> Rows:
     """Dimensions of one shoe in its drum, and what may be given as its load."""
-    return [[_shoe()], [_width(), _cylinder()]]
+    return [[_shoe()], [_width(), cylinder_sketch()]]
 
 
 def _shoe() -> Drawing:
@@ -169,7 +169,8 @@ def _width() -> Drawing:
     return s.drawing("Along the axis", "The width of the lining along the drum's axis: w")
 
 
-def _cylinder() -> Drawing:
+def cylinder_sketch() -> Drawing:
+    """Bore and pressure of a cylinder."""
     s = Sketch()
     s.add(Outline([(0, 0.25), (1.0, 0.25), (1.0, -0.25), (0, -0.25)], "body", 1.4, closed=True, filled=True))
     s.add(
@@ -180,4 +181,4 @@ def _cylinder() -> Drawing:
     s.dashed((-0.35, 0.25), (0.0, 0.25))
     s.dashed((-0.35, -0.25), (0.0, -0.25))
     s.length("d", (-0.22, -0.25), (-0.22, 0.25), (-1.0, 0.0))
-    return s.drawing("Wheel cylinder", "The bore of a wheel cylinder and its pressure: d, p_h")
+    return s.drawing("Cylinder", "The bore of a cylinder and its pressure: d, p_h")

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.edge.inputs import Input, Section, describe
+from brakes.answers import STANDARD
 
 MARK = re.compile(r"^<!-- keys of (\S+):(\w+) -->$", re.MULTILINE)
 _BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
@@ -80,7 +81,16 @@ def _default(entry: Input, name: str) -> str:
     return str(entry.default).lower() if isinstance(entry.default, bool) else str(entry.default)
 
 
+def rows_of_brakes() -> str:
+    """Rows of the page of commands: a brake that has no options of its own, what its command answers."""
+    rows = (
+        f"| `brakes {name}` | {shown} | [examples](examples.md) |" for name, (shown, _) in STANDARD.items()
+    )
+    return "\n".join(rows)
+
+
 def write_tables(app, docname: str, source: list[str]) -> None:
+    source[0] = source[0].replace("<!-- standard brakes -->", rows_of_brakes())
     if not MARK.search(source[0]):
         return
     source[0] = with_tables(source[0])

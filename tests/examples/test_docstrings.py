@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from brakes import calipers, chain, drum, forklift, planar, vehicle
+from brakes import calipers, chain, drum, forklift, machines, planar, vehicle
 
 ROOT = Path(__file__).parents[2]
-MODULES = (bd, calipers, chain, drum, forklift, planar, vehicle)
+MODULES = (bd, calipers, chain, drum, forklift, machines, planar, vehicle)
 KNOWN = {"np": np, **{module.__name__.rpartition(".")[2]: module for module in MODULES[1:]}, "bd": bd}
 NEED = {"beamdyn.count_cycles": "rainflow", "beamdyn.LoadCycles": "rainflow"}  # extras
 CHECKED = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["numpydoc_validation"]

@@ -19,7 +19,8 @@ import brakes
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.results.result import Result
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
-from brakes import chain, drum, forklift, vehicle
+from brakes import chain, drum, forklift, machines, vehicle
+from brakes.answers.band import BRAKE as BAND
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.answers.drum import BRAKE as DRUM
 from brakes.answers.forklift import FORKLIFT
@@ -120,6 +121,10 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Kinematics": lambda: forklift.follow_shoes(BENDIX, 5e-4),
     "LoadCycles": lambda: cycles_of(made("TransientLoads")),
     "Locus": lambda: bd.frequency_locus(HARVESTER, SPEEDS),
+    "MachineAnswer": lambda: _answer(BAND),
+    "MachineResult": lambda: machines.solve_brake(
+        machines.Band(0.2, 0.05, 3.9, 0.5, 0.1), friction=0.2, force=1e2
+    ),
     "Matrices": lambda: bd.matrices(HARVESTER, 50.0, 2),
     "MechanismAnswer": lambda: _answer(MECHANISM),
     "MechanismFriction": _friction,

@@ -11,6 +11,7 @@ import pytest
 from beamdyn import cli as beams
 from beamdyn.common.edge.program import DONE
 from brakes import cli as brakes
+from brakes.answers import STANDARD
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = {"beamdyn": beams, "brakes": brakes}
@@ -21,7 +22,7 @@ COMMANDS = [
     if not name.startswith("-")
 ]
 LONG = ("app", "reproduce", "tradeoff", "branches")  # that serve, or compute for many seconds
-SECONDS = ("campbell", "sweep", "steady", "study", "drum", "caliper", "forklift")
+SECONDS = ("campbell", "sweep", "steady", "study", "caliper", "forklift", *STANDARD)
 EACH = [pytest.param(*command, id=" ".join(command)) for command in COMMANDS]
 RUN = [
     pytest.param(*command, id=" ".join(command), marks=[pytest.mark.slow] if command[1] in SECONDS else [])
@@ -85,4 +86,6 @@ def test_help_is_in_the_words_of_its_program(program, name, capsys):
 def test_the_page_of_commands_has_each(program):
     page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     listed = re.findall(rf"^\| `{program} ([\w-]+)` \|", page, re.MULTILINE)
+    listed += STANDARD if program == "brakes" else ()  # rows that the site makes
+    assert "<!-- standard brakes -->" in page
     assert sorted(listed) == sorted(name for each, name in COMMANDS if each == program)
