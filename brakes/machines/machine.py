@@ -72,6 +72,12 @@ class Machine(ABC):
         Words for each law of the pressure, by its name; none if there is only one.
     place : Meaning
         What the pressure is plotted over.
+
+    Examples
+    --------
+    >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
+    >>> band.reference_radius  # m
+    0.2
     """
 
     grips: ClassVar[str] = "brake"
@@ -137,6 +143,12 @@ class LiningResult:
         Torque [N m], largest pressure [Pa].
     reactions : dict of str to ndarray
         Forces by the names in the brake's `reactions` [N].
+
+    Examples
+    --------
+    >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
+    >>> [*machines.solve_brake(band, friction=0.25, force=100.0).linings[0].reactions]
+    ['first', 'second', 'fulcrum', 'bearing']
     """
 
     name: str
@@ -179,8 +191,8 @@ class MachineResult(SlidesOrLocks):
     --------
     >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
     >>> found = machines.solve_brake(band, friction=0.25, force=100.0)
-    >>> found.status, found.linings[0].name
-    ('slides', 'band')
+    >>> bool(found.locked), found.linings[0].name
+    (False, 'band')
     """
 
     brake: Machine
