@@ -103,7 +103,7 @@ def test_force_of_a_band_on_its_bearing_is_that_of_pressure_and_friction(wrap):
 @pytest.mark.parametrize("law", ["wear", "pressure"])
 def test_moments_on_the_levers_of_a_block_brake(law, reverse):
     """By quadrature of pressure and friction about the fulcrum, in vectors."""
-    block = BLOCK.with_law(law)
+    block = replace(BLOCK, pressure_law=law)
     found = machines.solve_brake(block, friction=MU, force=500.0, reverse=reverse)
     for i, lining in enumerate(found.linings):
         towards = -1.0 if (i == 0) is not reverse else 1.0  # direction of the surface; the fulcrum is at -x
