@@ -84,7 +84,7 @@ def test_tensions_of_a_band_follow_its_differential_equation(reverse):
 
 
 @pytest.mark.parametrize("wrap", [2.5, 4.0, 6.0])
-def test_force_of_a_band_on_its_bearing_is_that_of_pressure_and_friction(wrap):
+def test_forces_of_a_band_on_bearing_and_fulcrum_are_those_of_pressure_and_friction(wrap):
     band = replace(BAND, wrap=wrap)
     found = machines.solve_brake(band, friction=MU, force=100.0)
 
@@ -95,26 +95,35 @@ def test_force_of_a_band_on_its_bearing_is_that_of_pressure_and_friction(wrap):
 
         return integral(band, density)
 
-    bearing = np.hypot(force(np.cos), force(np.sin))
+    x, y = force(np.cos), force(np.sin)
+    bearing, along = np.hypot(x, y), x * np.cos(wrap / 2) + y * np.sin(wrap / 2)
+    fulcrum = np.sqrt((along - 100.0) ** 2 + bearing**2 - along**2)
+    assert found.linings[0].reactions["fulcrum"] == pytest.approx(fulcrum, rel=EXACT)
     assert found.linings[0].reactions["bearing"] == pytest.approx(bearing, rel=EXACT)
 
 
 @pytest.mark.parametrize("reverse", [False, True])
 @pytest.mark.parametrize("law", ["wear", "pressure"])
-def test_moments_on_the_levers_of_a_block_brake(law, reverse):
-    """By quadrature of pressure and friction about the fulcrum, in vectors."""
-    block = BLOCK.with_law(law)
+def test_levers_of_a_block_brake_balance(law, reverse):
+    """Moments about the fulcrum and forces, by quadrature of pressure and friction, in vectors."""
+    block = replace(BLOCK, pressure_law=law)
     found = machines.solve_brake(block, friction=MU, force=500.0, reverse=reverse)
     for i, lining in enumerate(found.linings):
         towards = -1.0 if (i == 0) is not reverse else 1.0  # direction of the surface; the fulcrum is at -x
 
-        def moment(at, towards=towards, lining=lining):
+        def forces(at, towards=towards, lining=lining):
             p = lining.peak_pressure * block.pressure(at, MU) * block.face_width * block.drum_radius
             out, along = np.stack([np.sin(at), np.cos(at)]), np.stack([np.cos(at), -np.sin(at)])
-            x, y = block.drum_radius * out - np.array([[-block.block_arm], [block.height]])
-            fx, fy = p * (out + MU * towards * along)
-            return x * fy - y * fx
+            return p * (out + MU * towards * along)
 
+        def moment(at, forces=forces):
+            x = block.drum_radius * np.sin(at) + block.block_arm
+            y = block.drum_radius * np.cos(at) - block.height
+            return x * forces(at)[1] - y * forces(at)[0]
+
+        across, up = (integral(block, lambda at, k=k, forces=forces: forces(at)[k]) for k in (0, 1))
+        assert lining.reactions["pin_x"] == pytest.approx(-across, rel=EXACT)
+        assert lining.reactions["pin_y"] == pytest.approx(500.0 - up, rel=EXACT)
         assert integral(block, moment) == pytest.approx(500.0 * block.force_arm, rel=EXACT)
 
 
