@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from beamdyn.common.results.display_units import DisplayUnits
     from beamdyn.common.results.result import load
     from beamdyn.common.spreading.first_order import FirstOrderRange
-    from beamdyn.common.spreading.result import Spread
+    from beamdyn.common.spreading.spread_result import Spread
     from beamdyn.common.spreading.statistics import Scatter, SobolIndices
     from beamdyn.common.spreading.tolerances import Normal, SpreadInput, Uniform
     from beamdyn.common.spreading.worst_case import WorstCases
@@ -111,17 +111,17 @@ if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossing, Crossings
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
-    from beamdyn.studies.campbell.crossings import LineCrossing, Margin
     from beamdyn.studies.campbell.diagram import Campbell, campbell
-    from beamdyn.studies.result import Study
-    from beamdyn.studies.sensitivities.result import SceneNumber, Sensitivities
+    from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
     from beamdyn.studies.sensitivities.sensitivities import (
         critical_speed_sensitivities,
         crossing_sensitivities,
         frequency_sensitivities,
     )
+    from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber, Sensitivities
     from beamdyn.studies.spread import spread
     from beamdyn.studies.study import study
+    from beamdyn.studies.study_result import Study
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff, tradeoff
     from beamdyn.transient.scipy_integrators import GaussCollocation
     from beamdyn.transient.simulate import simulate

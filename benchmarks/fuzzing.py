@@ -32,7 +32,7 @@ os.environ.setdefault("MPLBACKEND", "agg")
 
 import beamdyn.cli
 import brakes.cli
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from benchmarks.cases.mutations import mutate
 from benchmarks.cases.wrong_calls import Call, draw_wrong_call, right_calls, wrong_values
 from benchmarks.rows import Row, show

@@ -24,11 +24,11 @@ from typing import Any
 from beamdyn.app.program import BEAMDYN
 from beamdyn.cli.interactive import make_program as make_beamdyn
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
+from beamdyn.common.screens.page_tasks import outcome_of
 from beamdyn.common.screens.processes import Processes
 from beamdyn.common.screens.screens import Document, Program, Screen
-from beamdyn.common.screens.tasks import outcome_of
 from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES
@@ -79,7 +79,7 @@ class Found:
     slow: list[tuple[float, str]] = field(default_factory=list)
     memory: float = 0.0
 
-    def add(self, where: str, path: str, outcome: tasks.Outcome, seconds: float) -> None:
+    def add(self, where: str, path: str, outcome: page_tasks.Outcome, seconds: float) -> None:
         """Count an outcome."""
         self.slow = sorted([*self.slow, (seconds, where)], reverse=True)[:3]
         if isinstance(outcome, ShownAnswer):
@@ -111,7 +111,7 @@ async def _warm(processes: Processes, program: Program) -> None:
     """Wait until as many processes are ready as there may be: how long that takes is no answer's fault."""
     document = program.documents[0]
     waits = [
-        processes.submit(tasks.solve, document, document.screens[0], document.base_entries)
+        processes.submit(page_tasks.solve, document, document.screens[0], document.base_entries)
         for _ in range(2 * processes.most)
     ]
     await asyncio.wait(waits)
@@ -132,7 +132,7 @@ async def _one(processes: Processes, found: Found, case: Any, room: asyncio.Sema
     work = OpenDocument(document)
     work.put(entry.path, text)
     begin = time.perf_counter()
-    future = processes.submit(tasks.solve, document, screen, work.entries)
+    future = processes.submit(page_tasks.solve, document, screen, work.entries)
     await asyncio.wait([future])
     found.memory = max(found.memory, memory_of(processes.ids))
     where = f"{screen.name}, {entry.path} = {text[:30]!r}"

@@ -52,7 +52,7 @@ READERS = {
     "beamdyn/analyses/about_loads.py",
     "beamdyn/analyses/about_linear_models.py",
     "beamdyn/analyses/values.py",
-    "beamdyn/app/inputs.py",
+    "beamdyn/app/scene_form.py",
     "beamdyn/cli/campbell_diagram.py",
     "beamdyn/common/screens/examples.py",
     "beamdyn/common/screens/form_entries.py",

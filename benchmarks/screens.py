@@ -13,13 +13,13 @@ from time import perf_counter, process_time
 from typing import Any
 
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_options import options_of
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.handles import draw_sheet
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
+from beamdyn.common.screens.page_tasks import drawn
 from beamdyn.common.screens.screens import Document, Program, Screen
-from beamdyn.common.screens.tasks import drawn
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
@@ -46,7 +46,7 @@ def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
     times = []
     for _ in range(RUNS):
         start = process_time()
-        found = tasks.solve_for_drawing(document, screen, entries)
+        found = page_tasks.solve_for_drawing(document, screen, entries)
         assert isinstance(found, ShownAnswer)
         _show(screen, found.answer)
         times.append(process_time() - start)

@@ -27,7 +27,7 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.common.results.announced import unannounced
-from beamdyn.studies.sensitivities.result import SceneNumber
+from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 from benchmarks.cases.random_inputs import random_inputs_scene
 from benchmarks.cases.random_scenes import random_scene
 from benchmarks.cases.reference.many_digits.differences import Number, frequency_derivatives

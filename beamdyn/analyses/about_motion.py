@@ -25,8 +25,8 @@ from beamdyn.analyses.options import (
 from beamdyn.analyses.results.cautions import notes_of
 from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.analyses.values import at_most, parse_positive, parse_window
+from beamdyn.common.edge.exit_codes import Interrupted
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
-from beamdyn.common.edge.program import Interrupted
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varying import Folder
 from beamdyn.common.plots.export import animate

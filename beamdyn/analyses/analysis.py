@@ -14,7 +14,7 @@ from cyclopts import Parameter
 
 from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
-from beamdyn.common.edge import program
+from beamdyn.common.edge import exit_codes
 from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
 from beamdyn.common.edge.tables import show
@@ -295,9 +295,9 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     # The files of a long computation do not depend on who reads the tables.
     write(result, outputs, rows_of(result), draw, Report(question, tables, [*warnings, *refusals]))
     show(tables)
-    program.warn("beamdyn", warnings)
+    exit_codes.warn("beamdyn", warnings)
     if refusal:
-        raise program.NoAnswer(refusal)
+        raise exit_codes.NoAnswer(refusal)
 
 
 def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty) -> inspect.Parameter:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from beamdyn.app.inputs import inputs_of
+from beamdyn.app.scene_form import inputs_of
 from beamdyn.common.drawing.layout import round_below
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sheet import Rows

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamdyn import natural_modes
 from beamdyn.app.drawings import bent_beam, bent_strip
-from beamdyn.app.inputs import DRAGS, read_at_speed
+from beamdyn.app.scene_form import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Rows

@@ -15,7 +15,7 @@ from rich.console import RenderableType
 from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
-from beamdyn.app.inputs import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
+from beamdyn.app.scene_form import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.inputs import Section, parts_of
 from beamdyn.common.edge.rendering import drawing, picture

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn import resonance_speeds, steady_response
-from beamdyn.app.inputs import read
+from beamdyn.app.scene_form import read
 from beamdyn.app.scene_screen import brief, scene_screen
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve

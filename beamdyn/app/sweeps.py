@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from beamdyn import critical_point, natural_modes, resonance_speeds, steady_response
 from beamdyn.analyses.results.cautions import warnings_of
-from beamdyn.app.inputs import inputs_of, read
+from beamdyn.app.scene_form import inputs_of, read
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.input_sweep import (
     MOST_ONE_BY_ONE,

@@ -14,8 +14,8 @@ from rich.console import RenderableType
 from beamdyn import natural_modes
 from beamdyn.analyses.results.cautions import notes_of, warnings_of
 from beamdyn.analyses.results.of_studies import diagram_csv, diagram_table
-from beamdyn.app.inputs import DRAGS, read_aside, read_at_speed
 from beamdyn.app.mode_shapes import headline as headline_of_modes
+from beamdyn.app.scene_form import DRAGS, read_aside, read_at_speed
 from beamdyn.app.scene_screen import left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table

@@ -3,7 +3,7 @@
 from typing import Any
 
 from beamdyn.cli.program import command_line, main
-from beamdyn.common.edge.program import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
 __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main"]
 

@@ -19,9 +19,9 @@ from beamdyn.analyses.results.of_studies import crossings_columns
 from beamdyn.analyses.values import parse_positive, parse_speed
 from beamdyn.cli.decks import read_with
 from beamdyn.common.edge.config import read
+from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.edge.html_report import Question
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
-from beamdyn.common.edge.program import examples
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.files.scenes import load_scene
 

@@ -14,13 +14,13 @@ from cyclopts import App
 from beamdyn._version import __version__
 from beamdyn.analyses import COMMANDS, analyses
 from beamdyn.cli import interactive
-from beamdyn.common.edge import program
+from beamdyn.common.edge import exit_codes
 
 # Commands that are not analyses of a scene: the module here that adds each, and the function that it runs.
 _OTHERS = {
     "campbell": ("campbell_diagram", "campbell"),
     "import": ("decks", "import_deck"),
-    "reproduce": ("published", "reproduce"),
+    "reproduce": ("reproduce_command", "reproduce"),
 }
 
 
@@ -33,7 +33,7 @@ def command_line(command: str = "", *, listed: bool = False) -> App:
         help="""Vibration of rotating cantilevers: natural frequencies, buckling, motion in time, resonance.
 
 A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of a command.""",
-        help_epilogue=program.EXIT_CODES,
+        help_epilogue=exit_codes.EXIT_CODES,
         help_format="markdown",
         suppress_keyboard_interrupt=False,
     )
@@ -42,12 +42,12 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
             app.command(App(name=name, help=_question(name)))
         elif name in COMMANDS:
             each = analyses((name,))[name]
-            app.command(each.command(), name=name, help_epilogue=program.examples(*each.examples))
+            app.command(each.command(), name=name, help_epilogue=exit_codes.examples(*each.examples))
         else:
             import_module(f"beamdyn.cli.{_OTHERS[name][0]}").add(app)
     if not command:
         interactive.add(app)
-        program.add_completion(app)
+        exit_codes.add_completion(app)
     return app
 
 
@@ -69,9 +69,9 @@ def _first_lines(file: Path) -> dict[str, str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.edge.program.run`."""
+    """Run the command; see `beamdyn.common.edge.exit_codes.run`."""
     given = sys.argv[1:] if arguments is None else [*arguments]
     command = next((word for word in given if not word.startswith("-")), "")
     if command in COMMANDS or command in _OTHERS:
-        return program.run(command_line(command), given)
-    return program.run(command_line(listed=command != "completion"), given)
+        return exit_codes.run(command_line(command), given)
+    return exit_codes.run(command_line(listed=command != "completion"), given)

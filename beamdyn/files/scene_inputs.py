@@ -13,8 +13,8 @@ from pydantic import BaseModel, BeforeValidator, Discriminator, Field, GetCoreSc
 from pydantic_core import CoreSchema, core_schema
 
 from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.described_tables import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
-from beamdyn.common.edge.sections import MadeSection, one_of_kinds, section_of
 from beamdyn.common.edge.toml_columns import read_columns
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file

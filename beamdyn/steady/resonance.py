@@ -110,7 +110,7 @@ def resonance_speeds(
     _check_stiffness(scene, critical)
     system = periodic_system(model.equations, scene.motion, np.array([min(top, critical)]))
     parts = [
-        _Part(
+        _UncoupledModes(
             loci, *(excitation_lines(system.part(loci.places), scene.motion, n) for n in (order, order + 1))
         )
         for loci in _split(model, min(top, critical), modes)
@@ -158,7 +158,7 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _UncoupledModes:
     """Modes that no term couples with others, and the lines of their loads and of their stiffness.
 
     Parameters

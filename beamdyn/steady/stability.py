@@ -82,7 +82,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
         R, n = R[rows], system.size  # columns of equal action make |V| symmetric
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic]
-        free = _FreeMotion(system.rates[rows], system.coupling, sigma[rows], V)
+        free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
         shift, damped = np.zeros((len(rows), sigma.shape[1])), np.flatnonzero(rate[rows])
         shift[damped] = free[damped].second_order_shift()
         error[rows] = shift.max(axis=1)
@@ -150,7 +150,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 @dataclass(frozen=True)
-class _FreeMotion:
+class _MeanMotion:
     """Free motion at S pairs of rates (S, 2), in the modes of the mean equations.
 
     Parameters
@@ -170,10 +170,10 @@ class _FreeMotion:
     sigma: np.ndarray
     V: list[tuple[np.ndarray, np.ndarray]]
 
-    def __getitem__(self, chosen: np.ndarray) -> _FreeMotion:
+    def __getitem__(self, chosen: np.ndarray) -> _MeanMotion:
         """Free motion at the chosen pairs of rates."""
         V = [(spectrum[chosen], v[chosen]) for spectrum, v in self.V]
-        return _FreeMotion(self.rates[chosen], self.coupling, self.sigma[chosen], V)
+        return _MeanMotion(self.rates[chosen], self.coupling, self.sigma[chosen], V)
 
     @property
     def radius(self) -> np.ndarray:
@@ -259,7 +259,7 @@ class _Resonance:
     Parameters
     ----------
     rates, coupling, sigma, V
-        As of `_FreeMotion`, at these rates.
+        As of `_MeanMotion`, at these rates.
     mode : int
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair

@@ -34,8 +34,15 @@ from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
 from beamdyn.studies.batched import BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND
-from beamdyn.studies.crossings import NO_LINE, NO_RESONANCE, RESONATES, crossing_key, line_key, lines_of
 from beamdyn.studies.questions import OF_RESPONSES, StudyQuestion
+from beamdyn.studies.resonance_speeds import (
+    NO_LINE,
+    NO_RESONANCE,
+    RESONATES,
+    crossing_key,
+    line_key,
+    lines_of,
+)
 from beamdyn.transient.chunks import DONE
 from beamdyn.transient.sweep import sweep
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.batched import Refinement
-from beamdyn.studies.crossings import PossibleCrossing
+from beamdyn.studies.resonance_speeds import PossibleCrossing
 
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
 MODES = 3  # number of modes of frequencies and crossings by default

@@ -17,8 +17,8 @@ from beamdyn.common.results.announced import announced, unannounced
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.first_order import KnownDerivatives
-from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
+from beamdyn.common.spreading.spread_result import Spread
 from beamdyn.common.spreading.statistics import check_samples, check_seed
 from beamdyn.common.spreading.tolerances import (
     Convert,
@@ -38,14 +38,14 @@ from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.one_by_one import left_out_of_design
 from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion
-from beamdyn.studies.result import Study
-from beamdyn.studies.sensitivities.result import numbers_of
 from beamdyn.studies.sensitivities.sensitivities import (
     critical_speed_sensitivities,
     crossing_sensitivities,
     frequency_sensitivities,
 )
+from beamdyn.studies.sensitivities.sensitivity_result import numbers_of
 from beamdyn.studies.study import speed_of_study, study
+from beamdyn.studies.study_result import Study
 
 _NONLINEAR = "physics.large_deflection"  # the argument that is refused as it has no derivatives
 

@@ -39,11 +39,11 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
 from beamdyn.studies.batched import critical_speeds_of, frequencies_of
-from beamdyn.studies.crossings import crossings_of, list_resonances
 from beamdyn.studies.one_by_one import SingleDesigns
 from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
-from beamdyn.studies.result import Study
+from beamdyn.studies.resonance_speeds import crossings_of, list_resonances
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
+from beamdyn.studies.study_result import Study
 
 _VERSIONS = (
     __version__,

@@ -18,6 +18,7 @@ from beamdyn._version import __version__
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import (
     MOST_ONE_BY_ONE,
     CaseTask,
@@ -30,7 +31,6 @@ from beamdyn.common.edge.input_sweep import (
     swept,
 )
 from beamdyn.common.edge.inputs import Input, describe
-from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs

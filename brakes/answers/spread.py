@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis, parse_spreads
 from beamdyn.common.edge.varying import SPREAD
@@ -18,8 +18,8 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.paths import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
-from beamdyn.common.spreading.result import Spread
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
+from beamdyn.common.spreading.spread_result import Spread
 from beamdyn.common.spreading.statistics import check_samples, check_seed, count_designs
 from beamdyn.common.spreading.tolerances import SpreadInput
 from brakes.answers.base import ERROR, BrakeType, SweepRequest

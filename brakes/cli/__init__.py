@@ -1,6 +1,6 @@
 """The command ``brakes``."""
 
-from beamdyn.common.edge.program import add_completion
+from beamdyn.common.edge.exit_codes import add_completion
 from brakes.cli import commands  # noqa: F401  (it adds the commands)
 from brakes.cli.answering import app, main
 

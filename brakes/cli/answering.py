@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Parameter
 
 from beamdyn._version import __version__
-from beamdyn.common.edge import program
+from beamdyn.common.edge import exit_codes
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.outputs import Outputs, write
-from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.tables import show
 from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
@@ -31,15 +31,15 @@ app = App(
     help="""Statics of brake mechanisms: bicycle calipers, drum brakes, a forklift's duo-servo brake.
 
 Inputs are TOML files with units; `brakes COMMAND --help` lists the options of a command.""",
-    help_epilogue=program.EXIT_CODES,
+    help_epilogue=exit_codes.EXIT_CODES,
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.edge.program.run`."""
-    return program.run(app, arguments)
+    """Run the command; see `beamdyn.common.edge.exit_codes.run`."""
+    return exit_codes.run(app, arguments)
 
 
 What = Annotated[str | None, Parameter(name="--what")]
@@ -117,7 +117,7 @@ def run_command(
         if path is not None:
             save(made, path)
     show(shown)
-    program.warn("brakes", warnings)
+    exit_codes.warn("brakes", warnings)
     if none:
         raise NoAnswer(none)
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
-from beamdyn.common.edge.program import NoAnswer, examples
 from beamdyn.common.edge.tables import console, show
 from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
 from beamdyn.common.results.pictures import save_figure

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import ConfigDict, Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, validated
+from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
 from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
-from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.planar.part import DescribedDirection, DescribedPoint

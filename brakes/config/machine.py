@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import create_model
 
 from beamdyn.common.edge.config import CoreSection
-from beamdyn.common.edge.sections import MadeSection, section_of
+from beamdyn.common.edge.described_tables import MadeSection, section_of
 from beamdyn.common.edge.wording import in_range, of_file
 from brakes.config.load import LoadInput, RubbingInput
 from brakes.machines import Machine, MachineResult, solve_brake

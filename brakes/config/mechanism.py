@@ -11,8 +11,8 @@ import numpy as np
 from pydantic import Field, create_model
 
 from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
+from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
-from beamdyn.common.edge.sections import MadeSection, fields_of, section_of
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.inputs.described import described_hints, description, descriptions
 from brakes.calipers import NAMED, Caliper

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field, model_validator
 
 from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.described_tables import section_of
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
-from beamdyn.common.edge.sections import section_of
 from brakes.chain import BrakeCable, HydraulicLine, Pedal, WheelBrakes
 from brakes.vehicle import Road, Truck, Vehicle
 from brakes.vehicle.axles import Braked

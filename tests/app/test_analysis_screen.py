@@ -11,8 +11,8 @@ import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
-from beamdyn.app.inputs import ASIDE, inputs_of
 from beamdyn.app.program import SCENE
+from beamdyn.app.scene_form import ASIDE, inputs_of
 from beamdyn.app.scene_screen import analysis_screen, first_entries
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue

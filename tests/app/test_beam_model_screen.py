@@ -14,8 +14,8 @@ from beamdyn.common.screens.computations import SOON
 from beamdyn.common.screens.controls import DragSlider
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.page_tasks import report_of
 from beamdyn.common.screens.screens import Program
-from beamdyn.common.screens.tasks import report_of
 from beamdyn.scene.physics import AUTO
 from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from beamdyn import critical_speed, natural_modes, resonance_speeds, simulate
-from beamdyn.app.frequencies import FREQUENCIES
+from beamdyn.app.frequency_screen import FREQUENCIES
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.program import SCENE
-from beamdyn.app.rotor import ROTOR
+from beamdyn.app.rotor_screen import ROTOR
 from beamdyn.app.scene_screen import bar, left_out_table
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
-from beamdyn.app.transient import TRANSIENT
+from beamdyn.app.transient_screen import TRANSIENT
 from beamdyn.common.drawing.shapes import Outline
 from beamdyn.common.edge.file_words import in_files, on_form
 from beamdyn.common.edge.rendering import html

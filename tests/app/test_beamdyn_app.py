@@ -11,7 +11,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.screens.controls import DragSlider
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.tasks import drawn
+from beamdyn.common.screens.page_tasks import drawn
 from beamdyn.scene.physics import Physics
 
 FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20}  # of an outline, of modes, ..

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rich.console import Group
 
-from beamdyn.common.screens.comparison import with_other_curves
+from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from brakes.app.program import BRAKES

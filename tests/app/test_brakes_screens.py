@@ -14,7 +14,7 @@ from beamdyn.common.edge.rendering import csv_text, html, png, svg
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, tables_of, toml_of
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.tasks import drawn, report_of
+from beamdyn.common.screens.page_tasks import drawn, report_of
 from brakes.app.bases import base
 from brakes.app.program import BRAKES, CALIPER, FORCES, FORKLIFT, KINEMATICS, VEHICLE
 from brakes.calipers import NAMED

@@ -16,9 +16,9 @@ from beamdyn.app.drawings import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.tables import table
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.browser_memory import LinkedDesign, named_designs, read_typed, refused_name
-from beamdyn.common.screens.comparison import (
+from beamdyn.common.screens.compared_designs import (
     Difference,
     differences_html,
     headline_html,
@@ -179,7 +179,7 @@ def compared():
     changed = work.entries | {"stop.speed": "30 km/h", "stop.gravity": "9.81 m/s2"}
     work.compare(OtherDesign("fast", changed))
     assert work.solve(SCREEN)
-    work.compared[SCREEN.name] = tasks.solve(VEHICLE, SCREEN, work.other.entries)
+    work.compared[SCREEN.name] = page_tasks.solve(VEHICLE, SCREEN, work.other.entries)
     return work
 
 
@@ -258,7 +258,7 @@ def test_other_design_is_solved_once_and_again_for_another(compared):
     assert not compared.wants_other(SCREEN)
     work = OpenDocument(VEHICLE)
     work.compare(OtherDesign("broken", work.entries | {"stop.speed": "fast"}))
-    work.compared[SCREEN.name] = tasks.solve(VEHICLE, SCREEN, work.other.entries)
+    work.compared[SCREEN.name] = page_tasks.solve(VEHICLE, SCREEN, work.other.entries)
     assert work.other_answer(SCREEN) is None
     assert "stop.speed" in work.compared[SCREEN.name]
     work.compare(None)
@@ -313,7 +313,9 @@ def test_the_page_shows_the_headline_that_comes_with_the_answer():
 
     work = OpenDocument(SCENE)
     (screen,) = (screen for screen in SCENE.screens if screen.name == "Mode shapes")
-    held, full = (task(SCENE, screen, work.entries) for task in (tasks.solve_for_drawing, tasks.solve))
+    held, full = (
+        task(SCENE, screen, work.entries) for task in (page_tasks.solve_for_drawing, page_tasks.solve)
+    )
     shown = replace(screen, headline=fail, quick_headline=fail)
     assert "model error at most" in headline_of(work, shown, full)
     assert "first frequency" in (quick := headline_of(work, shown, held)) and "model error" not in quick

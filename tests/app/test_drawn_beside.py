@@ -9,12 +9,12 @@ pytest.importorskip("nicegui")
 
 from nicegui.testing.user_interaction import UserInteraction
 
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
 from tests.app.serving import PATIENCE
 
-DRAWN = {tasks.folded, tasks.drawing_file, tasks.sweep_file, tasks.report}
+DRAWN = {page_tasks.folded, page_tasks.drawing_file, page_tasks.sweep_file, page_tasks.report}
 
 
 class Holding:
@@ -75,7 +75,7 @@ async def downloaded(*users):
 
 def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver):
     def report_is_held():
-        held = any(task is tasks.report for _, task, _ in solver.held)
+        held = any(task is page_tasks.report for _, task, _ in solver.held)
         if not held:
             solver.let_go()  # pictures that the pages have asked for before
         return held
@@ -88,7 +88,7 @@ def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver
         page.enter("stop.speed", "25 km/h")
         await wait_for(lambda: "Up to date." in page.text())
         assert "16." in page.text()  # the stopping distance grows from 13.4 m to some 19
-        assert tasks.report not in solver.done
+        assert page_tasks.report not in solver.done
         solver.let_go()
         found = (await downloaded(first, second)).text
         assert "<h2>Vehicle</h2>" in found and "<h2>Internal forces</h2>" in found
@@ -103,7 +103,7 @@ def test_files_are_drawn_beside(simulate, fields, solver):
         page.go("Drum brake")
         await wait_for(lambda: "Up to date." in page.text())
         press(user, "download Drum brake as PNG")
-        await wait_for(lambda: tasks.drawing_file in [task for _, task, _ in solver.held])
+        await wait_for(lambda: page_tasks.drawing_file in [task for _, task, _ in solver.held])
         solver.let_go()
         assert (await downloaded(user)).content.startswith(b"\x89PNG")
 

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from beamdyn.common.drawing.shapes import Disc, points_of_shape
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.handles import Sheet, changed_texts, describe_place, draw_sheet
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.screen_view import ScreenView
@@ -352,9 +352,9 @@ def test_places_that_come_in_meanwhile_are_left_out(simulate, fields, monkeypatc
         label = "pin of the shoe"
         x, y = handles.place(label)
         for way in ("solve_for_drawing", "solve"):  # while it is held, and when it is let go
-            kept = getattr(tasks, way)
+            kept = getattr(page_tasks, way)
             monkeypatch.setattr(
-                tasks, way, lambda *given, kept=kept, way=way: solved.append(way) or kept(*given)
+                page_tasks, way, lambda *given, kept=kept, way=way: solved.append(way) or kept(*given)
             )
         for i in range(1, 31):
             handles.send(label, "pointerdown", x + 0.001 * i, y - 0.001 * i, False)

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from beamdyn.app.transient import TRANSIENT
+from beamdyn.app.transient_screen import TRANSIENT
 from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Slider
 from brakes.app.program import BRAKES

@@ -10,10 +10,10 @@ from concurrent.futures import BrokenExecutor
 
 import pytest
 
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
+from beamdyn.common.screens.page_tasks import outcome_of
 from beamdyn.common.screens.processes import Processes, Share, TakesTooLong
-from beamdyn.common.screens.tasks import outcome_of
 from brakes.app.program import BRAKES
 from brakes.cli.commands import make_program
 from tests.app.serving import PATIENCE, ROOT
@@ -82,7 +82,7 @@ def test_answers_of_all_screens_are_those_made_here():
     async def body(processes):
         for document, screen in ALL:
             work = OpenDocument(document)
-            made = await processes.submit(tasks.solve, document, screen, work.entries)
+            made = await processes.submit(page_tasks.solve, document, screen, work.entries)
             assert isinstance(made, ShownAnswer), made
             assert work.solve(screen)
             here = work.answered[screen.name]

@@ -11,10 +11,10 @@ import pytest
 from beamdyn import __version__
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.rendering import html
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import OpenDocument
-from beamdyn.common.screens.tasks import report_of
+from beamdyn.common.screens.page_tasks import report_of
 from brakes.app.program import BRAKES, CALIPER
 
 DRUM = next(document for document in BRAKES.documents if document.name == "drum")
@@ -85,10 +85,10 @@ def test_report_has_title_date_every_input_and_the_sweeps_that_are_shown():
     """What the page asks for: made of the answers alone, in a process that holds nothing of the page."""
     work = solved(DRUM)
     (screen,) = DRUM.screens
-    swept = tasks.sweep(DRUM, screen, work.entries, "brake.friction=0.2:0.4:5", "torque")
+    swept = page_tasks.sweep(DRUM, screen, work.entries, "brake.friction=0.2:0.4:5", "torque")
     shown = [(screen.name, "Sweep of friction", swept)]
     sent = pickle.loads(pickle.dumps((work.entries, work.answered, "My drum", shown)))
-    page = unescape(tasks.report(DRUM, screen, *sent))
+    page = unescape(page_tasks.report(DRUM, screen, *sent))
     assert "<h1>My drum</h1>" in page and "<h2>Sweep of friction</h2>" in page
     assert re.search(rf"<p>{datetime.now().year}-\d\d-\d\d \d\d:\d\d", page)
     table = page.partition("<h2>Every input</h2>")[2]

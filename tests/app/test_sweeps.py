@@ -12,8 +12,8 @@ from nicegui.testing.user_interaction import UserInteraction
 
 from beamdyn import frequency_locus, resonance_speeds, steady_response
 from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
 from beamdyn.common.edge.input_sweep import sweep_csv
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER, NoAnswer
 from beamdyn.common.edge.rendering import csv_text
 from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.screens.form_entries import tables_of

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamdyn.common.edge.program import DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import DONE, NO_ANSWER
 from brakes import reproduce
 from brakes.cli import main
 from brakes.published import load

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from brakes.cli import main
 
 ROOT = Path(__file__).parents[2]

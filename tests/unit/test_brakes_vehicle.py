@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from brakes.cli import main
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -8,7 +8,7 @@ import subprocess
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge.program import BAD_INPUT, DONE
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE
 from brakes import cli as brakes
 
 PROGRAMS = {"beamdyn": beams, "brakes": brakes}

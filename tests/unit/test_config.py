@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from beamdyn.app.inputs import inputs_of
+from beamdyn.app.scene_form import inputs_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.units import quantity
 from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of

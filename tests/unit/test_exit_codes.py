@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 
 ROOT = Path(__file__).parents[2]
 INWARD = (ROOT / "examples" / "rolling_harvester.toml").read_text()  # it buckles at 159.8 rad/s

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge.program import DONE
+from beamdyn.common.edge.exit_codes import DONE
 from brakes import cli as brakes
 from brakes.answers import STANDARD
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from brakes.answers import STANDARD
 from brakes.cli import main
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from beamdyn._version import __version__
-from beamdyn.common.edge.program import NoAnswer
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.results.one_line import rounded_up
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED

@@ -13,7 +13,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import critical_label, labels_of, notes_of, warnings_of
-from beamdyn.app.frequencies import FREQUENCIES
+from beamdyn.app.frequency_screen import FREQUENCIES
 from beamdyn.common.edge.file_words import in_files, say
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.edge.views import rows_of

@@ -12,7 +12,7 @@ import pytest
 
 from beamdyn import cli as beams
 from beamdyn.common.edge import progress
-from beamdyn.common.edge.program import DONE
+from beamdyn.common.edge.exit_codes import DONE
 from beamdyn.common.edge.progress import at_work, quiet
 from brakes import cli as brakes
 from tests.unit.toml_scenes import without_camber

@@ -13,8 +13,8 @@ from beamdyn.cli import NO_ANSWER, main
 from beamdyn.common.edge.spread_tables import headline, spread_table
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results.pictures import COLOURS
-from beamdyn.common.spreading.result import draw_scatter
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
+from beamdyn.common.spreading.spread_result import draw_scatter
 from beamdyn.common.spreading.statistics import scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput, Uniform
 from beamdyn.studies import spread as spreads

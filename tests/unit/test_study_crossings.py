@@ -56,7 +56,7 @@ def unsolvable_thin(monkeypatch):
             raise np.linalg.LinAlgError("not positive definite")
         return speeds_of_meeting(stack, coarse, multiples, count, top, *rest)
 
-    monkeypatch.setattr("beamdyn.studies.crossings.speeds_of_meeting", limited)
+    monkeypatch.setattr("beamdyn.studies.resonance_speeds.speeds_of_meeting", limited)
 
 
 def test_crossings_that_rounding_leaves_unsolved_are_refused(unsolvable_thin):

@@ -11,7 +11,7 @@ from beamdyn.studies.tradeoffs.measurements import (
     Diagram,
     Family,
     Measurement,
-    Setting,
+    TimedCase,
     cost_per_digit,
     measure_families,
     pareto_front,
@@ -94,7 +94,7 @@ class Clock:
                 raise answer
             return answer
 
-        return Setting(setting, 1.0, run)
+        return TimedCase(setting, 1.0, run)
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def test_the_shortest_run_counts(monkeypatch):
     monkeypatch.setattr(timing, "RUNS", 3)
     instants = iter([0.0, 3.0, 3.0, 4.0, 4.0, 6.0])  # the runs take 3, 1 and 2 s
     monkeypatch.setattr(timing, "process_time", lambda: next(instants))
-    found, _ = measure_families([Family("F", (Setting("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
+    found, _ = measure_families([Family("F", (TimedCase("a", 1, lambda deadline: 0.5),))], float, 0.0, 1e3)
     assert [m.time for m in found] == [1.0]
 
 
@@ -194,7 +194,7 @@ def test_contenders_run_again_in_turns(clock, monkeypatch):
 
     def setting(name, takes):
         case = clock.case(name, takes, answer=0.01)
-        return Setting(name, 1.0, lambda deadline: (ran.append(name), case.run(deadline))[1])
+        return TimedCase(name, 1.0, lambda deadline: (ran.append(name), case.run(deadline))[1])
 
     names = "a", "b", "slow"
     families = [Family(n, (setting(n, t),)) for n, t in zip(names, (0.1, 0.11, 0.5), strict=True)]

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from beamdyn.common.edge.inputs import Input, Quantity, Section
-from beamdyn.common.edge.program import BAD_INPUT, DONE, NO_ANSWER
 from beamdyn.common.edge.varied_inputs import parse_axis
 from brakes.cli import main
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from beamdyn.studies.campbell.diagram import Campbell
-    from beamdyn.studies.result import Study
-    from beamdyn.studies.sensitivities.result import Sensitivities
+    from beamdyn.studies.sensitivities.sensitivity_result import Sensitivities
+    from beamdyn.studies.study_result import Study
     from beamdyn.studies.tradeoffs.measurements import Diagram
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.inputs import Section
-from beamdyn.common.edge.program import NoAnswer
 from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of, unknown
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.designs import Designs, VariedInput

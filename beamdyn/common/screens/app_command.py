@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
-from beamdyn.common.edge.program import examples
+from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.screens import HOME
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from beamdyn.common.drawing.svg import as_file, element
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.screens.comparison import with_ghost
+from beamdyn.common.screens.compared_designs import with_ghost
 from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for, usual_unit
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen

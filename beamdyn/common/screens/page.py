@@ -10,7 +10,7 @@ from typing import Any
 from nicegui import background_tasks, run, ui
 
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.browser_memory import (
     LinkedDesign,
     call,
@@ -25,10 +25,10 @@ from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.header import Header
 from beamdyn.common.screens.look import BLUE, RED, STYLE, scripts_of
 from beamdyn.common.screens.open_document import OpenDocument, OtherDesign
+from beamdyn.common.screens.page_tasks import outcome_of
 from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Document, Program, Screen
-from beamdyn.common.screens.tasks import outcome_of
 
 _CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
 _ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
@@ -205,7 +205,7 @@ class Page:
         work = self.works[document.name]
         title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
         given = dict(work.entries), dict(work.answered), title, sweeps
-        made = self.solver.submit(tasks.report, document, document.screens[0], *given)
+        made = self.solver.submit(page_tasks.report, document, document.screens[0], *given)
         await download(made, f"{document.name}.html")
 
     def reset(self) -> None:
@@ -269,7 +269,7 @@ class Page:
         """Have the other design solved for a screen, and show what differs when it is."""
         other = work.other
         assert other is not None
-        future = self.solver.submit(tasks.solve, work.document, screen, dict(other.entries))
+        future = self.solver.submit(page_tasks.solve, work.document, screen, dict(other.entries))
         await asyncio.wait([future])
         if work.other is other:
             work.compared[screen.name] = outcome_of(future, work, screen)

@@ -12,7 +12,7 @@ from beamdyn.common.drawing.sheet import lay_out
 from beamdyn.common.drawing.sketch import Sketcher, sketch_paper
 from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.rendering import picture
-from beamdyn.common.screens.comparison import (
+from beamdyn.common.screens.compared_designs import (
     differences_html,
     headline_html,
     input_differences,

@@ -15,9 +15,9 @@ from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import html
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
-from beamdyn.common.screens.comparison import with_other_curves
+from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.computations import LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
@@ -26,13 +26,13 @@ from beamdyn.common.screens.form_entries import Entries, options_of
 from beamdyn.common.screens.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
 from beamdyn.common.screens.list_editor import ListEditor
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
+from beamdyn.common.screens.page_tasks import at_fault, outcome_of
 from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.panels import ComparisonPanel, FoldedPanel, SketchPanel, headline_of
 from beamdyn.common.screens.processes import RunsTasks, Task
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
 from beamdyn.common.screens.sweep_panel import SweepPanel
-from beamdyn.common.screens.tasks import at_fault, outcome_of
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 _STALE = "Stale: for the entries before."
@@ -105,7 +105,7 @@ class ScreenView:
                 self.comparison = ComparisonPanel(self.work, screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full")
                 self._more = [
-                    FoldedPanel(part.title, lambda answer, i=i: self._make(tasks.folded, answer, i))
+                    FoldedPanel(part.title, lambda answer, i=i: self._make(page_tasks.folded, answer, i))
                     for i, part in enumerate(screen.more)
                 ]
         with ui.column().classes("after w-full gap-2"):
@@ -212,7 +212,7 @@ class ScreenView:
         held : bool
             Whether something is being dragged: then as far as the drawing shows it.
         """
-        task = tasks.solve_for_drawing if held and self._answered else tasks.solve
+        task = page_tasks.solve_for_drawing if held and self._answered else page_tasks.solve
         entries = dict(self.work.entries)
         self._way.want(lambda: self._make(task, entries))
         self.state()
@@ -376,7 +376,7 @@ class ScreenView:
         await self.settled()
         if answered := self._answered:
             if kind == "csv":
-                made = self._make(tasks.rows_file, answered.answer)
+                made = self._make(page_tasks.rows_file, answered.answer)
             else:
-                made = self._make(tasks.drawing_file, self._drawn_answer(answered), self.progress, kind)
+                made = self._make(page_tasks.drawing_file, self._drawn_answer(answered), self.progress, kind)
             await download(made, f"{self.screen.name.lower().replace(' ', '-')}.{kind}")

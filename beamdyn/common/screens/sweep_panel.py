@@ -21,7 +21,7 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import csv_text
 from beamdyn.common.edge.varied_inputs import Coordinate, numbers
 from beamdyn.common.plots.curves import input_words, panels_of
-from beamdyn.common.screens import tasks
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.computations import download
 from beamdyn.common.screens.form_entries import Entries, in_unit, table_of, tables_of, usual_unit
@@ -86,7 +86,7 @@ class SweepPanel:
 
     def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: RunsTasks) -> None:
         self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
-        self._future: asyncio.Future[tasks.Swept] | None = None  # the sweep that is under way
+        self._future: asyncio.Future[page_tasks.Swept] | None = None  # the sweep that is under way
         self._found: tuple[_Request, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")
@@ -150,9 +150,11 @@ class SweepPanel:
             return self._found[1]
         self.close()
         document, entries = self.work.document, dict(self.work.entries)
-        future = self._future = self._solver.submit(tasks.sweep, document, self.screen, entries, text, names)
+        future = self._future = self._solver.submit(
+            page_tasks.sweep, document, self.screen, entries, text, names
+        )
         self._busy.set_visibility(True)
-        swept: tasks.Swept
+        swept: page_tasks.Swept
         try:
             swept = await future
         except asyncio.CancelledError:
@@ -197,7 +199,7 @@ class SweepPanel:
         if swept and kind == "csv":
             ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
         elif swept:
-            made = self._solver.submit(tasks.sweep_file, self.work.document, self.screen, swept, kind)
+            made = self._solver.submit(page_tasks.sweep_file, self.work.document, self.screen, swept, kind)
             await download(made, f"sweep.{kind}")
 
 

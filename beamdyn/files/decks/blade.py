@@ -24,7 +24,7 @@ _UNIT = re.compile(r"\(([^()]*)\)")
 
 
 @dataclass(frozen=True)
-class Column:
+class DeckColumn:
     """A column that a program knows.
 
     Parameters
@@ -64,14 +64,14 @@ class Stations:
     lines: tuple[int, ...]
 
 
-def read_stations(text: DataText, known: Sequence[Column], count: NamedValue) -> Stations:
+def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> Stations:
     """Read the table of a file.
 
     Parameters
     ----------
     text : DataText
         The file.
-    known : sequence of Column
+    known : sequence of DeckColumn
         Columns of the program; the first is the position, from 0 at the root to 1 at the tip.
     count : NamedValue
         How many rows the file says it has.
@@ -93,7 +93,7 @@ def read_stations(text: DataText, known: Sequence[Column], count: NamedValue) ->
     return Stations(columns, {column.name: column.unit for column in heads}, lines)
 
 
-def _find_heads(text: DataText, known: Sequence[Column], count: NamedValue) -> int:
+def _find_heads(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> int:
     """Line of the heads: the first whose first word is that of the position."""
     first = plain_name(known[0].name)
     for line in range(count.line + 1, len(text.lines) + 1):
@@ -103,9 +103,9 @@ def _find_heads(text: DataText, known: Sequence[Column], count: NamedValue) -> i
     raise text.lacking(f"expected a line of heads below line {count.line}, such as '{wanted}'")
 
 
-def _read_heads(text: DataText, line: int, known: Mapping[str, Column]) -> list[Column]:
+def _read_heads(text: DataText, line: int, known: Mapping[str, DeckColumn]) -> list[DeckColumn]:
     words = _COMMENT.sub("", text.lines[line - 1]).split()
-    heads = [known.get(plain_name(word), Column(word, "?")) for word in words]
+    heads = [known.get(plain_name(word), DeckColumn(word, "?")) for word in words]
     names = [column.name for column in heads]
     if twice := next((name for name in names if names.count(name) > 1), ""):
         raise text.refusal(line, f"{twice} stands twice; expected each head once")
@@ -120,7 +120,7 @@ def _rest(missing: Sequence[str]) -> str:
     return f" ({', '.join(missing[1:])} missing, too)" if len(missing) > 1 else ""
 
 
-def _check_units(text: DataText, line: int, heads: Sequence[Column]) -> None:
+def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None:
     """Refuse a line below the heads that is not of their units.
 
     The programs skip it unread, and take the numbers in their own units whatever stands there.
@@ -144,7 +144,7 @@ def _plain_unit(unit: str) -> str:
 
 
 def _read_rows(
-    text: DataText, first: int, heads: Sequence[Column], count: NamedValue
+    text: DataText, first: int, heads: Sequence[DeckColumn], count: NamedValue
 ) -> tuple[np.ndarray, tuple[int, ...]]:
     """The numbers, shape (rows, columns), and the line of each row."""
     wanted = named_count(text, count)
@@ -170,7 +170,7 @@ def _read_rows(
     return np.array(rows), tuple(lines)
 
 
-def _read_row(text: DataText, line: int, words: Sequence[str], heads: Sequence[Column]) -> list[float]:
+def _read_row(text: DataText, line: int, words: Sequence[str], heads: Sequence[DeckColumn]) -> list[float]:
     numbers = len(words) if len(words) > len(heads) and to_number(words[len(heads)]) is not None else 0
     if len(words) < len(heads) or numbers:
         comma = "; write decimal points: a comma separates numbers" if "," in text.lines[line - 1] else ""
@@ -193,7 +193,7 @@ def check_order(text: DataText, lines: Sequence[int], name: str, stations: np.nd
         raise text.refusal(lines[-1], f"expected {name} = 1, the tip, found {stations[-1]:g}")
 
 
-def _check_positive(text: DataText, lines: Sequence[int], column: Column, values: np.ndarray) -> None:
+def _check_positive(text: DataText, lines: Sequence[int], column: DeckColumn, values: np.ndarray) -> None:
     if column.positive and (bad := np.flatnonzero(values <= 0)).size:
         found = f"{values[bad[0]]:g} {column.unit}"
         raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")

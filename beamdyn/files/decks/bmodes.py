@@ -22,7 +22,7 @@ from beamdyn.common.edge.data_text import (
 )
 from beamdyn.files.decks.blade import (
     Blade,
-    Column,
+    DeckColumn,
     IgnoredProperty,
     Stations,
     ignore,
@@ -32,19 +32,19 @@ from beamdyn.files.decks.blade import (
 from beamdyn.files.decks.elastodyn import named_file
 
 COLUMNS = (
-    Column("sec_loc", "-", required=True),
-    Column("str_tw", "deg", required=True),
-    Column("tw_iner", "deg", required=True),
-    Column("mass_den", "kg/m", required=True, positive=True),
-    Column("flp_iner", "kg-m", required=True),
-    Column("edge_iner", "kg-m", required=True),
-    Column("flp_stff", "Nm^2", required=True, positive=True),
-    Column("edge_stff", "Nm^2", required=True, positive=True),
-    Column("tor_stff", "Nm^2", required=True),
-    Column("axial_stff", "N", required=True),
-    Column("cg_offst", "m", required=True),
-    Column("sc_offst", "m", required=True),
-    Column("tc_offst", "m", required=True),
+    DeckColumn("sec_loc", "-", required=True),
+    DeckColumn("str_tw", "deg", required=True),
+    DeckColumn("tw_iner", "deg", required=True),
+    DeckColumn("mass_den", "kg/m", required=True, positive=True),
+    DeckColumn("flp_iner", "kg-m", required=True),
+    DeckColumn("edge_iner", "kg-m", required=True),
+    DeckColumn("flp_stff", "Nm^2", required=True, positive=True),
+    DeckColumn("edge_stff", "Nm^2", required=True, positive=True),
+    DeckColumn("tor_stff", "Nm^2", required=True),
+    DeckColumn("axial_stff", "N", required=True),
+    DeckColumn("cg_offst", "m", required=True),
+    DeckColumn("sc_offst", "m", required=True),
+    DeckColumn("tc_offst", "m", required=True),
 )
 _LINE = "the axes of mass, shear and tension are one straight line"
 _REASONS = {"tor_stff": "no torsion is modelled", "cg_offst": _LINE, "sc_offst": _LINE, "tc_offst": _LINE}
@@ -160,7 +160,7 @@ def read_section_file(
     )
 
 
-def _columns(text: DataText) -> tuple[Column, ...]:
+def _columns(text: DataText) -> tuple[DeckColumn, ...]:
     """The columns: the first is sec_loc, or span_loc in older files."""
     firsts = {plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]}
     return (replace(COLUMNS[0], name="span_loc"), *COLUMNS[1:]) if "spanloc" in firsts else COLUMNS

@@ -27,7 +27,7 @@ from beamdyn.common.edge.data_text import (
 from beamdyn.files.decks.audit import SHAPE_NAMES
 from beamdyn.files.decks.blade import (
     Blade,
-    Column,
+    DeckColumn,
     IgnoredProperty,
     Stations,
     ignore,
@@ -36,19 +36,22 @@ from beamdyn.files.decks.blade import (
 )
 
 COLUMNS = (
-    Column("BlFract", "-", required=True),
-    Column("StrcTwst", "deg", required=True),
-    Column("BMassDen", "kg/m", required=True, positive=True),
-    Column("FlpStff", "Nm^2", required=True, positive=True),
-    Column("EdgStff", "Nm^2", required=True, positive=True),
-    Column("PitchAxis", "-"),
-    Column("AeroCent", "-"),
-    Column("GJStff", "Nm^2"),
-    Column("EAStff", "N"),
-    Column("Alpha", "-"),
-    Column("FlpIner", "kg m"),
-    Column("EdgIner", "kg m"),
-    *(Column(name, "m") for name in ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")),
+    DeckColumn("BlFract", "-", required=True),
+    DeckColumn("StrcTwst", "deg", required=True),
+    DeckColumn("BMassDen", "kg/m", required=True, positive=True),
+    DeckColumn("FlpStff", "Nm^2", required=True, positive=True),
+    DeckColumn("EdgStff", "Nm^2", required=True, positive=True),
+    DeckColumn("PitchAxis", "-"),
+    DeckColumn("AeroCent", "-"),
+    DeckColumn("GJStff", "Nm^2"),
+    DeckColumn("EAStff", "N"),
+    DeckColumn("Alpha", "-"),
+    DeckColumn("FlpIner", "kg m"),
+    DeckColumn("EdgIner", "kg m"),
+    *(
+        DeckColumn(name, "m")
+        for name in ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
+    ),
 )
 _USED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 _UNUSED_SECOND = "PitchAxis", "AeroCent"

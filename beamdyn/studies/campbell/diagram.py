@@ -28,7 +28,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.crossings import (
+from beamdyn.studies.campbell.line_crossings import (
     LineCrossing,
     Margin,
     coincident,

@@ -28,7 +28,7 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.numbers import with_numbers
-from beamdyn.studies.sensitivities.result import SceneNumber
+from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 
 PLACES = 8
 _STEPS = 9  # sizes of steps, over four decades: rounding counts by their inverse

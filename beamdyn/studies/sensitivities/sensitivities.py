@@ -37,7 +37,12 @@ from beamdyn.studies.sensitivities.changes import (
     critical_vector,
     steady_pencils,
 )
-from beamdyn.studies.sensitivities.result import SceneNumber, Sensitivities, check_names, numbers_of
+from beamdyn.studies.sensitivities.sensitivity_result import (
+    SceneNumber,
+    Sensitivities,
+    check_names,
+    numbers_of,
+)
 
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
 _HZ = 1 / (2 * np.pi)

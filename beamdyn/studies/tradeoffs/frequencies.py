@@ -25,7 +25,7 @@ from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.additions import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.measurements import Diagram, Family, Setting, measure_families, number_of
+from beamdyn.studies.tradeoffs.measurements import Diagram, Family, TimedCase, measure_families, number_of
 
 Mesh = Literal["graded", "uniform"]
 
@@ -143,7 +143,7 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
     if not scene.physics.stretch:  # modes may cross then: a tracked locus differs from the lowest modes
-        cases = (Setting(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
+        cases = (TimedCase(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
 
 
@@ -153,13 +153,13 @@ def _segments(scene: Scene) -> int:
 
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
-) -> tuple[Setting, ...]:
+) -> tuple[TimedCase, ...]:
     """Computations by a Ritz basis, the fewest functions first: of Legendre functions on each segment."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
     return tuple(
-        Setting(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes))
+        TimedCase(f"{n} {each}", n, _solve(scene, Ritz(n, basis), speeds, modes))
         for n in sizes
         if least <= n <= most
     )
@@ -170,7 +170,7 @@ def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (
-            Setting(f"{n} elements", n, solve(scene, Fem(n, mesh), speeds, modes))
+            TimedCase(f"{n} elements", n, solve(scene, Fem(n, mesh), speeds, modes))
             for n in _ELEMENTS
             if n >= least
         )

@@ -212,7 +212,7 @@ _TIE, _SCATTER_OF_ONE = 2.0, 0.1  # scatters within which times are equal; that 
 
 
 @dataclass(frozen=True)
-class Setting:
+class TimedCase:
     """One setting of a family.
 
     Parameters
@@ -239,12 +239,12 @@ class Family:
     ----------
     name : str
         Name.
-    settings : tuple of Setting
+    settings : tuple of TimedCase
         Settings.
     """
 
     name: str
-    settings: tuple[Setting, ...]
+    settings: tuple[TimedCase, ...]
 
 
 def measure_families(
@@ -287,7 +287,7 @@ class _Timed:
     """A setting of a family with the error of its result and the processor times of its runs [s]."""
 
     family: str
-    setting: Setting
+    setting: TimedCase
     error: float
     times: list[float]
 
@@ -341,7 +341,7 @@ def _measure_family(
     return timed, ""
 
 
-def _time_runs(setting: Setting, rest: float, spare: float) -> tuple[Any, list[float]]:
+def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list[float]]:
     """Run a setting several times: the result, and the processor times [s].
 
     Other programs hardly influence the processor time; all runs are in one thread.

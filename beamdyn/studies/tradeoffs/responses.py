@@ -17,7 +17,7 @@ from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.studies.tradeoffs.measurements import (
     Diagram,
     Family,
-    Setting,
+    TimedCase,
     measure_families,
     number_of,
     remaining_budget,
@@ -107,7 +107,7 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
         return request.run()
 
     def family(name: str, speeds: tuple[float, ...], sizes: Sequence[int]) -> Family:
-        cases = (Setting(f"modes={m}", m, lambda deadline, m=m: run(ModalBasis(m, speeds))) for m in sizes)
+        cases = (TimedCase(f"modes={m}", m, lambda deadline, m=m: run(ModalBasis(m, speeds))) for m in sizes)
         return Family(name, tuple(cases))
 
     title = f"transient of {t_end:g} s, number of modes"
@@ -163,9 +163,9 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
 
         return run
 
-    yield Family(OURS, tuple(Setting(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
+    yield Family(OURS, tuple(TimedCase(f"tolerance={t:.0e}", t, ours(t)) for t in _TOLERANCES))
     for method in STOCK:
-        cases = (Setting(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
+        cases = (TimedCase(f"rtol={t:.0e}", t, stock(method, t)) for t in _STOCK_TOLERANCES)
         yield Family(f"solve_ivp {method}", tuple(cases))
 
 
@@ -262,7 +262,7 @@ def _diagram(
     title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
     if not np.nanmax(exact.bound, initial=0.0):
         return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", 0.0, (), ("no load excites the beam",))
-    cases = tuple(Setting(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
+    cases = tuple(TimedCase(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
     resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
     left = remaining_budget(budget, start)
     # Error measure: largest difference of the tip over the phases, over the bound, where both are stable.

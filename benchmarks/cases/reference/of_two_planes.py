@@ -11,7 +11,7 @@ import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.profile import Profile
 from beamdyn.studies.sensitivities.changes import evaluate_nearby
-from beamdyn.studies.sensitivities.result import SceneNumber
+from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
 from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies, solve_coned

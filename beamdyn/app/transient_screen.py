@@ -13,7 +13,7 @@ from beamdyn import resonance_speeds, simulate
 from beamdyn.analyses.results.cautions import describe_choice
 from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.app.drawings import bent_beam, drawn_larger
-from beamdyn.app.inputs import first_frequency, read_aside, read_scene
+from beamdyn.app.scene_form import first_frequency, read_aside, read_scene
 from beamdyn.app.scene_screen import brief, left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.sheet import Rows

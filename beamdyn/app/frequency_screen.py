@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.analyses.results.cautions import critical_label, notes_of, warnings_of
-from beamdyn.app.inputs import read
+from beamdyn.app.scene_form import read
 from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
@@ -29,7 +29,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.crossings import Margin, margins_at_rated
+from beamdyn.studies.campbell.line_crossings import Margin, margins_at_rated
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
