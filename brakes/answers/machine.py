@@ -107,7 +107,7 @@ class MachineAnswer(Answer):
         """The brake under each law, its linings, and what the numbers hang on."""
         result, laws = self.result, self.by_law()
         direction = "reverse" if result.reverse else "forward"
-        title = f"{type(result.brake).__name__} brake, {direction}, friction {result.friction:g}"
+        title = f"{self.design.title}, {direction}, friction {result.friction:g}"
         names, parts = [each.name for each in result.linings], _of_lining(result.brake)
         heads = ("", *laws, "unit"), ("", *names, "unit")
         made: list[RenderableType] = [
@@ -190,7 +190,7 @@ class MachineType(ArrayBrakeType[MachineInput]):
         self, made: type[Machine], name: str, title: str, purpose: str, draw: Draw, sketch: Callable[[], Rows]
     ) -> None:
         self.name, self.title, self.purpose = name, title, purpose  # type: ignore[misc]
-        self.model, self.draw, self.sketched = file_of(made, name), draw, sketch
+        self.model, self.draw, self.sketched = file_of(made, name, title), draw, sketch
         self.sections = self.needs = ("brake", name, "load")
         TYPES[made] = self
 

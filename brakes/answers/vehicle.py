@@ -123,11 +123,11 @@ class VehicleAnswer(Answer):
         said = [["", *(str(way.holding.status) for way in self.ways.values()), ""]]
         first = [["ends the hardest braking", *(str(way.braking.first) for way in self.ways.values()), ""]]
         heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
-        title = "The vehicle at rest on the slope, and in a stop"
+        title = "The vehicle at rest on the slope, and in a stop on level ground"
         tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.lever is not None:
-            tables.append(outputs_table("The lever at its force", _LEVER, self.lever))
+            tables.append(outputs_table("The lever at its force", _of_lever(self.lever), self.lever))
         return tables
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
@@ -152,6 +152,11 @@ class VehicleAnswer(Answer):
     def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
+
+
+def _of_lever(lever: Actuation) -> list[Output]:
+    """Numbers of a lever that it has: a cable has no pressure."""
+    return [each for each in _LEVER if not np.isnan(each.of(lever)).all()]
 
 
 def _failures(holding: Holding) -> list[str]:

@@ -55,11 +55,11 @@ class Actuation(Result):
 
     pedal: Pedal
     line: Line
-    pedal_force: Annotated[Numbers, Meaning("N", "force on the pedal")]
-    output_force: Annotated[Numbers, Meaning("N", "force behind pedal and booster")]
+    pedal_force: Annotated[Numbers, Meaning("N", "force on pedal or lever")]
+    output_force: Annotated[Numbers, Meaning("N", "force behind it, with the booster")]
     pressure: Annotated[Numbers, Meaning("Pa", "pressure of the line", "MPa")]
     actuator_force: Annotated[Numbers, Meaning("N", "force on each actuator")]
-    pedal_travel: Annotated[Numbers, Meaning("m", "travel of the pedal", "mm")]
+    pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever", "mm")]
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
@@ -75,7 +75,7 @@ class Actuation(Result):
         if hardest <= most * (1 + _EDGE):
             return ()
         clause = f"ISO 6292:2020, {CLAUSES[limb]}"
-        return (f"the pedal's force is {hardest:.6g} N: {clause}, allows {most:g} N for a {limb}",)
+        return (f"the force is {hardest:.6g} N: {clause}, allows {most:g} N for a {limb}",)
 
 
 def actuate(pedal: Pedal, line: Line) -> Actuation:
@@ -115,7 +115,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     _refuse_pressure(line, output)
     if pedal.travel is not None:
         late = np.asarray(travel) > pedal.travel * (1 + _EDGE)
-        bound, remedy = "the pedal needs a travel of {limit}", "less lost travel, or a smaller ratio"
+        bound, remedy = "it needs a travel of {limit}", "less lost travel, or a smaller ratio"
         refuse(late, "travel", pedal.travel, "m", bound, remedy, limit=travel)
     force = pedal.force + 0.0 * output
     return Actuation(pedal, line, force, output, line.pressure(output), line.gain * output, travel)
@@ -189,7 +189,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175, lost_travel=0.02)
     >>> pedal = chain.Pedal(ratio=1.0, force=450.0, travel=0.15)
     >>> chain.ratio_for(pedal, line, 11650.0).message
-    'none: the travel of the pedal runs out before: it rises with the ratio and with the force'
+    'none: the travel runs out before: it rises with the ratio and with the force'
     """
     output = _output_for(pedal, line, actuator_force)
     ratio = pedal.rod_force_for(output) / pedal.force
@@ -217,7 +217,7 @@ def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[t
     far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + _EDGE))
     return (
         (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
-        (far, "the travel of the pedal runs out before: it rises with the ratio and with the force"),
+        (far, "the travel runs out before: it rises with the ratio and with the force"),
     )
 
 

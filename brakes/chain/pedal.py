@@ -49,7 +49,7 @@ class Pedal:
     6250.0
     """
 
-    ratio: Annotated[Numbers, Described("", "i", "travel of the pedal over that of its rod", above=0)]
+    ratio: Annotated[Numbers, Described("", "i", "travel of pedal or lever over that of its rod", above=0)]
     force: Annotated[Numbers, Described("N", "F", "force on the pedal or lever", above=0)]
     operated_by: Annotated[Limb, Described(meaning="what presses: a foot, a hand, or a squeezed grip")] = (
         "foot"
@@ -63,7 +63,7 @@ class Pedal:
     ] = None
     travel: Annotated[
         Numbers | None,
-        Described("m", "", "largest travel of the pedal; not checked if not given", above=0),
+        Described("m", "", "largest travel; not checked if not given", above=0),
     ] = None
 
     def __post_init__(self) -> None:

@@ -18,6 +18,7 @@ class MachineInput(CoreSection):
     """A brake; its dimensions stand in a table of its own name, made from its class."""
 
     table: ClassVar[str]
+    title: ClassVar[str]
 
     brake: RubbingInput
     load: LoadInput
@@ -45,9 +46,9 @@ class MachineInput(CoreSection):
             return solve_brake(self.core, friction=self.brake.friction, **self.load.given, reverse=reverse)
 
 
-def file_of(made: type[Machine], table: str) -> type[MachineInput]:
-    """Make the description of the file of a brake, whose dimensions stand in a table of this name."""
+def file_of(made: type[Machine], table: str, title: str) -> type[MachineInput]:
+    """Make the description of the file of a brake, by the name of the table of its dimensions, and its title."""
     fields: dict[str, Any] = {table: (section_of(made), ...)}
     model = create_model(f"{made.__name__}File", __base__=MachineInput, __doc__=made.__doc__, **fields)
-    model.table = table
+    model.table, model.title = table, title
     return model

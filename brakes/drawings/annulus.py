@@ -29,7 +29,7 @@ def draw_disc(result: MachineResult) -> Drawing:
     turn = arc((0, 0), inner, np.pi / 2 - 0.4 * sense, np.pi / 2 + 0.4 * sense)
     arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
     if drag:
-        arrows.add((0.0, r), np.array([sense * drag, 0.0]), "T", "friction")
+        arrows.add((0.0, r), np.array([sense * drag, 0.0]), "F", "friction")
     title = f"Pads pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
     key = {"friction": "torque over effective radius"}
     return arrows.drawing(title, "A disc brake from the front: disc, pad and friction", key)

@@ -314,7 +314,8 @@ def _torque_per_force(brake: Machine, mu: Numbers, reverse: bool, locked: Number
     """Torque at 1 N [m], and its derivative with respect to the friction [m]; nan where it locks."""
     stepped = brake.linings(np.asarray(mu) + 1j * _STEP, reverse).values()
     gain = sum(each.share * each.torque / np.where(locked, 1.0, each.force) for each in stepped)
-    return np.where(locked, np.nan, gain.real), np.where(locked, np.nan, gain.imag / _STEP)
+    torque = np.where(np.asarray(mu) == 0, 0.0, gain.real)  # without friction what is left is of the step
+    return np.where(locked, np.nan, torque), np.where(locked, np.nan, gain.imag / _STEP)
 
 
 def _pressed(name: str, lining: Lining, pressure: Numbers) -> LiningResult:

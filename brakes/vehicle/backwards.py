@@ -165,6 +165,7 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
     """Friction that a braking ratio needs of the braked axles."""
     share = 1.0 + 0.0 * ratio if braked == "both" else vehicle.load_share(braked, ratio, leading)
     lifted = vehicle.load_share(other(leading), ratio, leading) <= 0
+    lifted &= braked != other(leading)  # which slips before its load is gone
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
     much = f"even a friction of {MOST_FRICTION:g}, the most that is taken, holds less"

@@ -1,8 +1,10 @@
 """Parking and hill hold: whether a vehicle at rest on a slope holds, slips or tips, and the largest slope.
 
 With the braking ratio tau = tan(beta) of `brakes.vehicle.axles`, it slips past tan(beta) = `slipping_ratio`,
-tips over the lower axle past tan(beta) = `pitching_ratio`, and a brake that gives the force R along the
-ground lets it roll past sin(beta) = R / (M g).
+tips over the lower axle past tan(beta) = `pitching_ratio` if that axle is braked, and a brake that gives the
+force R along the ground lets it roll past sin(beta) = R / (M g).  What comes first goes on past it: wheels
+that slip or roll pull no harder on a steeper slope.  Where the upper axle alone is braked, its load, and so
+its grip, is gone before the vehicle could tip.
 """
 
 from __future__ import annotations
@@ -81,13 +83,13 @@ class Holding(Result):
         ``"too near to decide"``, within 1e-9 of the largest slope.
     slipping_slope, tipping_slope, rolling_slope : ndarray
         Slopes past which the braked wheels slip, the vehicle tips over its lower axle, and the brake gives
-        too little [rad]; pi / 2 where it never does.
+        too little [rad]; inf where it never does.
     largest_slope : ndarray
         The least of these three [rad].
     needed_force : ndarray
         Braking force along the ground on the road's slope [N].
     front_load, rear_load : ndarray
-        Normal forces of the axles on the road's slope [N]; negative past tipping.
+        Normal forces of the axles on the road's slope [N]; nan past tipping.
     error : float
         Bound of the error of the slopes [rad], by rounding.
 
@@ -108,9 +110,9 @@ class Holding(Result):
     tipping_slope: Annotated[Numbers, Meaning("rad", "tips over the lower axle past", "deg")]
     rolling_slope: Annotated[Numbers, Meaning("rad", "rolls, as the brake gives too little, past", "deg")]
     largest_slope: Annotated[Numbers, Meaning("rad", "largest slope", "deg")]
-    needed_force: Annotated[Numbers, Meaning("N", "braking force that the slope needs", "kN")]
-    front_load: Annotated[Numbers, Meaning("N", "front axle's load on the slope", "kN")]
-    rear_load: Annotated[Numbers, Meaning("N", "rear axle's load on the slope", "kN")]
+    needed_force: Annotated[Numbers, Meaning("N", "braking force that the slope needs")]
+    front_load: Annotated[Numbers, Meaning("N", "front axle's load on the slope")]
+    rear_load: Annotated[Numbers, Meaning("N", "rear axle's load on the slope")]
     error: float
 
     def headline(self) -> Iterator[str]:
@@ -121,8 +123,7 @@ class Holding(Result):
     @property
     def limited_by(self) -> Any:
         """What ends the largest slope: "slips", "tips" or "rolls"."""
-        ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
-        return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
+        return _first_of(self.slipping_slope, self.tipping_slope, self.rolling_slope)
 
     @property
     def message(self) -> str:
@@ -188,17 +189,15 @@ def hold(
     together(vehicle=vehicle.mass * vehicle.cg_height * vehicle.wheelbase, brake_force=force, **vars(road))
     weight = vehicle.mass * road.gravity
     slips = np.arctan(vehicle.slipping_ratio(road.friction, braked, downhill))
-    tips = np.arctan(vehicle.pitching_ratio(downhill))
-    rolls = np.where(np.asarray(force) < weight, np.arcsin(np.minimum(force / weight, 1.0)), np.pi / 2)
+    tips = np.arctan(vehicle.pitching_ratio(downhill)) if braked in (downhill, "both") else np.inf
+    rolls = np.where(np.asarray(force) < weight, np.arcsin(np.minimum(force / weight, 1.0)), np.inf)
     slips, tips, rolls, slope = np.broadcast_arrays(slips, tips, rolls, road.slope)
     most = np.minimum(np.minimum(slips, tips), rolls)
     near = np.abs(slope - most) <= _EDGE * most
-    kinds = [near, slope < most, slope > tips, slope > slips]
-    status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
-    front, rear = (
-        weight * np.cos(slope) * vehicle.load_share(axle, np.tan(slope), downhill)
-        for axle in ("front", "rear")
-    )
+    past = _first_of(slips, tips, rolls)
+    status = np.where(near, "too near to decide", np.where(slope < most, "holds", past))
+    shares = [vehicle.load_share(axle, np.tan(slope), downhill) for axle in ("front", "rear")]
+    front, rear = (np.where(each >= 0, weight * np.cos(slope) * each, np.nan) for each in shares)
     return Holding(
         vehicle=vehicle,
         road=road,
@@ -214,3 +213,9 @@ def hold(
         rear_load=rear[()],
         error=float(16 * ROUNDING),
     )
+
+
+def _first_of(slips: Numbers, tips: Numbers, rolls: Numbers) -> Any:
+    """What comes first on ever steeper slopes."""
+    ends = np.stack(np.broadcast_arrays(slips, tips, rolls))
+    return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]

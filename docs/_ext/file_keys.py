@@ -1,4 +1,7 @@
-"""Tables of the keys in place of ``<!-- keys of MODULE:SECTION -->``, from their description."""
+"""Tables of the keys in place of ``<!-- keys of MODULE:SECTION -->``, from their description.
+
+``<!-- keys of MODULE:SECTION [table] -->`` gives one table; in place of a section a type of brake may stand.
+"""
 
 from __future__ import annotations
 
@@ -12,20 +15,21 @@ from typing import Any, get_args, get_origin
 from beamdyn.common.edge.inputs import Input, Section, describe
 from brakes.answers import STANDARD
 
-MARK = re.compile(r"^<!-- keys of (\S+):(\w+) -->$", re.MULTILINE)
+MARK = re.compile(r"^<!-- keys of (\S+):(\w+)(?: \[(\w+)\])? -->$", re.MULTILINE)
 _BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
 _HEAD = "| key | what | default | only with |\n|---|---|---|---|"
 
 
-def tables_of(section: Any) -> str:
-    """All tables of a file, in Markdown."""
+def tables_of(section: Any, only: str | None = None) -> str:
+    """All tables of a file, or one of them, in Markdown."""
     groups: dict[str, list[Input]] = {}
-    for entry in describe(section):
+    for entry in describe(getattr(section, "model", section)):
         groups.setdefault(entry.path.rpartition(".")[0], []).append(entry)
     repeated = set(_repeated(section))
     return "\n\n".join(
         "\n".join(_table(f"[[{path}]]" if path in repeated else f"[{path}]", entries))
         for path, entries in groups.items()
+        if only in (None, path)
     )
 
 
@@ -98,7 +102,7 @@ def write_tables(app, docname: str, source: list[str]) -> None:
 
 def with_tables(text: str) -> str:
     """A page with the tables in place of its marks."""
-    return MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2])), text)
+    return MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2]), mark[3]), text)
 
 
 def note_sources(app, docname: str, source: list[str]) -> None:

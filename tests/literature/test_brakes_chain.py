@@ -96,5 +96,5 @@ def test_the_bicycle_pitches_over_before_its_front_tyre_slips():
 def test_limits_of_force_are_those_of_the_standard():
     assert ALLOWED == {"foot": 450.0, "hand": 300.0, "grip": 150.0}
     said = chain.actuate(chain.Pedal(ratio=8.0, force=310.0, operated_by="hand"), LINE).warnings
-    assert said == ("the pedal's force is 310 N: ISO 6292:2020, 4.5.4, allows 300 N for a hand",)
+    assert said == ("the force is 310 N: ISO 6292:2020, 4.5.4, allows 300 N for a hand",)
     assert not chain.actuate(chain.Pedal(ratio=8.0, force=300.0, operated_by="hand"), LINE).warnings

@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
+from brakes import vehicle
 from brakes.cli import main
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -87,7 +89,7 @@ def test_both_directions_of_parking(run, truck):
     assert row(out, "tips over the lower axle past")[0] == "15.245"
     code, _, err = run("vehicle", truck, ('slope = "15 %"', 'slope = "28 %"'))
     assert code == NO_ANSWER
-    assert "front axle downhill: rolls past 14.6061 deg: on 15.6422 deg it tips" in err
+    assert "front axle downhill: rolls past 14.6061 deg: on 15.6422 deg it rolls" in err
     assert "rear axle downhill: rolls past 14.6061 deg: on 15.6422 deg it rolls" in err
 
 
@@ -107,7 +109,7 @@ def test_what_cannot_be_had_says_why(run, truck):
     )
     said = " ".join(out.split())
     assert "front downhill: none: the vehicle tips over its lower axle before, whatever the friction" in said
-    assert "none: the travel of the pedal runs out before" in said or "ratio of the lever" in said
+    assert "none: the travel runs out before" in said or "ratio of the lever" in said
 
 
 def test_the_bicycle_pitches_over(run):
@@ -162,3 +164,14 @@ def test_bad_input_of_a_vehicle_is_a_sentence(run, truck, old, new, part):
     code, out, err = run("vehicle", truck, (old, new))
     assert code == BAD_INPUT and not out.strip()
     assert part in err
+
+
+def test_a_vehicle_that_is_braked_uphill_alone_slips_and_never_tips():
+    bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
+    found = vehicle.hold(bicycle, vehicle.Road(np.radians(40.0), 2.0), "rear", "front")
+    assert (found.status, found.limited_by, found.tipping_slope) == ("slips", "slips", np.inf)
+    assert np.isnan(found.rear_load)  # at rest it could not stand there
+    needed = vehicle.friction_to_hold(
+        bicycle, np.radians(28.0), "rear", "front"
+    )  # tan: 0.53 of 0.56 at which it lifts
+    assert "even a friction of 2" in needed.message
