@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 app = App(
     name="brakes",
     version=lambda: version("beamdyn"),
-    help="""Statics of brakes: calipers, drums, bands, discs, cones, blocks, a forklift's brake, parked vehicles.
+    help="""Statics of brakes: calipers, drums, bands, discs, cones, blocks, a forklift's brake, vehicles.
 
 Inputs are TOML files with units; `brakes COMMAND --help` lists the options of a command.""",
     help_epilogue=exit_codes.EXIT_CODES,

@@ -47,7 +47,7 @@ class MachineInput(CoreSection):
 
 
 def file_of(made: type[Machine], table: str, title: str) -> type[MachineInput]:
-    """Make the description of the file of a brake, by the name of the table of its dimensions, and its title."""
+    """Make the description of the file of a brake, by the name of its table of dimensions, and its title."""
     fields: dict[str, Any] = {table: (section_of(made), ...)}
     model = create_model(f"{made.__name__}File", __base__=MachineInput, __doc__=made.__doc__, **fields)
     model.table, model.title = table, title
