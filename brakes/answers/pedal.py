@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.results.result import Result
 from brakes.answers.tables import take, take_fields, take_from
 from brakes.chain import Actuation, BrakedStop, Heat, brake_from_pedal, heat_of_stop
 from brakes.config.forklift import ForkliftInput
-from brakes.forklift import internal_forces
+from brakes.forklift import InternalForces, internal_forces
 
 
 @dataclass(frozen=True)
@@ -54,8 +57,8 @@ class FromPedal(Result):
             "force at which the wheels lock": self.braked.locking,
             "least friction that stops": self.braked.friction,
         }
-        none = (f"{what}: {found.message}" for what, found in asked.items() if np.ndim(found.reason) == 0)
-        lacking = tuple(said for said in none if ": none" in said)
+        alone = {what: found for what, found in asked.items() if np.ndim(found.reason) == 0}  # not of many
+        lacking = tuple(f"{what}: {found.message}" for what, found in alone.items() if found.reason)
         return (*self.braked.actuation.warnings, *self.heat.warnings, *lacking)
 
 
@@ -97,13 +100,14 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
     ------
     ValueError
         As for `brakes.chain.brake_from_pedal`.
+    NoAnswer
+        If the brake locks by itself: its torque does not follow from the pedal.
     """
     geometry = design.brake.motion if design.brake else design.levers and design.levers.core
     assert geometry and design.pedal and design.line and design.truck and design.stop and design.forces
     with of_file({"friction": "lining_friction"}):
         unit = internal_forces(geometry, piston_force=1.0, friction=design.forces.lining_friction)
-    if np.any(unit.status != "equilibrium"):
-        raise ValueError(f"lining_friction = {design.forces.lining_friction:.6g}: {unit.message}")
+    _refuse_locked(unit, design.forces.lining_friction)
     with of_file({}):
         braked = brake_from_pedal(
             design.truck.core, design.stop.core, design.pedal.core, design.line.core, unit.torque
@@ -112,3 +116,12 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
     pressed = (unit.A + unit.C) * braked.stop.torque_per_brake / unit.torque
     heat = heat_of_stop(braked.stop, drums, pressed, unit.levers.drum_radius)
     return FromPedal(braked, heat, unit.error)
+
+
+def _refuse_locked(unit: InternalForces, friction: Any) -> None:
+    """Refuse brakes that lock by themselves: of many, those of a sweep that do."""
+    locked = np.asarray(unit.status) != "equilibrium"
+    if locked.ndim == 0 and locked:
+        raise NoAnswer(f"forces.lining_friction = {friction:.6g}: {unit.message}")
+    bound = "the brake locks by itself, and no torque follows from the piston's force"
+    refuse(locked, "forces.lining_friction", friction, "", bound)

@@ -136,7 +136,6 @@ def test_files_have_all_numbers(tmp_path, capsys):
         ("booster = 3", "booster = 0.5", ("pedal.booster", "at least 1")),
         ("ratio = 5", "ratio = 0", ("pedal.ratio", "greater than 0")),
         ("lining_friction = 0.390283458", 'piston_force = "9 kN"', ("give lining_friction alone",)),
-        ("lining_friction = 0.390283458", "lining_friction = 1.3", ("lining_friction = 1.3", "locked")),
         ("[line]", "[levers]", ("levers",)),
     ],
 )
@@ -144,6 +143,16 @@ def test_bad_input_of_a_pedal_is_a_sentence(run, forklift, old, new, parts):
     code, out, err = run("forklift", forklift, (old, new))
     assert code == BAD_INPUT and not out.strip()
     assert [part for part in parts if part not in err] == []
+
+
+def test_a_brake_that_locks_has_no_answer_alone_and_in_a_sweep(run, forklift, tmp_path, capsys):
+    locks = ("lining_friction = 0.390283458", "lining_friction = 1.3")
+    code, out, err = run("forklift", forklift, locks)
+    assert (code, out.strip()) == (NO_ANSWER, "") and "forces.lining_friction = 1.3: locked" in err
+    path = tmp_path / "truck.toml"
+    path.write_text(forklift)
+    assert main(["forklift", str(path), "--vary", "forces.lining_friction=0.3:1.3:3", "--what", "A"]) == DONE
+    assert "the brake locks by itself" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
