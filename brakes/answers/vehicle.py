@@ -73,14 +73,22 @@ def _of_one_way(with_lever: bool) -> tuple[Output, ...]:
     )
 
 
-def _outputs(with_lever: bool) -> tuple[Output, ...]:
+def _outputs(design: VehicleInput) -> tuple[Output, ...]:
     """All numbers; those of a way end in the axle that is downhill or leads."""
+    pulled = _of_lever(design)
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
-        for o in take_from(lambda answer, axle=axle: answer.ways[axle], _of_one_way(with_lever))
+        for o in take_from(lambda answer, axle=axle: answer.ways[axle], _of_one_way(bool(pulled)))
     )
-    return (*ways, *(take_from(lambda answer: answer.lever, _LEVER) if with_lever else ()))
+    return (*ways, *take_from(lambda answer: answer.lever, pulled))
+
+
+def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
+    """Numbers of the lever, if there is one; a cable has no pressure."""
+    if design.lever is None:
+        return ()
+    return tuple(each for each in _LEVER if design.line or each.name != "pressure")
 
 
 @dataclass(frozen=True)
@@ -127,7 +135,7 @@ class VehicleAnswer(Answer):
         tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.lever is not None:
-            tables.append(outputs_table("The lever at its force", _of_lever(self.lever), self.lever))
+            tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
         return tables
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
@@ -139,7 +147,7 @@ class VehicleAnswer(Answer):
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""
-        return outputs_csv(_outputs(self.lever is not None), value=self)
+        return outputs_csv(_outputs(self.design), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
         """The vehicle on its slope, both ways."""
@@ -152,11 +160,6 @@ class VehicleAnswer(Answer):
     def values(self) -> dict[str, Any]:
         """The answer as plain numbers, lists and strings."""
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
-
-
-def _of_lever(lever: Actuation) -> list[Output]:
-    """Numbers of a lever that it has: a cable has no pressure."""
-    return [each for each in _LEVER if not np.isnan(each.of(lever)).all()]
 
 
 def _failures(holding: Holding) -> list[str]:
@@ -204,7 +207,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
 
     def outputs(self, design: VehicleInput) -> Sequence[Output]:
         """Numbers of both ways, and of the lever."""
-        return _outputs(design.lever is not None)
+        return _outputs(design)
 
 
 def _solve_way(

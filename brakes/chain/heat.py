@@ -53,9 +53,7 @@ class Drums:
 
     drum_mass: Annotated[Numbers, Described("kg", "m_d", "mass of each drum", above=0)]
     lining_area: Annotated[Numbers, Described("m2", "A_l", "area of the linings of one brake", above=0)]
-    specific_heat: Annotated[Numbers, Described("J/(kg K)", "c", "specific heat of the drum", above=0)] = (
-        500.0
-    )
+    specific_heat: Annotated[Numbers, Described("J/kg/K", "c", "specific heat of the drum", above=0)] = 500.0
     most_pv: Annotated[
         Numbers | None,
         Described("W/m2", "", "largest pressure times rubbing speed; not checked if not given", above=0),

@@ -2,10 +2,12 @@
 
 import pytest
 
+from brakes.answers import STANDARD
 from brakes.app.program import BRAKES
 from brakes.calipers import NAMED
 
-SCREENS = ("Vehicle", "Kinematics", "Internal forces", "Drum brake", "Caliper", "Mechanism")
+_STANDARD = [load().title for _, load in STANDARD.values()]
+SCREENS = ("Vehicle", "Kinematics", "Internal forces", *_STANDARD, "Caliper", "Mechanism")
 
 
 def tables(text):

@@ -13,7 +13,7 @@ from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.steady.harmonic_balance import solve_at_once, solve_harmonic_balance, sum_interactions
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics, periodic_system
-from beamdyn.steady.stability import _FreeMotion, growth_rate
+from beamdyn.steady.stability import _MeanMotion, growth_rate
 from benchmarks.cases.scenes import HARVESTER, STEADY_ROLLING, STEADY_ROLLING_IN_GRAVITY
 
 FLAT = bd.Beam.from_stiffness(10.0, 100.0, 1e6, axial_stiffness=1e8, second_bending_stiffness=4e6)
@@ -87,7 +87,7 @@ def test_smaller_discs_leave_out_no_tongue(monkeypatch: pytest.MonkeyPatch) -> N
     computed = count_resonances(monkeypatch)
     rate, error = growth_rate(system)
     few = len(computed)
-    monkeypatch.setattr(_FreeMotion, "shrunk_radius", lambda self, harmonics: self.radius)
+    monkeypatch.setattr(_MeanMotion, "shrunk_radius", lambda self, harmonics: self.radius)
     expected, of_expected = growth_rate(system)
     assert few < 0.8 * (len(computed) - few) and (rate > 0).sum() >= 3
     np.testing.assert_array_equal(rate > 0, expected > 0)
