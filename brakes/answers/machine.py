@@ -75,7 +75,7 @@ class MachineAnswer(Answer):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What else a designer must know."""
+        """Remarks of the brake's type, such as a cone that sticks."""
         return self.result.brake.remarks(self.result.friction)
 
     @property

@@ -139,7 +139,7 @@ class VehicleAnswer(Answer):
         return tables
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
-        """What has no answer backwards: words, axle, and the reason."""
+        """Yield each wanted input that does not exist: its words, the axle, and the reason."""
         for axle, way in self.ways.items():
             for name, found in way.needs.items():
                 if found.reason:
@@ -213,7 +213,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
 def _solve_way(
     design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
 ) -> OneDirection:
-    """What is found with an axle downhill or leading."""
+    """Answer with one axle downhill at rest, or leading in a stop."""
     standing, road, braking = design.standing, design.road.core, design.braking
     holding = hold(standing, road, braking.parked_by, axle, force)
     needs = {"friction_to_hold": friction_to_hold(standing, road.slope, braking.parked_by, axle)}

@@ -67,7 +67,7 @@ class BrakedStop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """What limits the braking force: "brake" or "road"."""
+        """Name of the smaller braking force: that of the "brake", or of the "road"."""
         return self.stop.limited_by
 
     @property

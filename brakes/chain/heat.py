@@ -36,7 +36,7 @@ class Drums:
     lining_area : float or ndarray
         Area of the linings of one brake [m2].
     specific_heat : float or ndarray
-        Of the drum [J/(kg K)]; by default that of cast iron, about 500.
+        Specific heat of the drum [J/(kg K)]; by default that of cast iron, about 500.
     most_pv : float or ndarray, optional
         Largest product of the lining's mean pressure and rubbing speed [W/m2]; not checked if not given.
 
@@ -75,11 +75,11 @@ class Heat(Result):
     drums : Drums, optional
         What is warmed.
     energy : ndarray
-        Of the stop, from the moment the brakes act [J].
+        Energy of the stop, from the moment the brakes act [J].
     drum_energy, tyre_energy : ndarray
         Its parts into the drums and into the sliding tyres [J].
     temperature_rise : ndarray
-        Of each drum, without cooling [K]; nan without drums.
+        Temperature rise of each drum, without cooling [K]; nan without drums.
     lining_pv : ndarray
         Bound of the mean pressure of the linings times their rubbing speed: the full pressure at the speed
         before the stop [W/m2]; nan without drums.
@@ -114,8 +114,9 @@ class Heat(Result):
         most = None if self.drums is None else self.drums.most_pv
         if most is None or not np.any(self.lining_pv > np.asarray(most)):
             return ()
-        highest = float(np.nanmax(self.lining_pv))
-        return (f"pressure times rubbing speed of the linings reaches {highest:.4g} W/m2, above their limit",)
+        highest, least = float(np.nanmax(self.lining_pv)), float(np.min(most))
+        said = f"pressure times rubbing speed of the linings reaches {highest:.4g} W/m2"
+        return (f"{said}, above most_pv = {least:.4g} W/m2",)
 
 
 def heat_of_stop(

@@ -24,14 +24,15 @@ def standing(found: Holding) -> Drawing:
     arrows = ForceArrows(0.8 * max(L, h) / weight)
     _draw_body(arrows.shapes, v, turn)
     loads = {"A": (0.0, float(found.front_load), "front"), "B": (L, float(found.rear_load), "rear")}
-    braked = {name: load for name, (_, load, axle) in loads.items() if found.braked in (axle, "both")}
+    braked = {k: load for k, (_, load, axle) in loads.items() if found.braked in (axle, "both") and load > 0}
     for name, (x, load, _) in loads.items():
         if load > 0:
             arrows.add(
                 np.array([x, 0.0]) @ turn, np.array([0.0, load]) @ turn, f"N_{name}", "normal", ends_here=True
             )
-        if load > 0 and name in braked and beta:
-            held = np.array([-weight * np.sin(beta) * load / sum(braked.values()), 0.0])
+        if name in braked and beta:
+            share = load / sum(braked.values())
+            held = np.array([-np.sign(beta) * float(found.braking_force) * share, 0.0])
             arrows.add(np.array([x, 0.0]) @ turn, held @ turn, f"R_{name}", "friction")
     at = np.array([a, h]) @ turn
     arrows.add(at, np.array([0.0, -weight]), "Mg", "weight")

@@ -20,8 +20,9 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
-from brakes.vehicle.axles import ACUTE, LEAST_MARGIN, ROUNDING
+from brakes.vehicle.axles import ACUTE, ROUNDING
 
 
 @dataclass(frozen=True)

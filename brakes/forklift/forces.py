@@ -30,8 +30,9 @@ from beamdyn.common.inputs.checks import InvalidValue, refuse
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
-from brakes.vehicle.axles import LEAST_MARGIN, ROUNDING
+from brakes.vehicle.axles import ROUNDING
 
 _STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of

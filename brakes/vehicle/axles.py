@@ -21,11 +21,11 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
+from brakes.common.locking import LEAST_MARGIN
 
 Axle = Literal["front", "rear"]
 Braked = Literal["front", "rear", "both"]
 ROUNDING = np.finfo(float).eps
-LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
 
 

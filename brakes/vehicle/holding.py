@@ -2,9 +2,10 @@
 
 With the braking ratio tau = tan(beta) of `brakes.vehicle.axles`, it slips past tan(beta) = `slipping_ratio`,
 tips over the lower axle past tan(beta) = `pitching_ratio` if that axle is braked, and a brake that gives the
-force R along the ground lets it roll past sin(beta) = R / (M g).  What comes first goes on past it: wheels
-that slip or roll pull no harder on a steeper slope.  Where the upper axle alone is braked, its load, and so
-its grip, is gone before the vehicle could tip.
+force R along the ground lets it roll past sin(beta) = R / (M g).  A vehicle that does not hold moves down
+with the braking ratio that road and brake give, the smaller of `slipping_ratio` and R / (M g cos(beta)), on
+which its axle loads depend; past `pitching_ratio` it tips.  Where the upper axle alone is braked, its load,
+and so its grip, is gone before the vehicle could tip.
 """
 
 from __future__ import annotations
@@ -87,9 +88,12 @@ class Holding(Result):
     largest_slope : ndarray
         The least of these three [rad].
     needed_force : ndarray
-        Braking force along the ground on the road's slope [N].
+        Braking force along the ground that holds the vehicle on the road's slope [N].
+    braking_force : ndarray
+        Braking force along the ground that acts there [N]: less than needed where the vehicle slips or
+        rolls, nan where it tips.
     front_load, rear_load : ndarray
-        Normal forces of the axles on the road's slope [N]; nan past tipping.
+        Normal forces of the axles there, at rest or as the vehicle slips or rolls [N]; nan where it tips.
     error : float
         Bound of the error of the slopes [rad], by rounding.
 
@@ -111,6 +115,7 @@ class Holding(Result):
     rolling_slope: Annotated[Numbers, Meaning("rad", "rolls, as the brake gives too little, past", "deg")]
     largest_slope: Annotated[Numbers, Meaning("rad", "largest slope", "deg")]
     needed_force: Annotated[Numbers, Meaning("N", "braking force that the slope needs")]
+    braking_force: Annotated[Numbers, Meaning("N", "braking force that acts")]
     front_load: Annotated[Numbers, Meaning("N", "front axle's load on the slope")]
     rear_load: Annotated[Numbers, Meaning("N", "rear axle's load on the slope")]
     error: float
@@ -123,7 +128,8 @@ class Holding(Result):
     @property
     def limited_by(self) -> Any:
         """What ends the largest slope: "slips", "tips" or "rolls"."""
-        return _first_of(self.slipping_slope, self.tipping_slope, self.rolling_slope)
+        ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
+        return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
 
     @property
     def message(self) -> str:
@@ -188,16 +194,21 @@ def hold(
     refuse(np.asarray(force) < 0, "brake_force", force, "N", "it must be 0 or more")
     together(vehicle=vehicle.mass * vehicle.cg_height * vehicle.wheelbase, brake_force=force, **vars(road))
     weight = vehicle.mass * road.gravity
-    slips = np.arctan(vehicle.slipping_ratio(road.friction, braked, downhill))
-    tips = np.arctan(vehicle.pitching_ratio(downhill)) if braked in (downhill, "both") else np.inf
+    grip, pitching = vehicle.slipping_ratio(road.friction, braked, downhill), vehicle.pitching_ratio(downhill)
+    slips = np.arctan(grip)
+    tips = np.arctan(pitching) if braked in (downhill, "both") else np.inf
     rolls = np.where(np.asarray(force) < weight, np.arcsin(np.minimum(force / weight, 1.0)), np.inf)
     slips, tips, rolls, slope = np.broadcast_arrays(slips, tips, rolls, road.slope)
     most = np.minimum(np.minimum(slips, tips), rolls)
     near = np.abs(slope - most) <= _EDGE * most
-    past = _first_of(slips, tips, rolls)
-    status = np.where(near, "too near to decide", np.where(slope < most, "holds", past))
-    shares = [vehicle.load_share(axle, np.tan(slope), downhill) for axle in ("front", "rear")]
-    front, rear = (np.where(each >= 0, weight * np.cos(slope) * each, np.nan) for each in shares)
+    pressed = weight * np.cos(slope)
+    given = np.minimum(grip, force / pressed)  # braking ratio of a vehicle that moves
+    ratio = np.minimum(np.tan(slope), given)
+    kinds = [near, slope < most, ratio > pitching * (1 + _EDGE), grip <= given]
+    status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
+    shares = [vehicle.load_share(axle, ratio, downhill) for axle in ("front", "rear")]
+    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # while it tips, nothing is in equilibrium
+    front, rear = (pressed * each for each in shares)
     return Holding(
         vehicle=vehicle,
         road=road,
@@ -209,13 +220,8 @@ def hold(
         rolling_slope=rolls[()],
         largest_slope=most[()],
         needed_force=(weight * np.sin(slope))[()],
+        braking_force=(pressed * ratio)[()],
         front_load=front[()],
         rear_load=rear[()],
         error=float(16 * ROUNDING),
     )
-
-
-def _first_of(slips: Numbers, tips: Numbers, rolls: Numbers) -> Any:
-    """What comes first on ever steeper slopes."""
-    ends = np.stack(np.broadcast_arrays(slips, tips, rolls))
-    return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]

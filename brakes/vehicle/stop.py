@@ -34,7 +34,8 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from brakes.vehicle.axles import ACUTE, LEAST_MARGIN, ROUNDING
+from brakes.common.locking import LEAST_MARGIN
+from brakes.vehicle.axles import ACUTE, ROUNDING
 from brakes.vehicle.truck import Truck
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's

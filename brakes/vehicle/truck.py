@@ -10,7 +10,8 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
-from brakes.vehicle.axles import LEAST_MARGIN, Vehicle
+from brakes.common.locking import LEAST_MARGIN
+from brakes.vehicle.axles import Vehicle
 
 
 @dataclass(frozen=True)

@@ -233,3 +233,33 @@ def test_a_line_does_no_work_of_its_own():
     line = chain.HydraulicLine(0.02, 0.03, pistons=4.0, piston_travel=1e-3)
     found = chain.actuate(chain.Pedal(ratio=5.0, force=300.0), line)
     assert found.pedal_force * found.pedal_travel == pytest.approx(4 * 1e-3 * found.actuator_force, rel=1e-14)
+
+
+@pytest.mark.parametrize("downhill", ["front", "rear"])
+@pytest.mark.parametrize("braked", ["front", "rear", "both"])
+def test_a_vehicle_that_does_not_hold_moves_as_its_free_body(braked, downhill):
+    """Loads of the free body whose braked wheels are at the limit of friction, or of the brake."""
+    rng = np.random.default_rng(11)
+    seen = set()
+    for _ in range(200):
+        L, h, mu = 2.0, rng.uniform(0.3, 1.5), rng.uniform(0.2, 1.2)
+        a, slope, most = rng.uniform(0.2, 1.8), rng.uniform(0.05, 0.78), rng.uniform(50.0, 900.0)
+        v = vehicle.Vehicle(100.0, cg_behind_front=a, cg_height=h, wheelbase=L)
+        found = vehicle.hold(v, vehicle.Road(slope, mu, gravity=10.0), braked, downhill, most)
+        seen.add(str(found.status))
+        if found.status not in ("slips", "rolls"):
+            continue
+        # N_front, N_rear, R: forces across the ground, moments about the centre of gravity, the law of R.
+        sense = 1.0 if downhill == "front" else -1.0  # braking loads the lower axle
+        law = [float(braked != "rear"), float(braked != "front")] if found.status == "slips" else [0.0, 0.0]
+        matrix = [[1.0, 1.0, 0.0], [a, -(L - a), -sense * h], [-mu * law[0], -mu * law[1], 1.0]]
+        given = [1000.0 * np.cos(slope), 0.0, 0.0 if found.status == "slips" else most]
+        front, rear, force = np.linalg.solve(matrix, given)
+        assert min(front, rear) > 0 and force < 1000.0 * np.sin(
+            slope
+        )  # it stands on both axles, and runs away
+        assert force <= most * (1 + 1e-12)  # rounding: the brake can give it
+        assert [found.front_load, found.rear_load, found.braking_force] == pytest.approx(
+            [front, rear, force], rel=SAME
+        )
+    assert {"holds", "slips", "rolls"} <= seen

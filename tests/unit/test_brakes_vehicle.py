@@ -179,8 +179,18 @@ def test_a_vehicle_that_is_braked_uphill_alone_slips_and_never_tips():
     bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     found = vehicle.hold(bicycle, vehicle.Road(np.radians(40.0), 2.0), "rear", "front")
     assert (found.status, found.limited_by, found.tipping_slope) == ("slips", "slips", np.inf)
-    assert np.isnan(found.rear_load)  # at rest it could not stand there
-    needed = vehicle.friction_to_hold(
-        bicycle, np.radians(28.0), "rear", "front"
-    )  # tan: 0.53 of 0.56 at which it lifts
+    ratio = 2.0 * 0.62 / (1.02 + 2.0 * 1.10)  # of a vehicle that slides on its rear wheel, by moments
+    load = 80.0 * 9.806 * np.cos(np.radians(40.0)) * (0.62 - 1.10 * ratio) / 1.02
+    assert found.rear_load == pytest.approx(load, rel=1e-12)  # ten operations
+    steep = np.arctan(0.53)  # it would lift at 0.62 / 1.10
+    needed = vehicle.friction_to_hold(bicycle, steep, "rear", "front")
     assert "even a friction of 2" in needed.message
+
+
+def test_a_dragging_brake_tips_a_vehicle_on_a_slope_that_is_steep_enough():
+    """The brake's force is the same on each slope; what presses the wheels falls with its cosine."""
+    bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
+    roads = vehicle.Road(np.radians([25.0, 28.0, 40.0]), 2.0)
+    found = vehicle.hold(bicycle, roads, "both", "front", 0.45 * 80.0 * 9.806)
+    assert found.status.tolist() == ["holds", "rolls", "tips"]
+    assert np.isnan([found.front_load, found.rear_load]).tolist() == [[False, False, True]] * 2
