@@ -68,6 +68,10 @@ class Fem:
         on_each = "" if self.on_each == 2 else f", on_each={self.on_each}"
         return f"Fem(elements={self.elements}, mesh={self.mesh!r}{on_each})"
 
+    def __str__(self) -> str:
+        kind = "" if self.mesh == "graded" else " on a uniform mesh"
+        return f"{self.elements} finite elements{kind}"
+
     @property
     def order(self) -> int:
         """Order of convergence: the error of eigenvalues is as the fourth power of the element length."""

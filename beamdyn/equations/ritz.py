@@ -24,6 +24,7 @@ MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
+_WORDS = {"legendre": "Legendre functions", "eigenfunctions": "eigenfunctions", "moments": "bending moments"}
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}  # the slower, the larger
 
 
@@ -62,6 +63,9 @@ class Ritz:
         most, remedy = MOST_FUNCTIONS, "use fewer, or discretization='fem'"
         set_fields(self, functions=count("functions", self.functions, most=most, remedy=remedy))
         one_of("basis", self.basis, (*_BASES, "moments"))
+
+    def __str__(self) -> str:
+        return f"Rayleigh-Ritz with {self.functions} {_WORDS[self.basis]}"
 
     @property
     def on_each_segment(self) -> bool:

@@ -18,6 +18,7 @@ from rich.text import Text
 from beamdyn.common.inputs.checks import reason_of
 
 _SENTENCE = 36  # letters from which on the words of a cell are a sentence
+_WIDE = 75  # letters in a row from which on a table takes the whole width of a page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -79,7 +80,8 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
     made = []
     for part in parts:
         if isinstance(part, Group):
-            made.append(html(part.renderables, most))
+            wide = ' class="wide"' if _width(part) > _WIDE else ""
+            made.append(f"<section{wide}>{html(part.renderables, most)}</section>")
         elif isinstance(part, Table):
             made.append(_table(part, most))
         elif isinstance(part, Text) and part.style == "bold":
@@ -87,6 +89,14 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
         else:
             made.append(f"<p>{escape(str(part))}</p>" if str(part) else "")
     return "\n".join(made)
+
+
+def _width(part: object) -> int:
+    """Letters in the longest cells of a row of a table, or of the widest one of a group; else 0."""
+    if isinstance(part, Group):
+        return max(map(_width, part.renderables), default=0)
+    columns = part.columns if isinstance(part, Table) else ()
+    return sum(max(map(len, map(str, (column.header, *column.cells)))) for column in columns)
 
 
 def _table(made: Table, most: int | None) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 from zlib import crc32
@@ -24,8 +24,10 @@ class _ShownChart:
     def __init__(self, writer: PageWriter) -> None:
         self._writer = writer
         self._options: dict[str, Any] = {}
-        self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
-        self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
+        self.place: Any = ui.element("div")
+        with self.place:
+            self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
+            self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self.element.on("keydown", js_handler=f"(event) => zoomChart(event, {self.element.id})")
         # What the component restores is what it was given first: the present data follow.
         self.element.on("chart:restore", self.update, args=[])
@@ -76,21 +78,25 @@ class ChartBoard:
         self._writer = writer
         self._made: list[_ShownChart] = []
         self._shown: list[dict[str, Any]] = []  # options of the charts without their cursors
-        self._column: Any = ui.column().classes("w-full gap-0 charts")
+        self._column: Any = ui.element("div").classes("w-full charts")
         self._column.props["data-words"] = words
         self._how: Any = ui.label(_HOW).classes("status")
         self._how.set_visibility(False)
+
+    def _elements(self) -> Iterator[Any]:
+        """Places and headings of the charts."""
+        for made in self._made:
+            yield from (made.place, made.heading)
 
     def show(self, charts: Sequence[Chart]) -> None:
         """Show these charts in place of the last ones."""
         while len(self._made) < len(charts):
             with self._column:
                 self._made.append(_ShownChart(self._writer))
-        with self._writer.writing(self._column, self._how, *(made.heading for made in self._made)):
+        with self._writer.writing(self._column, self._how, *self._elements()):
             last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
             for i, made in enumerate(self._made):
-                made.heading.set_visibility(i < len(charts))
-                made.element.set_visibility(i < len(charts))
+                made.place.set_visibility(i < len(charts))
             if last != self._shown:
                 self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
                 self._column.update()

@@ -79,7 +79,9 @@ class ScreenView:
     def _make_head(self) -> None:
         self._head: Any = ui.column().classes("head")
         with self._head:
-            ui.html(escape(self.screen.name), tag="h2", sanitize=False)
+            with ui.row().classes("titled"):
+                ui.html(escape(self.screen.name), tag="h2", sanitize=False)
+                self._make_downloads()
             ui.label(self.screen.purpose).classes("text-body2")
             self._headline: Any = ui.html("", sanitize=False).classes("w-full")
             with ui.row().classes("items-center gap-2"):
@@ -90,6 +92,12 @@ class ScreenView:
                     ui.spinner(size="sm").props('aria-hidden="true"')
                     ui.button("Cancel", on_click=self._way.cancel).props("dense outline no-caps size=sm")
             self._said: Any = ui.column().classes("said gap-1 w-full").props('role="alert"')
+
+    def _make_downloads(self) -> None:
+        with ui.row().classes("gap-2"):
+            for kind in ("SVG", "PNG", "CSV"):
+                button = ui.button(kind, on_click=partial(self._download, kind.lower()), icon="download")
+                button.props(f'flat dense no-caps aria-label="download {self.screen.name} as {kind}"')
 
     def _make_results(self) -> None:
         screen, name = self.screen, self.screen.name
@@ -103,16 +111,12 @@ class ScreenView:
                 self._charts = ChartBoard(f"{name}: charts of the result", self._writer)
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, screen)
-                self._tables: Any = ui.html("", sanitize=False).classes("w-full")
+                self._tables: Any = ui.html("", sanitize=False).classes("w-full tables")
                 self._more = [
                     FoldedPanel(part.title, lambda answer, i=i: self._make(page_tasks.folded, answer, i))
                     for i, part in enumerate(screen.more)
                 ]
         with ui.column().classes("after w-full gap-2"):
-            with ui.row().classes("gap-2"):
-                for kind in ("SVG", "PNG", "CSV"):
-                    button = ui.button(kind, on_click=partial(self._download, kind.lower()), icon="download")
-                    button.props(f'flat dense no-caps aria-label="download {name} as {kind}"')
             sweeps = screen.sweeps
             self.sweep = None if sweeps is None else SweepPanel(self.work, screen, sweeps, self._solver)
 
