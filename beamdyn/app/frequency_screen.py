@@ -205,6 +205,8 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
     unit = answer.locus.display_units.speed_unit()
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
         yield KeyResult(words, number(frequency, "Hz") if np.isfinite(frequency) else "diverges")
+    for margin in answer.margins[:1]:
+        yield KeyResult(f"at the motion's {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
     if np.isfinite(critical.speed):
         yield KeyResult("critical speed", brief(critical.speed, unit))
         margin = f"{100 * (1 - top / critical.speed):.3g} %" if top < critical.speed else "none: past it"

@@ -16,18 +16,41 @@ from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, de
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.display_units import known_unit
-from beamdyn.common.screens.screen_parts import Drag
+from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.files.scene_inputs import RectangularInput, SceneInput, StiffnessInput
 from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.
-SCENE_TABLES = ("mount", "beam", "motion", "model", "damping", "physics")
+SCENE_TABLES = ("beam", "mount", "motion", "model", "damping", "physics")
 TABLES = ("options", *SCENE_TABLES)
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
+)
+# Usual values at room temperature; those of a batch differ by some percent.
+_MATERIALS = {
+    "steel": ("200 GPa", "7850 kg/m3", "0.3"),
+    "stainless steel": ("193 GPa", "7900 kg/m3", "0.29"),
+    "aluminium": ("70 GPa", "2700 kg/m3", "0.33"),
+    "titanium alloy": ("114 GPa", "4430 kg/m3", "0.34"),
+    "brass": ("105 GPa", "8500 kg/m3", "0.34"),
+    "beryllium copper": ("130 GPa", "8250 kg/m3", "0.3"),
+}
+_OF_MATERIAL = "beam.youngs_modulus", "beam.density", "beam.poissons_ratio"
+_DIRECTIONS = {"inward, to the axis": "0 deg", "along the rim": "90 deg", "outward": "180 deg"}
+PRESETS = (
+    Preset(
+        "beam",
+        "material",
+        {name: dict(zip(_OF_MATERIAL, each, strict=True)) for name, each in _MATERIALS.items()},
+    ),
+    Preset(
+        "mount",
+        "the beam points",
+        {name: {"mount.setting_angle": angle} for name, angle in _DIRECTIONS.items()},
+    ),
 )
 # What makes an answer take long.
 EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."

@@ -15,7 +15,7 @@ from rich.console import RenderableType
 from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
-from beamdyn.app.scene_form import ASIDE, DRAGS, EFFORT, SCENE_TABLES, read_aside, read_scene
+from beamdyn.app.scene_form import ASIDE, DRAGS, EFFORT, PRESETS, SCENE_TABLES, read_aside, read_scene
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.inputs import Section, parts_of
 from beamdyn.common.edge.rendering import drawing, picture
@@ -69,7 +69,7 @@ def scene_screen(
     **special
         Further arguments of `Screen`.
     """
-    tables = (*beside, *SCENE_TABLES)
+    tables = (*SCENE_TABLES[:2], *beside, *SCENE_TABLES[2:])
 
     def shown(answer: Any) -> Sequence[RenderableType]:
         found = result(answer)
@@ -84,6 +84,7 @@ def scene_screen(
         "notes": lambda answer: warnings_of(result(answer)),
         "rows": lambda answer: rows_of(result(answer)),
         "drags": DRAGS,
+        "presets": PRESETS,
         "effort": EFFORT,
         "sketch": sketch,
     }

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,24 @@ class Playable:
     def time(self, place: float) -> float:
         """The time at a position of the slider, from 0 to 1 [s]."""
         return self.run.path.start + place * (self.run.path.end - self.run.path.start)
+
+    @cached_property
+    def chart(self) -> Chart:
+        """The tip over the whole run."""
+        run, (start, end), unit = self.run, self.window, self.run.display_units.length_unit()
+        tips = zip(_names(run), (run.tip, run.tip_across), strict=False)
+        peak = unit.of(float(run.deflection([self.peak_at])[0]))
+        said = f"peak {unit.say(self.peak, 5)} at {self.peak_at:.5g} s"
+        first, last = run.path.start, run.path.end
+        outside = ChartBand(first, start, "before the window"), ChartBand(end, last, "after the window")
+        return Chart(
+            "Tip deflection over time",
+            *_axes(run, first, last),
+            [ChartCurve(name, run.t, unit.of(tip), most=_MOST_SENT) for name, tip in tips],
+            [ChartPoints("peak in the window", [(self.peak_at, peak, said)], "friction")],
+            [ChartMark(t, words) for t, words in self.passages],
+            [band for band in outside if band.high > band.low],
+        )
 
 
 def solve(tables: Mapping[str, Any]) -> Playable:
@@ -147,29 +166,24 @@ def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
 def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
     """The tip over the whole run, and over some periods about the present time."""
     run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
-    names = modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
-
-    def over(t: np.ndarray) -> tuple[ChartAxis, ChartAxis]:
-        time = ChartAxis("time", "s", low=float(t[0]), high=float(t[-1]))
-        return time, ChartAxis("tip deflection", unit.name)
-
-    tips = zip(names, (run.tip, run.tip_across), strict=False)
-    peak = unit.of(float(run.deflection([answer.peak_at])[0]))
-    said = f"peak {unit.say(answer.peak, 5)} at {answer.peak_at:.5g} s"
-    ends, (start, end) = np.array([run.path.start, run.path.end]), answer.window
-    outside = ChartBand(ends[0], start, "before the window"), ChartBand(end, ends[1], "after the window")
-    whole = Chart(
-        "Tip deflection over time",
-        *over(ends),
-        [ChartCurve(name, run.t, unit.of(tip), most=_MOST_SENT) for name, tip in tips],
-        [ChartPoints("peak in the window", [(answer.peak_at, peak, said)], "friction")],
-        [ChartMark(t, words) for t, words in answer.passages],
-        [band for band in outside if band.high > band.low],
-        now,
-    )
     t = _around(answer, now, _CLOSE)
-    near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(names)]
-    return [whole, Chart("Close-up about the present time", *over(t), near, cursor=now)]
+    near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(_names(run))]
+    axes = _axes(run, float(t[0]), float(t[-1]))
+    return [
+        replace(answer.chart, cursor=now),
+        Chart("Close-up about the present time", *axes, near, cursor=now),
+    ]
+
+
+def _names(run: Transient) -> Sequence[str]:
+    """Names of the curves."""
+    return modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
+
+
+def _axes(run: Transient, start: float, end: float) -> tuple[ChartAxis, ChartAxis]:
+    """The axes of a chart from a time to another [s]."""
+    unit = run.display_units.length_unit()
+    return ChartAxis("time", "s", low=start, high=end), ChartAxis("tip deflection", unit.name)
 
 
 # Tables and files ---------------------------------------------------------------------------------

@@ -235,10 +235,12 @@ def test_sweep_is_shown_and_handed_over_as_csv_svg_and_png(simulate):
         assert "largest_roller" in results.options
         with user.client:
             chooser.set_value("run.finger")
-        values = element(user, "start:stop:count unit")
-        assert values.value == "32:48:21 N"
+        low, high, count = (element(user, label) for label in ("from", "to", "how many values"))
+        assert (low.value, high.value, count.value) == ("32 N", "48 N", "21")
         with user.client:
-            values.set_value("10:20:3 N")
+            low.set_value("0.01 kN")  # another unit than the other end's, which has the last word
+            high.set_value("20 N")
+            count.set_value("3")
             results.set_value(["right_pad_force", "finger_travel"])
         user.find("Sweep as CSV").click()
         rows = [*csv.reader(io.StringIO((await user.download.next(timeout=PATIENCE)).text))]

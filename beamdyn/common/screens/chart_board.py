@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
+from itertools import count
 from typing import Any
 from zlib import crc32
 
@@ -77,11 +78,20 @@ class ChartBoard:
     def __init__(self, words: str, writer: PageWriter) -> None:
         self._writer = writer
         self._made: list[_ShownChart] = []
-        self._shown: list[dict[str, Any]] = []  # options of the charts without their cursors
+        self._charts: list[Chart] = []  # that are shown
+        self._shown: list[dict[str, Any]] = []  # their options without their cursors
         self._column: Any = ui.element("div").classes("w-full charts")
         self._column.props["data-words"] = words
         self._how: Any = ui.label(_HOW).classes("status")
         self._how.set_visibility(False)
+
+    def _options_without_cursor(self, chart: Chart, i: int) -> dict[str, Any]:
+        """Options of a chart; those that are shown where nothing else than its cursor has changed."""
+        if i < len(self._charts):
+            shown, rest = self._charts[i], [each.name for each in fields(Chart) if each.name != "cursor"]
+            if all(getattr(shown, name) is getattr(chart, name) for name in rest):
+                return self._shown[i]
+        return options_of(replace(chart, cursor=None))
 
     def _elements(self) -> Iterator[Any]:
         """Places and headings of the charts."""
@@ -94,7 +104,8 @@ class ChartBoard:
             with self._column:
                 self._made.append(_ShownChart(self._writer))
         with self._writer.writing(self._column, self._how, *self._elements()):
-            last, self._shown = self._shown, [options_of(replace(chart, cursor=None)) for chart in charts]
+            last, self._shown = self._shown, [*map(self._options_without_cursor, charts, count())]
+            self._charts = [*charts]
             for i, made in enumerate(self._made):
                 made.place.set_visibility(i < len(charts))
             if last != self._shown:
@@ -102,7 +113,7 @@ class ChartBoard:
                 self._column.update()
                 self._how.set_visibility(bool(charts))
             for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
-                if last[i : i + 1] == [self._shown[i]]:
+                if i < len(last) and (last[i] is self._shown[i] or last[i] == self._shown[i]):
                     made.move_cursor(chart)
                 else:
                     made.fill(chart)

@@ -43,9 +43,12 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) <= most:
         return x, y
-    parts = np.array_split(np.arange(len(x)), most // 2 - 1)
-    low = [part[np.argmin(np.where(np.isfinite(y[part]), y[part], np.inf))] for part in parts]
-    high = [part[np.argmax(np.where(np.isfinite(y[part]), y[part], -np.inf))] for part in parts]
+    width = -(-len(x) // (most // 2 - 1))
+    parts = np.pad(np.where(np.isfinite(y), y, np.nan), (0, -len(x) % width), constant_values=np.nan)
+    parts = parts.reshape(-1, width)
+    first = width * np.arange(len(parts))
+    low = first + np.where(np.isnan(parts), np.inf, parts).argmin(axis=1)
+    high = first + np.where(np.isnan(parts), -np.inf, parts).argmax(axis=1)
     kept = np.unique([0, *low, *high, len(x) - 1])
     return x[kept], y[kept]
 

@@ -31,8 +31,10 @@ from beamdyn.common.screens.form_entries import (
 )
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter
-from beamdyn.common.screens.screen_parts import Drag
+from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
+
+_FEW = 3  # fewest fields that are folded, and most of a table of defaults that is open at first
 
 
 class Form:
@@ -75,20 +77,56 @@ class Form:
         self._units: dict[str, str] = {}  # of bare numbers, by path
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # places of the fields
+        self._rest: dict[str, Any] = {}  # folded parts of tables
         self._drags = {drag.path: drag for drag in screen.drags}
-        entries, headings = work.entries, work.document.headings
         for section in screen.sections:
             chosen = [entry for entry in inputs if table_of(entry.path) == section]
-            if not chosen:
-                continue
-            given = any(entries.get(entry.path, "") for entry in chosen)
-            usual = all(default_words(entry) != NOT_GIVEN for entry in chosen)
-            table = ui.expansion(heading_of(section, headings), value=given or usual or not section)
-            with table.classes("w-full section").props("dense"):
-                for entry in chosen:
-                    with ui.element("div") as self._places[entry.path]:
-                        self._field(entry, entries.get(entry.path, ""))
-            self._tables[section] = table
+            if chosen:
+                presets = [preset for preset in screen.presets if preset.table == section]
+                self._section(section, chosen, presets, work)
+
+    def _section(
+        self, section: str, chosen: Sequence[Input], presets: Sequence[Preset], work: OpenDocument
+    ) -> None:
+        """A table of the form: what is given, needed or moved by a slider; the rest is folded."""
+        entries, drags = work.entries, self._drags
+        first = [e for e in chosen if e.required or e.path in drags or entries.get(e.path, "")]
+        rest = [entry for entry in chosen if entry not in first]
+        usual = len(chosen) <= _FEW and all(default_words(entry) != NOT_GIVEN for entry in chosen)
+        table = ui.expansion(
+            heading_of(section, work.document.headings), value=bool(first) or usual or not section
+        )
+        with table.classes("w-full section").props("dense"):
+            for preset in presets:
+                self._preset(preset)
+            self._fields(first, entries)
+            if first and len(rest) >= _FEW:
+                with ui.expansion(f"{len(rest)} more").classes("w-full rest").props("dense") as folded:
+                    self._fields(rest, entries)
+                self._rest |= dict.fromkeys((entry.path for entry in rest), folded)
+            else:
+                self._fields(rest, entries)
+        self._tables[section] = table
+
+    def _fields(self, chosen: Sequence[Input], entries: Mapping[str, str]) -> None:
+        for entry in chosen:
+            with ui.element("div") as self._places[entry.path]:
+                self._field(entry, entries.get(entry.path, ""))
+
+    def _preset(self, preset: Preset) -> None:
+        """A list that fills in several fields; it shows the choice that stands there, if one does."""
+
+        def fill(choice: str | None) -> None:
+            for path, text in preset.choices.get(choice or "", {}).items():
+                if path in self.fields:
+                    self.fields[path].set_value(text)
+
+        def text(path: str) -> str:
+            return self._read(path).text if path in self.fields else ""
+
+        made = ui.select([*preset.choices], label=preset.words, on_change=lambda e: fill(e.value))
+        made.classes("w-full").props(f'dense outlined stack-label aria-label="{preset.words}"')
+        made.on("popup-show", lambda: made.set_value(preset.chosen(text)))
 
     def _field(self, entry: Input, text: str) -> None:
         made = self._select(entry, text) if options_of(entry) else self._input(entry, text)
@@ -205,6 +243,8 @@ class Form:
         for path, field in self.fields.items():
             if self._read(path).text != entries.get(path, ""):
                 field.set_value(entries.get(path, ""))
+                if entries.get(path, "") and path in self._rest:
+                    self._rest[path].open()
 
     def write(self, texts: Mapping[str, str]) -> None:
         """Write texts into their fields, also during a drag; paths without a field are passed over."""
@@ -227,4 +267,10 @@ class Form:
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
             if said:
-                self._tables[table_of(path)].open()
+                self._unfold(path)
+
+    def _unfold(self, path: str) -> None:
+        """Open the table that holds a field, and its folded part if it is there."""
+        self._tables[table_of(path)].open()
+        if path in self._rest:
+            self._rest[path].open()

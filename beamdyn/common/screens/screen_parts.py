@@ -77,6 +77,36 @@ class Drag:
     unit: str
 
 
+@dataclass(frozen=True)
+class Preset:
+    """A list above the fields of a table; each of its choices fills in some of them.
+
+    Parameters
+    ----------
+    table : str
+        Name of the table.
+    words : str
+        Name of the list, such as "material".
+    choices : mapping
+        By the name of a choice: texts by the path of their field.
+    """
+
+    table: str
+    words: str
+    choices: Mapping[str, Mapping[str, str]]
+
+    def chosen(self, texts: Callable[[str], str]) -> str | None:
+        """The choice whose texts all stand in their fields; None where no choice does."""
+        return next(
+            (
+                name
+                for name, each in self.choices.items()
+                if all(texts(path) == text for path, text in each.items())
+            ),
+            None,
+        )
+
+
 class KeyResult(NamedTuple):
     """A result that stands first on a screen, such as ("stopping distance", "13.4 m").
 

@@ -19,7 +19,7 @@ from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.screens.form_entries import Entries, entries_of
 from beamdyn.common.screens.lists import Lists
-from beamdyn.common.screens.screen_parts import Drag, Handle, KeyResult, Slider
+from beamdyn.common.screens.screen_parts import Drag, Handle, KeyResult, Preset, Slider
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -116,6 +116,8 @@ class Screen:
         Its sweeps.
     drags : tuple of Drag
         Sliders in its form.
+    presets : tuple of Preset
+        Lists in its form that fill in several fields, such as a material.
     more : tuple of FoldedPart
         Drawings and tables that fold out; made when they are wanted.
     handles : callable
@@ -155,6 +157,7 @@ class Screen:
     slider: Slider | None = None
     sweeps: Sweeps | None = None
     drags: tuple[Drag, ...] = ()
+    presets: tuple[Preset, ...] = ()
     more: tuple[FoldedPart, ...] = ()
     handles: Callable[[Any, float], Sequence[Handle]] = lambda *_: ()
     drawings: Callable[[Any, float], Rows] = lambda *_: ()

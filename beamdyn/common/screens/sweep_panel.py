@@ -96,7 +96,8 @@ class SweepPanel:
                 self._input: Any = ui.select(
                     [path], value=path, label="input", with_input=True, on_change=self._suggest
                 ).classes("grow")
-                self._values: Any = ui.input("start:stop:count unit", value=values).classes("grow")
+                self._low, self._high, self._count = map(ui.input, ("from", "to", "how many values"))
+            self._write_range(values)
             self._results: Any = ui.select(
                 sweeps.results.split(","), value=sweeps.results.split(","), multiple=True, label="results"
             ).classes("w-full")
@@ -140,11 +141,33 @@ class SweepPanel:
     def _suggest(self) -> None:
         """Suggest values around the present one of the input that has been chosen."""
         if (entry := self._inputs().get(self._input.value)) is not None:
-            self._values.set_value(around(entry, self.work.entries))
+            self._write_range(around(entry, self.work.entries))
+
+    def _write_range(self, text: str) -> None:
+        """Write "start:stop:count unit" into the fields, both ends with their unit."""
+        numbers, _, unit = text.partition(" ")
+        low, high, count = numbers.split(":")
+        for field, shown in (
+            (self._low, f"{low} {unit}"),
+            (self._high, f"{high} {unit}"),
+            (self._count, count),
+        ):
+            field.set_value(shown.strip())
+
+    @property
+    def _range(self) -> str:
+        """What stands in the fields as "start:stop:count unit"; an end without a unit has the other's."""
+        (low, _, unit), (high, _, other) = (
+            (f.value or "").strip().partition(" ") for f in (self._low, self._high)
+        )
+        if unit and other and unit.strip() != other.strip():
+            low = in_unit(f"{low} {unit}", self._inputs()[self._input.value].quantity, other.strip())
+            low = low.partition(" ")[0]
+        return f"{low}:{high}:{(self._count.value or '').strip()} {(other or unit).strip()}".strip()
 
     async def _run(self) -> InputSweep | None:
         """Run the sweep; None if it fails, with the reason shown.  One that is under way is ended first."""
-        text, names = f"{self._input.value}={self._values.value}", ",".join(self._results.value)
+        text, names = f"{self._input.value}={self._range}", ",".join(self._results.value)
         request = (self.work.needed(self.screen), text, names)
         if self._found is not None and self._found[0] == request:
             return self._found[1]
