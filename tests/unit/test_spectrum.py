@@ -118,7 +118,7 @@ def test_a_looser_tolerance_is_cheaper() -> None:
 
 def test_provenance_says_what_was_chosen_and_compared() -> None:
     found = bd.natural_modes(HARVESTER, 100.0, tolerance=1e-3).provenance
-    assert "Ritz(functions=11" in found.method and "Ritz(functions=9" in found.compared_with
+    assert "with 11 Legendre" in found.method and "with 9 Legendre" in found.compared_with
 
 
 @pytest.mark.parametrize(
