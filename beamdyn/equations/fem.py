@@ -69,8 +69,9 @@ class Fem:
         return f"Fem(elements={self.elements}, mesh={self.mesh!r}{on_each})"
 
     def __str__(self) -> str:
-        kind = "" if self.mesh == "graded" else " on a uniform mesh"
-        return f"{self.elements} finite elements{kind}"
+        mesh = "" if self.mesh == "graded" else " on a uniform mesh"
+        least = "" if self.on_each == 2 else f", at least {self.on_each} on each segment"
+        return f"{self.elements} finite elements{mesh}{least}"
 
     @property
     def order(self) -> int:

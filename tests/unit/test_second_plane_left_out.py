@@ -86,5 +86,5 @@ def test_shares_of_the_planes_add_up_beside_a_stretch() -> None:
 def test_provenance_tells_meshes_apart() -> None:
     assert repr(bd.Fem(20)) == "Fem(elements=20, mesh='graded')"
     assert str(bd.Fem(20)) == "20 finite elements"
-    assert str(bd.Fem(20, "uniform", 1)) == "Fem(elements=20, mesh='uniform', on_each=1)"
+    assert str(bd.Fem(20, "uniform", 1)) == "20 finite elements on a uniform mesh, at least 1 on each segment"
     assert str(bd.Fem(20)) != str(replace(bd.Fem(20), on_each=3))
