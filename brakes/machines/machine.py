@@ -110,6 +110,11 @@ class Machine(ABC):
     def reference_radius(self) -> Numbers:
         """Radius that C* refers to [m]."""
 
+    @property
+    def rubbing_radius(self) -> Numbers:
+        """Radius whose product with the largest pressure is the largest of pressure times radius [m]."""
+        return self.reference_radius
+
     @abstractmethod
     def reach(self) -> tuple[Numbers, Numbers]:
         """Least and largest place on a lining, in the SI unit of `place`."""

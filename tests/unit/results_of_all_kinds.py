@@ -85,6 +85,7 @@ def _transient() -> bd.Transient:
 BASES = {
     "Answer",
     "PlanarAnswer",
+    "RubbingAnswer",
     "OfChosenPhysics",
     "StatesModelError",
     "JudgedByRepeating",
@@ -110,6 +111,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "DrumAnswer": lambda: _answer(DRUM),
     "Equilibrium": lambda: bd.equilibrium(BENT, 5.0),
     "EquilibriumBranches": lambda: bd.equilibrium_branches(BENT, 5.0),
+    "Fade": lambda: drum.repeat_stops(drum.Duty(20.0, 50.0, 5.0, stops=2), 0.4, lambda mu: 1000.0 * mu),
     "ForkliftAnswer": lambda: _answer(FORKLIFT),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
