@@ -160,6 +160,7 @@ class ForkliftAnswer(Answer):
         if self.pedal is not None:
             title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
             tables.append(outputs_table(title, OUTPUTS, self.pedal))
+            tables.append(f"Pedal, {self.pedal.braked.actuation.verdict}.")
         if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
             rows = [
                 [

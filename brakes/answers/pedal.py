@@ -69,7 +69,7 @@ OUTPUTS = (
     ),
     Output(
         "allowed_force",
-        "largest pedal force by ISO 6292:2020",
+        "largest pedal force that is allowed",
         lambda found: found.braked.actuation.pedal.allowed_force,
         "N",
     ),

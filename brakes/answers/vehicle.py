@@ -136,6 +136,7 @@ class VehicleAnswer(Answer):
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
+            tables.append(f"Lever, {self.lever.verdict}.")
         return tables
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
