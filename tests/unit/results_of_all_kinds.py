@@ -144,6 +144,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "SettingAngleLimits": lambda: bd.setting_angle_limits(HARVESTER, 400.0),
     "ShoeMotion": lambda: BENDIX.move_shoes(5e-4),
     "ShoeResult": lambda: made("BrakeResult").shoes[0],
+    "Slowing": lambda: vehicle.slow_down(BICYCLE, ROAD, vehicle.Approach(8.0), 200.0, 0.5),
     "SceneSpread": lambda: bd.spread(HARVESTER, {"beam.thickness": "+-2%"}, samples=128, modes=1, speed=50.0),
     "Spread": lambda: bd.Spread(*(getattr(made("SceneSpread"), each.name) for each in fields(bd.Spread))),
     "StaticLoads": lambda: bd.static_loads(HARVESTER, [0.0, 50.0]),
