@@ -40,6 +40,7 @@ from brakes.vehicle.rise import to_rest
 from brakes.vehicle.truck import Truck
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
+STEEPEST = np.pi / 4  # [rad] past which no road goes
 
 
 @dataclass(frozen=True)

@@ -229,3 +229,8 @@ def test_what_limits_a_forklift_is_said_in_its_tables(run, forklift):
     assert row(out, "... if the slope pulls while the brake force rises")[0] == "15.054"
     _, out, _ = run("forklift", forklift, ("booster = 3", "booster = 2.2"))
     assert "the torque is from the pedal" in out and "sliding" not in out.partition("From the pedal")[0]
+
+
+def test_a_slope_in_percent_has_its_bound_in_percent(run):
+    code, _, err = run("vehicle", (EXAMPLES / "bicycle.toml").read_text(), ('"10 %"', '"120 %"'))
+    assert code == BAD_INPUT and 'road.slope = "120 %": it must be at least 0, at most 100 %; no road' in err
