@@ -61,7 +61,7 @@ class MachineAnswer(RubbingAnswer):
     @property
     def warnings(self) -> Sequence[str]:
         """Also remarks of the brake's type, such as a cone that sticks."""
-        return (*self.result.brake.remarks(self.result.friction), *super().warnings)
+        return (*self.result.brake.remarks(self.result.friction, self.result.reverse), *super().warnings)
 
     def by_law(self) -> dict[str, MachineResult]:
         """The result under each law of the pressure, by its words, the chosen law first.

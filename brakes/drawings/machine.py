@@ -37,18 +37,22 @@ def pressure_chart(result: MachineResult) -> Chart:
     brake = result.brake
     low, high = (float(end) for end in brake.reach())
     at, scale = np.linspace(low, high, _POINTS), _SCALES[brake.place.shown]
-    shape = brake.pressure(at, float(result.friction))
     curves = [
         ChartCurve(
             lining.name,
             scale * np.r_[low, at, high],
-            1e-6 * float(lining.peak_pressure) * np.r_[0.0, shape, 0.0],
+            1e-6 * float(lining.peak_pressure) * np.r_[0.0, _shape(result, i, at), 0.0],
             dashed=bool(i % 2),
         )
         for i, lining in enumerate(result.linings)
     ]
     across = ChartAxis(brake.place.words, brake.place.shown)
     return Chart("Pressure on the linings", across, ChartAxis("pressure", "MPa", low=0.0), curves)
+
+
+def _shape(result: MachineResult, index: int, at: np.ndarray) -> np.ndarray:
+    """Pressure on a lining over its largest value."""
+    return result.brake.pressure_on(index, at, float(result.friction), result.reverse)
 
 
 def factor_chart(result: MachineResult) -> Chart:

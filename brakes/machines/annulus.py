@@ -250,7 +250,7 @@ class Cone(Ring):
         forces = {"normal": normal, "release": force * (friction / self.taper - 1)}
         return {"cone": Lining(friction * normal * self.reference_radius, force, force, reactions=forces)}
 
-    def remarks(self, friction: Numbers) -> Sequence[str]:
+    def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
         """Whether it sticks."""
         sticks = np.asarray(friction >= self.taper)
         if not sticks.any():
