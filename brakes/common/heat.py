@@ -80,7 +80,7 @@ class Duty:
     Examples
     --------
     >>> duty = drum.Duty(inertia=20.0, speed=50.0, heated_mass=5.0)
-    >>> duty.rise_of_a_stop  # K: J w^2 / (2 m c)
+    >>> float(duty.rise_of_a_stop)  # K: J w^2 / (2 m c)
     10.0
     """
 
@@ -262,7 +262,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     Examples
     --------
     >>> duty = drum.Duty(inertia=20.0, speed=50.0, heated_mass=5.0, stops=2)
-    >>> drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest  # K
+    >>> float(drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest)  # K
     20.0
     """
     path = _Path(duty, friction, torque_at)

@@ -109,7 +109,7 @@ class Slowing(Result):
     >>> road, approach = vehicle.Road(slope=0.1, friction=0.8), vehicle.Approach(speed=8.0)
     >>> found = vehicle.slow_down(bicycle, road, approach, brake_force=250.0, front_share=0.5)
     >>> str(found.status), round(float(found.distance), 3)
-    ('no wheel locks', 14.918)
+    ('no wheel locks', 14.911)
     """
 
     vehicle: Vehicle
