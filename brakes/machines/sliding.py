@@ -154,9 +154,8 @@ class Sliding(Machine):
                 continue
             start, end = np.degrees(self._contact(delta))
             if max(start - np.degrees(self.lining_start), np.degrees(self.lining_end) - end) > 1e-9:
-                said.append(
-                    f"the {_word(leads)} shoe touches from {start:.4g} to {end:.4g} deg: the rest of its lining lifts"
-                )
+                place = f"from {start:.4g} to {end:.4g} deg"
+                said.append(f"the {_word(leads)} shoe touches {place}: the rest of its lining lifts")
         return said
 
     def zero(self, friction: Numbers, leads: bool) -> np.ndarray:

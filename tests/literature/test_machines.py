@@ -2,8 +2,9 @@
 
 The inputs are those of textbook problems: Shigley's band of 14 in and cone (16-19), Juvinall's differential
 band (figure 18.17). Opened with their printed solutions: the bands of two public pages (mechdiploma.com,
-transtutors.com) and K. Kannan's lecture DTS 11.3, example 1 (block). No worked example of a sliding shoe or an
-annular pad was found that could be opened; these are checked by quadrature in tests/invariants.
+transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), and a question of byjus.com (plates). None was
+found that could be opened of a sliding shoe, nor with all its numbers of an annular pad: these are checked by
+quadrature in tests/invariants.
 """
 
 import numpy as np
@@ -96,8 +97,11 @@ def test_simple_band_of_a_lever_of_400_mm():
 
 
 def test_band_that_holds_300_newton_metres():
-    """transtutors.com: 240 deg on a drum of 480 mm, tight end 50 mm and force 300 mm from the hinge."""
-    band = machines.Band(0.24, 0.05, np.radians(240), force_arm=0.3, first_arm=0.05)
+    """transtutors.com: 240 deg, tight end 50 mm and force 300 mm from the hinge.
+
+    Its tensions are those of a drum of 250 mm radius; the 240 in its line of the torque is a misprint.
+    """
+    band = machines.Band(0.25, 0.05, np.radians(240), force_arm=0.3, first_arm=0.05)
     found = machines.solve_brake(band, friction=0.25, torque=300.0, reverse=True)
     assert found.force == pytest.approx(308.13, rel=3e-5)  # printed with a factor of five digits
     assert found.linings[0].reactions["first"] == pytest.approx(1848.80, rel=3e-5)
@@ -110,3 +114,16 @@ def test_block_of_a_lecture(reverse, torque):
     block = machines.Block(0.125, 0.05, np.radians(90), 0.45, 0.2, offset=0.05, pressure_law="short")
     found = machines.solve_brake(block, friction=0.385, force=700.0, reverse=reverse)
     assert found.torque == pytest.approx(torque, abs=0.005)  # half a unit of its last digit
+
+
+def test_forces_on_a_new_and_on_a_worn_clutch():
+    """byjus.com: rings of 250 and 50 mm in diameter; force for the same torque, new over worn, 0.871."""
+    force = {
+        law: machines.solve_brake(
+            machines.Plates(0.025, 0.125, faces=1, pressure_law=law), friction=0.3, torque=100.0
+        ).force
+        for law in ("pressure", "wear")
+    }
+    assert force["pressure"] / force["wear"] == pytest.approx(
+        0.871, abs=5e-4
+    )  # half a unit of its last digit
