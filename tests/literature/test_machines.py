@@ -2,7 +2,7 @@
 
 The inputs are those of textbook problems: Shigley's band of 14 in and cone (16-19), Juvinall's differential
 band (figure 18.17). Opened with their printed solutions: the bands of two public pages (mechdiploma.com,
-transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), and a question of byjus.com (plates). None was
+transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), a question of byjus.com (plates). None was
 found that could be opened of a sliding shoe, nor with all its numbers of an annular pad: these are checked by
 quadrature in tests/invariants.
 """
