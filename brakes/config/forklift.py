@@ -87,8 +87,9 @@ class LeversInput(MadeSection):
 
 def _slope_of_road(**described: Any) -> SlopeQuantity:
     """A slope in files, which is that of a road."""
-    bounds = {"above": None, "below": None, "least": -STEEPEST, "most": STEEPEST}
-    return SlopeQuantity(**described | bounds | {"remedy": "no road is steeper"})
+    bounds: dict[str, Any] = {"above": None, "below": None, "least": -STEEPEST, "most": STEEPEST}
+    bounds["remedy"] = "no road is steeper"
+    return SlopeQuantity(**{**described, **bounds})
 
 
 if TYPE_CHECKING:

@@ -160,7 +160,7 @@ class Sliding(Machine):
 
     def zero(self, friction: Numbers, leads: bool) -> np.ndarray:
         """Angle delta at which the pressure vanishes [rad]; nan where nothing holds the shoe."""
-        mu, s = np.asarray(friction).real, -1.0 if leads else 1.0
+        mu, s = np.real(friction), -1.0 if leads else 1.0
         first, last = self._weight(self.lining_start, mu, s), self._weight(self.lining_end, mu, s)
         low = self.lining_start - np.pi + 0 * first
         high = self.lining_end + 0 * first

@@ -25,7 +25,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from brakes.vehicle.axles import Axle, Vehicle
+from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
 from brakes.vehicle.rise import to_rest
 
@@ -184,7 +184,9 @@ def slow_down(
     >>> str(hard.status), round(float(hard.ratio), 4)
     ('at the limit of pitching over', 0.5636)
     """
-    kind("vehicle", vehicle, Vehicle), kind("road", road, Road), kind("approach", approach, Approach)
+    kind("vehicle", vehicle, Vehicle)
+    kind("road", road, Road)
+    kind("approach", approach, Approach)
     one_of("leading", leading, ("front", "rear"))
     force, share = positive("brake_force", brake_force, "N"), numbers("front_share", front_share)
     refuse((np.asarray(share) < 0) | (np.asarray(share) > 1), "front_share", share, "", "it must be 0 to 1")
@@ -192,7 +194,10 @@ def slow_down(
     times = approach.speed * (1 + approach.reaction_time + approach.rise_time)
     together(vehicle=shape, approach=times, brake_force=force, front_share=share, **vars(road))
     weight = vehicle.mass * road.gravity * np.cos(road.slope) + 0.0 * times
-    braked = {"front": share * force / weight, "rear": (1 - np.asarray(share)) * force / weight}
+    braked: dict[Axle, Any] = {
+        "front": share * force / weight,
+        "rear": (1 - np.asarray(share)) * force / weight,
+    }
     ratio, status = _ratio(vehicle, road.friction, braked, leading)
     loads = {axle: vehicle.load_share(axle, ratio, leading) for axle in braked}
     forces = {axle: np.minimum(braked[axle], road.friction * loads[axle]) for axle in braked}
@@ -223,9 +228,9 @@ def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading
     moved = friction * vehicle.cg_height / vehicle.wheelbase
     rolling = braked["front"] + braked["rear"]
     locked = []
-    for axle, other in (("front", "rear"), ("rear", "front")):
+    for axle in braked:
         left = 1 - moved * (1 if axle == leading else -1)
-        held = friction * vehicle.arm(axle) / vehicle.wheelbase + braked[other]
+        held = friction * vehicle.arm(axle) / vehicle.wheelbase + braked[other(axle)]
         locked.append(np.where(left > 0, held / np.where(left > 0, left, 1.0), np.inf))
     sums = np.stack(np.broadcast_arrays(rolling, *locked, friction))
     least, pitching = sums.min(axis=0), vehicle.pitching_ratio(leading)
