@@ -149,6 +149,11 @@ class Elastica(FieldsOnly):
         """Number n of coordinates."""
         return self.linear.size
 
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Quantities of the root's motion that load the beam."""
+        return QUANTITIES
+
     @cached_property
     def in_plane(self) -> float:
         """Component c of the direction of bending in the plane of rotation: 1, -1 or 0."""
@@ -182,6 +187,10 @@ class Elastica(FieldsOnly):
         """Position (..., 2) of the tip from the root, along b1 and e [m], at coordinates q (..., n)."""
         state = self.at(q)
         return np.stack([self.points.tip(state.cos), self.points.tip(state.sin)], axis=-1)
+
+    def tip_angle(self, q: np.ndarray) -> float:
+        """Slope angle of the tip [rad] at coordinates q (n,)."""
+        return float(q @ self.angles[:, -1])
 
 
 def assemble_elastica(scene: Scene, discretization: Discretization, linear: Equations) -> Elastica:

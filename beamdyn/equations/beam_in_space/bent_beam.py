@@ -163,17 +163,17 @@ class BentBeam(FieldsOnly):
         return self.beam.stations.to_sections(self._turning)
 
     @cached_property
-    def _moving(self) -> np.ndarray:
+    def displacement_rates(self) -> np.ndarray:
         """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
-        moving = cross(self._turned[..., :-1], self.tangents)
-        return moving + self._straining if self.beam.shears else moving
+        rates = cross(self._turned[..., :-1], self.tangents)
+        return rates + self._straining if self.beam.shears else rates
 
     @cached_property
     def motions(self) -> np.ndarray:
         """Displacements and rotations of the stations by the coordinates (n, 6, N + 1 + k)."""
         stations = self.beam.stations
         motions = np.zeros((self.beam.size, 6, stations.count))
-        motions[:, :3] = stations.to_all(self._moving)
+        motions[:, :3] = stations.to_all(self.displacement_rates)
         motions[:, 3:, : stations.sections] = self._turned
         return motions
 
@@ -196,7 +196,7 @@ class BentBeam(FieldsOnly):
         """Derivative (n, n) of the virtual work by the coordinates."""
         n, m = self.resultants(forces.force)
         W = self._turned[..., :-1]
-        change = _product(self._turning, cross(m, W)) + _product(W, cross(self._moving, n))
+        change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
         if self.beam.shears:
             change += _product(self._straining, cross(n, W))
         return change + self.of_stations(forces.tangent)

@@ -157,16 +157,6 @@ class MassesInSpace:
         """Mass matrices (6, 6, N + 1 + k)."""
         return self._of_centre(np.eye(3), self.inertia)
 
-    def gyroscopic(self, axis: np.ndarray) -> np.ndarray:
-        """Gyroscopic matrices (6, 6, N + 1 + k) per speed about a unit axis (3,).
-
-        Coriolis forces 2 m a x v; and moments (tr(I) [a] - 2 [I a]) w, the rate of angular momentum that is
-        linear in both the speed and the rotation's own rate w.
-        """
-        A, trace = skew(axis), np.trace(self.inertia)
-        turning = trace * A[..., None] - 2 * skew(self._momentum(axis))
-        return self._of_centre(2 * A, turning)
-
     def centrifugal(self, axis: np.ndarray) -> StationForces:
         """Inertial forces per squared speed of a rotation about a unit axis (3,), and their derivatives."""
         A = skew(axis)
