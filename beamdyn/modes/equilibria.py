@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -197,7 +197,7 @@ def equilibrium(
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
     at = Words("at ", Speeds(float(speeds[0])))
-    flat = warn_of_suppressed_camber(scene, solution.model.equations, q[None], lambda _: at)
+    flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     remedy = 'branch="bent" asks for the stable one beside it'
     unstable = Statement(
         "the equilibrium is unstable ",

@@ -7,14 +7,19 @@ rotation R of the sections and the position r of the axis,
     R' = R skew(k),   r' = R (e1 + g),
 
 any strains are possible, so that they need satisfy no condition, and the elastic energy is a quadratic form
-of the coordinates.  A change of the coordinates turns the sections by W and displaces the axis by X,
+of the coordinates.  Fibres off the axis become helices by the twist and so pull the ends together (trapeze
+effect): with the mean strain e of the fibres, i^2 the mean square of their distance from the axis, and t the
+twist of the unloaded sections against the axes in which strains are given,
+
+    g1 = e - i^2/2 ((k1 + t)^2 - (k1_0 + t)^2).
+  A change of the coordinates turns the sections by W and displaces the axis by X,
 
     W' = R dk,   X' = W x r' + R dg,
 
 all components in space.  With n and m the resultants of the forces F and moments M that act beyond a point,
 virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, is
 
-    int [W_i' . (m x W_j) + R g_i . (n x W_j) + W_i . (X_j' x n)].
+    int [W_i' . (m x W_j) + R g_i . (n x W_j) + W_i . (X_j' x n) + R'n . g_ij].
 
 References: Hodges (1990), International Journal of Solids and Structures 26, 1253-1273 (strains, intrinsic
 equations); Simo and Vu-Quoc (1986), Computer Methods in Applied Mechanics and Engineering 58, 79-116.
@@ -52,6 +57,10 @@ class BeamInSpace(FieldsOnly):
         Strains per coordinate.
     stiffness, damping : ndarray, shape (n, n)
         Elastic stiffness and damping of the coordinates.
+    fibres : ndarray, shape (N,)
+        Mean square i^2 of the distance of fibres from the axis [m2]; 0 leaves their shortening out.
+    pretwist : ndarray, shape (N,)
+        Twist t of the unloaded sections against the axes of the strains [1/m].
     """
 
     stations: Stations
@@ -60,6 +69,8 @@ class BeamInSpace(FieldsOnly):
     functions: np.ndarray
     stiffness: np.ndarray
     damping: np.ndarray
+    fibres: np.ndarray
+    pretwist: np.ndarray
 
     @property
     def size(self) -> int:
@@ -79,8 +90,13 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def shears(self) -> bool:
-        """Whether the beam shears or stretches."""
-        return bool(self.functions[:, :3].any())
+        """Whether the beam shears or stretches, or twist shortens it."""
+        return bool(self.functions[:, :3].any() or self.shortens)
+
+    @cached_property
+    def shortens(self) -> bool:
+        """Whether twist shortens the beam."""
+        return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def at(self, q: np.ndarray) -> BentBeam:
         """The beam at coordinates q (n,)."""
@@ -114,6 +130,16 @@ class BentBeam(FieldsOnly):
         return self.beam.initial + np.tensordot(self.q, self.beam.functions, 1)
 
     @cached_property
+    def _changes(self) -> np.ndarray:
+        """Stretch, shears and curvatures per coordinate (n, 6, N), by the strains and the helices of fibres."""
+        beam = self.beam
+        if not beam.shortens:
+            return beam.functions
+        changes = beam.functions.copy()
+        changes[:, 0] -= beam.fibres * (self.strains[3] + beam.pretwist) * changes[:, 3]
+        return changes
+
+    @cached_property
     def rotations(self) -> np.ndarray:
         """Axes of the sections, in columns (3, 3, N + 1)."""
         stations = self.beam.stations
@@ -127,7 +153,9 @@ class BentBeam(FieldsOnly):
     @cached_property
     def tangents(self) -> np.ndarray:
         """Derivative r' of the position (3, N)."""
-        extended = self.strains[:3] + np.array([[1.0], [0.0], [0.0]])
+        extended, beam = self.strains[:3].copy(), self.beam
+        twist = self.strains[3] + beam.initial[3] + 2 * beam.pretwist
+        extended[0] += 1 - beam.fibres / 2 * twist * (self.strains[3] - beam.initial[3])
         return turn(self._within, extended)
 
     @cached_property
@@ -155,7 +183,7 @@ class BentBeam(FieldsOnly):
     @cached_property
     def _straining(self) -> np.ndarray:
         """Shears and stretch R dg (n, 3, N) by the coordinates."""
-        return turn(self._within, self.beam.functions[:, :3])
+        return turn(self._within, self._changes[:, :3])
 
     @cached_property
     def _turned(self) -> np.ndarray:
@@ -190,7 +218,7 @@ class BentBeam(FieldsOnly):
     def work(self, force: np.ndarray) -> np.ndarray:
         """Virtual work (n,) of forces (6, N + 1 + k) on the stations, per coordinate."""
         stress = np.concatenate([turn_back(self._within, each) for each in self.resultants(force)])
-        return self.beam.functions.reshape(self.beam.size, -1) @ stress.ravel()
+        return self._changes.reshape(self.beam.size, -1) @ stress.ravel()
 
     def work_change(self, forces: StationForces) -> np.ndarray:
         """Derivative (n, n) of the virtual work by the coordinates."""
@@ -199,6 +227,9 @@ class BentBeam(FieldsOnly):
         change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
         if self.beam.shears:
             change += _product(self._straining, cross(n, W))
+        if self.beam.shortens:
+            twist, along = self.beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
+            change -= _product(twist * (self.beam.fibres * along), twist)
         return change + self.of_stations(forces.tangent)
 
     def of_stations(self, matrices: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ derivative by the coordinates, the gyroscopic matrix per speed is E - E^T.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.rotations import turn_tensors
 from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
@@ -31,6 +30,7 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 
 _AXES = np.eye(3)
+_KEPT = 4  # states of the beam that are kept
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
 _ROOT: dict[Quantity, np.ndarray] = dict(zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True))
 
@@ -69,28 +69,28 @@ def axis_of_rotation(scene: Scene) -> np.ndarray:
     return -np.array([sine, cosine * s, cosine * c])
 
 
-def assemble_beam_in_space(scene: Scene, discretization: Discretization) -> RotatingBeam:
+def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear: Equations) -> RotatingBeam:
     """Assemble the equations of a scene for large deflection in space, over those of the straight beam."""
     beam = scene.modelled_beam
     quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
-    straight = assemble_over(replace(scene, beam=beam), spaces)
     stations, length = Stations(quadrature, beam.length, beam.lumps[0]), beam.length
-    functions = np.zeros((straight.size, 6, len(quadrature.xi)))
+    functions = np.zeros((linear.size, 6, len(quadrature.xi)))
     known = _strains_of_fields(beam)
-    for name, place in straight.blocks.items():
+    for name, place in linear.blocks.items():
         strain = known[name]
         along = spaces.functions(strain.conditions).evaluate(quadrature.xi, strain.order)
         functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
-    nothing = np.zeros((straight.size, straight.size))
+    nothing = np.zeros((linear.size, linear.size))
     model = BeamInSpace(
         stations,
         _masses(scene, stations),
         np.zeros((6, len(quadrature.xi))),
         functions,
-        straight.matrices[0]["unity"],
-        straight.matrices[1].get("unity", nothing),
+        linear.matrices[0]["unity"],
+        linear.matrices[1].get("unity", nothing),
+        *_fibres(beam, quadrature.xi),
     )
-    return RotatingBeam(model, straight, axis_of_rotation(scene))
+    return RotatingBeam(model, linear, axis_of_rotation(scene))
 
 
 def _masses(scene: Scene, stations: Stations) -> Masses:
@@ -107,6 +107,19 @@ def _masses(scene: Scene, stations: Stations) -> Masses:
     centre[0, -1] = tip.offset
     mass = np.concatenate([weights * beam.mass_per_length(xi), [tip.mass], beam.lumps[1]])
     return Masses(mass, centre, turn_tensors(_turned_sections(beam, xi), principal[:, None] * _AXES[..., None]))
+
+
+def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean square distance (N,) of fibres from the axis, and twist (N,) of the unloaded sections, at xi.
+
+    Sections are as homogeneous in their stiffness as in their mass; without torsion it does not matter.
+    """
+    twist = np.zeros_like(xi) if beam.twist is None else beam.twist.derivative()(xi) / beam.length
+    if beam.torsion_stiffness is None:
+        return np.zeros_like(xi), twist
+    assert beam.rotary_inertia is not None and beam.second_rotary_inertia is not None
+    polar = beam.rotary_inertia(xi) + beam.second_rotary_inertia(xi)
+    return polar / beam.mass_per_length(xi), twist
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
@@ -126,14 +139,15 @@ class RotatingBeam(FieldsOnly):
     ----------
     beam : BeamInSpace
         The beam.
-    straight : Equations
-        Equations of the same coordinates for small deflections, in which each field is a block.
+    linear : Equations
+        Equations of the same coordinates by the fields of the straight beam, each of which is a block: their
+        functions, elastic stiffness and damping are those of this beam.
     axis : ndarray, shape (3,)
         Axis of positive rotation of the carrier along e1, e2, e3.
     """
 
     beam: BeamInSpace
-    straight: Equations
+    linear: Equations
     axis: np.ndarray
 
     @property
@@ -162,18 +176,32 @@ class RotatingBeam(FieldsOnly):
         return self.beam.stiffness
 
     @cached_property
-    def linear(self) -> Equations:
-        """Equations linear about the straight beam."""
+    def about_straight(self) -> Equations:
+        """Equations of small motions about the straight beam."""
         return self.at(np.zeros(self.size)).linearized()
 
     def at(self, q: np.ndarray) -> BentState:
-        """The beam at coordinates q (n,)."""
-        return BentState(self, self.beam.at(q))
+        """The beam at coordinates q (n,); the last few are kept, as they are asked for again."""
+        key = q.tobytes()
+        if key not in self._kept:
+            if len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[key] = BentState(self, self.beam.at(q.copy()))
+        return self._kept[key]
+
+    @cached_property
+    def _kept(self) -> dict[bytes, BentState]:
+        return {}
 
     def tip(self, q: np.ndarray) -> np.ndarray:
         """Position (..., 3) of the tip from the root along e1, e2, e3 [m], at coordinates q (..., n)."""
         tips = [self.beam.at(each).tip for each in q.reshape(-1, self.size)]
         return np.reshape(tips, (*q.shape[:-1], 3))
+
+    def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        """Curvature (..., k) [1/m] in the direction of bending, at coordinates q (..., n) and x/L = xi (k,)."""
+        own = self.beam.functions[:, STRAINS.index("curvature")]
+        return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
         """Angle between the beam at the tip and at the root [rad], at coordinates q (n,)."""
@@ -214,18 +242,38 @@ class BentState(FieldsOnly):
         """Generalized inertial force (n,) per unit of a quantity."""
         return self.bent.work(self.inertial_forces(quantity).force)
 
+    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Generalized inertial force (n,) under given values of the quantities."""
+        return self.bent.work(self._forces(values).force)
+
+    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Derivative (n, n) of `inertia` by the coordinates."""
+        key = tuple(values.items())
+        if key not in self._changes:
+            self._changes[key] = self.bent.work_change(self._forces(values))
+        return self._changes[key]
+
+    @cached_property
+    def _changes(self) -> dict[tuple[tuple[Quantity, float], ...], np.ndarray]:
+        """Derivatives that were asked for, as they are asked for again."""
+        return {}
+
+    def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
+        """Inertial forces on the stations under given values of the quantities."""
+        return StationForces.total(self.inertial_forces(each).scaled(value) for each, value in values.items())
+
     def stiffness_of(self, quantity: Quantity) -> np.ndarray:
         """Derivative (n, n) of `inertia_of` by the coordinates."""
         return self.bent.work_change(self.inertial_forces(quantity))
 
     def linearized(self) -> Equations:
         """Equations of small motions about this state, the elastic force of which is among the loads."""
-        straight, beam = self.of.straight, self.of.beam
+        linear, beam = self.of.linear, self.of.beam
         euler = self.stiffness_of("acceleration")
         terms = [
             *self._terms("mass", self.bent.mass, 2),
             *self._terms("Coriolis coupling", euler - euler.T, 1, "speed"),
-            *(t for t in straight.terms if t.quantity == "unity" and t.order < 2),
+            *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
         ]
         loads = [*self._loads("elastic force", beam.stiffness @ self.bent.q, "unity")]
         for quantity in self.of.quantities:
@@ -233,22 +281,22 @@ class BentState(FieldsOnly):
             terms += self._terms(f"stiffness by {quantity}", change, 0, quantity)
             loads += self._loads(f"load by {quantity}", self.inertia_of(quantity), quantity)
         shapes, deflections = {}, {}
-        for name, place in straight.blocks.items():
-            for direction in range(straight.planes):
-                own = straight.deflections.get(name)
+        for name, place in linear.blocks.items():
+            for direction in range(linear.planes):
+                own = linear.deflections.get(name)
                 key = name if own and own.direction == direction else f"{name}, {_DIRECTIONS[direction]}"
                 deflections[key] = self._deflection(place, direction)
                 shapes[key] = Shape(name, np.eye(place.stop - place.start))
-        shapes |= {name: shape for name, shape in straight.shapes.items() if name not in shapes}
+        shapes |= {name: shape for name, shape in linear.shapes.items() if name not in shapes}
         return replace(
-            straight, terms=(*terms,), loads=(*loads,), deflections=deflections, shapes=shapes, coarse=None
+            linear, terms=(*terms,), loads=(*loads,), deflections=deflections, shapes=shapes, coarse=None
         )
 
     def _terms(
         self, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
     ) -> Iterator[Term]:
         """Terms of a matrix (n, n), by blocks."""
-        blocks = self.of.straight.blocks
+        blocks = self.of.linear.blocks
         for row, i in blocks.items():
             for column, j in blocks.items():
                 if matrix[i, j].any():
@@ -256,7 +304,7 @@ class BentState(FieldsOnly):
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
         """Loads of the left-hand side (n,), by blocks."""
-        for row, i in self.of.straight.blocks.items():
+        for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 
     def _deflection(self, place: slice, direction: int) -> Deflection:

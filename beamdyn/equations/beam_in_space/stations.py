@@ -8,6 +8,7 @@ N + 1 + k stations; the rotation of a point mass is not counted, and taken as 0.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -122,8 +123,11 @@ class StationForces:
     force: np.ndarray
     tangent: np.ndarray
 
-    def __add__(self, other: StationForces) -> StationForces:
-        return StationForces(self.force + other.force, self.tangent + other.tangent)
+    @classmethod
+    def total(cls, each: Iterable[StationForces]) -> StationForces:
+        """The sum of some forces."""
+        several = [*each]
+        return cls(sum(f.force for f in several), sum(f.tangent for f in several))
 
     def scaled(self, factor: float) -> StationForces:
         """The forces times a factor."""

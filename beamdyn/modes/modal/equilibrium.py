@@ -85,10 +85,7 @@ class SteadyLoad:
 
     def load(self, state: DeflectedState | BentState) -> np.ndarray:
         """Inertial force (n,) per squared speed."""
-        return sum(
-            (value * state.inertia_of(quantity) for quantity, value in self._values.items()),
-            np.zeros(self.elastica.size),
-        )
+        return state.inertia(self._values)
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
         """Sum of elastic and inertial forces (n,)."""
@@ -96,9 +93,7 @@ class SteadyLoad:
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
         """Tangent stiffness (n, n)."""
-        state = self.elastica.at(q)
-        by_rotation = (value * state.stiffness_of(quantity) for quantity, value in self._values.items())
-        return self.elastica.stiffness + p * sum(by_rotation, np.zeros_like(self.elastica.stiffness))
+        return self.elastica.stiffness + p * self.elastica.at(q).inertia_change(self._values)
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
         """Derivative of the residual by the squared speed."""
@@ -258,7 +253,7 @@ class DeflectedSolver(Eigensolver):
     """
 
     def __init__(self, elastica: Elastica | RotatingBeam, branch: Branch) -> None:
-        super().__init__(elastica.linear.steady())  # about the straight beam
+        super().__init__(elastica.about_straight.steady())  # about the straight beam
         self.elastica, self.branch = elastica, branch
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}

@@ -51,9 +51,9 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam."""
-        if self.in_space is not None:
-            return self.in_space.linear
-        return assemble_over(self.scene, self.discretization.spaces(self.scene.modelled_beam))
+        beam = self.scene.modelled_beam
+        scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
+        return assemble_over(scene, self.discretization.spaces(beam))
 
     @cached_property
     def solver(self) -> Eigensolver:
@@ -86,7 +86,7 @@ class Model(FieldsOnly):
         # Few scenes need it.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        return assemble_beam_in_space(self.scene, self.discretization)
+        return assemble_beam_in_space(self.scene, self.discretization, self.equations)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
