@@ -61,6 +61,9 @@ class BeamInSpace(FieldsOnly):
         Mean square i^2 of the distance of fibres from the axis [m2]; 0 leaves their shortening out.
     pretwist : ndarray, shape (N,)
         Twist t of the unloaded sections against the axes of the strains [1/m].
+    kinks : ndarray, shape (c, 4)
+        Unit quaternions by which the axes turn where each cell of the rule begins: those of a beam whose axis
+        has kinks, or does not begin along e1.
     """
 
     stations: Stations
@@ -71,6 +74,7 @@ class BeamInSpace(FieldsOnly):
     damping: np.ndarray
     fibres: np.ndarray
     pretwist: np.ndarray
+    kinks: np.ndarray
 
     @property
     def size(self) -> int:
@@ -143,7 +147,8 @@ class BentBeam(FieldsOnly):
     def rotations(self) -> np.ndarray:
         """Axes of the sections, in columns (3, 3, N + 1)."""
         stations = self.beam.stations
-        return integrate_curvature(stations.quadrature.cells, stations.length * self.strains[3:])
+        curvature = stations.length * self.strains[3:]
+        return integrate_curvature(stations.quadrature.cells, curvature, self.beam.kinks)
 
     @cached_property
     def _within(self) -> np.ndarray:

@@ -18,7 +18,7 @@ import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
-from beamdyn.equations.beam_in_space.rotations import turn_tensors
+from beamdyn.equations.beam_in_space.rotations import quaternion_about, turn_tensors
 from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
 from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
@@ -30,6 +30,7 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 
 _AXES = np.eye(3)
+_UNTURNED = quaternion_about(0, 0.0)
 _KEPT = 4  # states of the beam that are kept
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
 _ROOT: dict[Quantity, np.ndarray] = dict(zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True))
@@ -89,6 +90,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         linear.matrices[0]["unity"],
         linear.matrices[1].get("unity", nothing),
         *_fibres(beam, quadrature.xi),
+        np.tile(_UNTURNED, (len(quadrature.cells.ends) - 1, 1)),
     )
     return RotatingBeam(model, linear, axis_of_rotation(scene))
 

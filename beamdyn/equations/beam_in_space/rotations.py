@@ -40,7 +40,7 @@ def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
     return np.einsum("abj,bcj,dcj->adj", R, tensors, R, optimize=["einsum_path", (0, 1), (0, 1)])
 
 
-def integrate_curvature(cells: Cells, curvature: np.ndarray) -> np.ndarray:
+def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
     """Rotations from the root to the Gauss points of cells and to the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
@@ -53,6 +53,8 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray) -> np.ndarray:
         Cells and their Gauss points.
     curvature : ndarray, shape (3, N)
         Twist rate and curvatures in the turned axes, per x/L, at the points.
+    kinks : ndarray, shape (c, 4)
+        Unit quaternions by which the axes turn where each of the c cells begins.
 
     Returns
     -------
@@ -77,9 +79,17 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray) -> np.ndarray:
     across = np.eye(4)[0] + np.einsum("j,cjab,cjb->ca", gauss_rule(p)[1], rates, within)
     start, turned = np.eye(4)[0], np.empty((count, p, 4))
     for cell in range(count):
+        start = _from_left(start) @ kinks[cell]
         turned[cell] = within[cell] @ _from_left(start).T
         start = _from_left(start) @ across[cell]
     return _matrices(np.concatenate([turned.reshape(-1, 4), start[None]]).T)
+
+
+def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
+    """Unit quaternions (..., 4) of turns by angles (...) [rad] about axis 0, 1 or 2."""
+    turned = np.zeros((*np.shape(angle), 4))
+    turned[..., 0], turned[..., 1 + axis] = np.cos(np.divide(angle, 2)), np.sin(np.divide(angle, 2))
+    return turned
 
 
 def _from_right(a: np.ndarray) -> np.ndarray:
