@@ -29,7 +29,7 @@ from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.validity import check_speeds, refuse_bending_in_space
 
 
 @dataclass(frozen=True)
@@ -142,6 +142,7 @@ def backbone(
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
+    refuse_bending_in_space(scene)
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]

@@ -21,6 +21,7 @@ from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_bending_in_space
 from beamdyn.transient.along_path import distance_along_path
 from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
 from beamdyn.transient.gauss import growth_without_bound
@@ -78,6 +79,7 @@ def choose_for_basis(
     mass of its own, some do not exist.
     """
     speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
+    refuse_bending_in_space(scene)
     if scene.physics.large_deflection:  # the modes are those of the straight beam
         straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
         return choose_for_basis(straight, discretization, basis, tolerance).of(scene)

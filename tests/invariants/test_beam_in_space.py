@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,9 +18,12 @@ from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 from beamdyn.equations.beam_in_space.rotations import skew
 from beamdyn.equations.beam_in_space.stations import StationForces
 from beamdyn.equations.elastica import Elastica
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
 from benchmarks.cases.beams_in_space import BENDING, E1, bend, uniform
 from benchmarks.cases.elastica import published, scene_of
+from benchmarks.cases.two_planes import models
+from benchmarks.cases.two_planes import scene_of as two_planes_scene
 
 RNG = np.random.default_rng(33)
 AXIS, FORCE, COUPLE = RNG.normal(size=(3, 3))
@@ -146,3 +150,40 @@ def test_turned_frame_turns_the_answer() -> None:
             first = bend(upright, TipLoad(2 * FORCE, COUPLE, follows))
             load = TipLoad(2 * FORCE, COUPLE, True) if follows else TipLoad(Q @ (2 * FORCE), Q @ COUPLE)
             np.testing.assert_allclose(bend(turned, load).tip, Q @ first.tip, rtol=0, atol=1e-11)
+
+
+# Scenes -------------------------------------------------------------------------------------------
+
+
+def solver_in_space(scene: bd.Scene, functions: int = 16) -> DeflectedSolver:
+    """Of a scene in one plane by the code for beams in space."""
+    model = Model(scene, bd.Ritz(functions))
+    in_space = assemble_beam_in_space(scene, model.discretization, model.equations)
+    return DeflectedSolver(in_space, scene.physics.branch)
+
+
+@pytest.mark.parametrize("case", published()["case"], ids=lambda case: case["name"])
+def test_in_one_plane_it_is_the_elastica(case: dict[str, Any]) -> None:
+    scene, speed = scene_of(case), np.array([case["gamma"]])
+    planar = Model(scene, bd.Ritz(16)).solver
+    assert isinstance(planar, DeflectedSolver) and isinstance(planar.elastica, Elastica)
+    in_space = solver_in_space(scene)
+    first, second = planar.equilibria(speed), in_space.equilibria(speed)
+    side = np.sign(first[0, 0] * second[0, 0])  # of two equilibria by symmetry, either
+    np.testing.assert_allclose(second, side * first, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(in_space.tips(speed)[:, 0], side * planar.tips(speed)[:, 0], rtol=1e-10)
+    values = [solver.eigenvalues(speed, 3) for solver in (planar, in_space)]
+    np.testing.assert_allclose(values[1], values[0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("case", models()["case"], ids=lambda case: case["name"])
+def test_small_vibration_of_a_straight_beam_is_that_of_linear_theory(case: dict[str, Any]) -> None:
+    """Two planes, twist and rotary inertia; shear only at rest, as the linear theory has Engesser's tension."""
+    linear = two_planes_scene(case)
+    if linear.physics.shear and case["gamma"]:
+        return
+    bent = replace(linear, physics=replace(linear.physics, large_deflection=True))
+    if not bent.bends_in_space:
+        bent = replace(bent, mount=replace(bent.mount, bending_angle=bent.mount.bending_angle))
+    found, expected = (bd.natural_modes(scene, case["gamma"], modes=4) for scene in (bent, linear))
+    np.testing.assert_allclose(found.frequency, expected.frequency, rtol=1e-9)

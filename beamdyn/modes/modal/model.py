@@ -126,7 +126,7 @@ class Model(FieldsOnly):
         None where the sections keep their shape, or their width is not known.
         """
         section = self.scene.beam.section
-        if section is None or not self.equations.sections:
+        if section is None or not self.scene.models_width:
             return None
         xi, eta = np.linspace(0, 1, along), np.linspace(1, -1, across)
         return self.scene.beam.length * xi, eta, np.outer(section.width(xi), -eta / 2)
