@@ -121,6 +121,7 @@ class Scene(OneLine):
             set_fields(self, physics_choice=None)  # the choice was that of another physics
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
+        _check_axis(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
@@ -176,7 +177,7 @@ class Scene(OneLine):
         """Whether large deflection leaves the one plane, in or out of that of rotation, of the elastica."""
         chosen, mount = self.physics, self.mount
         is_oblique = mount.precone or min(map(abs, aligned_cos_sin(mount.bending_angle))) != 0
-        others = chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
+        others = self.beam.is_curved or chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
         return chosen.large_deflection and bool(others or is_oblique)
 
     @property
@@ -198,7 +199,18 @@ def check_scene(scene: object) -> None:
     kind("scene", scene, Scene, remedy)
 
 
-# Large deflection ---------------------------------------------------------------------------------
+# Curved axes, and large deflection -----------------------------------------------------------------
+
+
+def _check_axis(beam: Beam, physics: Physics) -> None:
+    """Refuse a curved axis in equations of straight beams."""
+    if beam.is_curved and not (physics.large_deflection or isinstance(physics, AutomaticPhysics)):
+        name = "prebend" if beam.sweep is None else "sweep"
+        given = getattr(beam, name)
+        bound = "without physics.large_deflection the axis of the beam is straight"
+        remedy = Words(Setting("physics", large_deflection=True), " includes it")
+        raise InvalidValue(name, float(given(np.ones(1))[0]), bound, remedy, "rad", where=" at the tip")
+
 
 
 def _check_large_deflection(scene: Scene) -> None:

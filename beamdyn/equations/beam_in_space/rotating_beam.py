@@ -18,7 +18,8 @@ import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
-from beamdyn.equations.beam_in_space.rotations import quaternion_about, turn_tensors
+from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
+from beamdyn.equations.beam_in_space.rotations import turn_tensors
 from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
 from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
@@ -30,7 +31,6 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 
 _AXES = np.eye(3)
-_UNTURNED = quaternion_about(0, 0.0)
 _KEPT = 4  # states of the beam that are kept
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
 _ROOT: dict[Quantity, np.ndarray] = dict(zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True))
@@ -81,16 +81,17 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         strain = known[name]
         along = spaces.functions(strain.conditions).evaluate(quadrature.xi, strain.order)
         functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
+    curvature, kinks = curve_of_axis(beam, quadrature)
     nothing = np.zeros((linear.size, linear.size))
     model = BeamInSpace(
         stations,
         _masses(scene, stations),
-        np.zeros((6, len(quadrature.xi))),
+        np.concatenate([np.zeros((3, len(quadrature.xi))), curvature]),
         functions,
         linear.matrices[0]["unity"],
         linear.matrices[1].get("unity", nothing),
         *_fibres(beam, quadrature.xi),
-        np.tile(_UNTURNED, (len(quadrature.cells.ends) - 1, 1)),
+        kinks,
     )
     return RotatingBeam(model, linear, axis_of_rotation(scene))
 

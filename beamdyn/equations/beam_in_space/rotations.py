@@ -68,7 +68,7 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     """
     p, halves = cells.points, np.diff(cells.ends) / 2
     count = len(halves)
-    rates = _from_right(curvature).transpose(2, 0, 1).reshape(count, p, 4, 4) / 2
+    rates = product_from_right(curvature).transpose(2, 0, 1).reshape(count, p, 4, 4) / 2
     rates *= halves[:, None, None, None]
     A = integrals_between_points(p)
     matrix = -A[None, :, None, :, None] * rates[:, None].transpose(0, 1, 3, 2, 4)
@@ -79,9 +79,9 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     across = np.eye(4)[0] + np.einsum("j,cjab,cjb->ca", gauss_rule(p)[1], rates, within)
     start, turned = np.eye(4)[0], np.empty((count, p, 4))
     for cell in range(count):
-        start = _from_left(start) @ kinks[cell]
-        turned[cell] = within[cell] @ _from_left(start).T
-        start = _from_left(start) @ across[cell]
+        start = product_from_left(start) @ kinks[cell]
+        turned[cell] = within[cell] @ product_from_left(start).T
+        start = product_from_left(start) @ across[cell]
     return _matrices(np.concatenate([turned.reshape(-1, 4), start[None]]).T)
 
 
@@ -92,14 +92,14 @@ def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
     return turned
 
 
-def _from_right(a: np.ndarray) -> np.ndarray:
+def product_from_right(a: np.ndarray) -> np.ndarray:
     """Matrices (4, 4, N) that multiply quaternions from the right with (0, a), a of shape (3, N)."""
     matrix = np.zeros((4, 4, *a.shape[1:]))
     matrix[1:, 0], matrix[0, 1:], matrix[1:, 1:] = a, -a, -skew(a)
     return matrix
 
 
-def _from_left(y: np.ndarray) -> np.ndarray:
+def product_from_left(y: np.ndarray) -> np.ndarray:
     """Matrix (4, 4) that multiplies quaternions from the left with y (4,)."""
     w, v = y[0], y[1:]
     matrix = w * np.eye(4)

@@ -314,7 +314,7 @@ class DeflectedSolver(Eigensolver):
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
         """Deflection of the tip across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
-        return self.elastica.tip(self.equilibria(speeds))[:, 1:]
+        return (self.elastica.tip(self.equilibria(speeds)) - self.elastica.tip(np.zeros(self.size)))[:, 1:]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
         """Coordinates (S, n) in equilibrium at each speed, each computed once."""
