@@ -247,23 +247,23 @@ class BentState(FieldsOnly):
 
     def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
         """Generalized inertial force (n,) under given values of the quantities."""
-        return self.bent.work(self._forces(values).force)
+        return self._under(values).work
 
     def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
         """Derivative (n, n) of `inertia` by the coordinates."""
+        return self._under(values).change
+
+    def _under(self, values: Mapping[Quantity, float]) -> _Loaded:
+        """The beam under given values of the quantities, kept as it is asked for again."""
         key = tuple(values.items())
-        if key not in self._changes:
-            self._changes[key] = self.bent.work_change(self._forces(values))
-        return self._changes[key]
+        if key not in self._known:
+            each = (self.inertial_forces(quantity).scaled(value) for quantity, value in key)
+            self._known[key] = _Loaded(self.bent, StationForces.total(each))
+        return self._known[key]
 
     @cached_property
-    def _changes(self) -> dict[tuple[tuple[Quantity, float], ...], np.ndarray]:
-        """Derivatives that were asked for, as they are asked for again."""
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], _Loaded]:
         return {}
-
-    def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
-        """Inertial forces on the stations under given values of the quantities."""
-        return StationForces.total(self.inertial_forces(each).scaled(value) for each, value in values.items())
 
     def stiffness_of(self, quantity: Quantity) -> np.ndarray:
         """Derivative (n, n) of `inertia_of` by the coordinates."""
@@ -318,6 +318,24 @@ class BentState(FieldsOnly):
         none = np.zeros(place.stop - place.start)
         functions = DeflectedFunctions(self.bent, place, direction)
         return Deflection(functions, by_root[place], by_turning[place], none, direction)
+
+
+@dataclass(frozen=True)
+class _Loaded(FieldsOnly):
+    """A bent beam with forces on its stations."""
+
+    bent: BentBeam
+    forces: StationForces
+
+    @cached_property
+    def work(self) -> np.ndarray:
+        """Virtual work (n,)."""
+        return self.bent.work(self.forces.force)
+
+    @cached_property
+    def change(self) -> np.ndarray:
+        """Derivative (n, n) of the virtual work."""
+        return self.bent.work_change(self.forces)
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,10 @@ from beamdyn.equations.quadrature import Cells, integrals_between_points
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Vector products of vectors (..., 3, N), which are broadcast."""
-    a1, a2, a3 = a[..., 0, :], a[..., 1, :], a[..., 2, :]
-    b1, b2, b3 = b[..., 0, :], b[..., 1, :], b[..., 2, :]
-    return np.stack([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1], axis=-2)
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[..., i, :] = a[..., j, :] * b[..., k, :] - a[..., k, :] * b[..., j, :]
+    return product
 
 
 def skew(a: np.ndarray) -> np.ndarray:
