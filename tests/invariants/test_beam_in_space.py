@@ -20,9 +20,10 @@ from beamdyn.equations.beam_in_space.stations import StationForces
 from beamdyn.equations.elastica import Elastica
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
-from benchmarks.cases.beams_in_space import BENDING, E1, bend, uniform
+from beamdyn.scene.profile import to_profile
+from benchmarks.cases.beams_in_space import bend, uniform
 from benchmarks.cases.elastica import published, scene_of
-from benchmarks.cases.two_planes import models
+from benchmarks.cases.two_planes import models, second_method_cases
 from benchmarks.cases.two_planes import scene_of as two_planes_scene
 
 RNG = np.random.default_rng(33)
@@ -176,14 +177,93 @@ def test_in_one_plane_it_is_the_elastica(case: dict[str, Any]) -> None:
     np.testing.assert_allclose(values[1], values[0], rtol=1e-10)
 
 
-@pytest.mark.parametrize("case", models()["case"], ids=lambda case: case["name"])
+STRAIGHT = [  # an equilibrium at any speed, as no shear deformation shifts its tension, and no root turns
+    case
+    for case in (*models()["case"], *second_method_cases())
+    if case["setting_angle_deg"] in (0.0, 180.0)
+    and not case.get("root_stiffness")
+    and (case["planes"] == 2 or "shear_stiffness" in case)
+    and not ("shear_stiffness" in case and case["gamma"])
+]
+
+
+@pytest.mark.parametrize("case", STRAIGHT, ids=lambda case: case["name"])
 def test_small_vibration_of_a_straight_beam_is_that_of_linear_theory(case: dict[str, Any]) -> None:
-    """Two planes, twist and rotary inertia; shear only at rest, as the linear theory has Engesser's tension."""
+    """Two planes, twist, rotary inertia, bodies at the tip; shear at rest."""
     linear = two_planes_scene(case)
-    if linear.physics.shear and case["gamma"]:
-        return
     bent = replace(linear, physics=replace(linear.physics, large_deflection=True))
-    if not bent.bends_in_space:
-        bent = replace(bent, mount=replace(bent.mount, bending_angle=bent.mount.bending_angle))
     found, expected = (bd.natural_modes(scene, case["gamma"], modes=4) for scene in (bent, linear))
     np.testing.assert_allclose(found.frequency, expected.frequency, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("gamma", "haringx"),
+    [(12.0, [12.9630, 35.8047]), (4.0, [10.0870, 29.4247])],  # digits printed, by another program
+    ids=["gamma 12", "gamma 4"],
+)
+def test_tension_acts_on_the_sections_where_shear_deforms_them(gamma: float, haringx: list[float]) -> None:
+    """Haringx, not Engesser as in the linear theory, which has 12.9954 and 10.1105."""
+    (case,) = (c for c in models()["case"] if c["gamma"] == gamma and "shear_stiffness" in c)
+    linear = two_planes_scene(case)
+    bent = replace(linear, physics=replace(linear.physics, large_deflection=True))
+    found = bd.natural_modes(bent, gamma, modes=2).frequency
+    np.testing.assert_allclose(2 * np.pi * found, haringx, rtol=0, atol=0.51e-4)
+
+
+SWEPT = bd.Beam.from_stiffness(
+    1.0,
+    1.0,
+    1.0,
+    second_bending_stiffness=4.0,
+    twist=Polynomial([0.0, 0.5]),
+    rotary_inertia=0.002,
+    second_rotary_inertia=0.004,
+    torsion_stiffness=0.7,
+    shear_stiffness=300.0,
+    axial_stiffness=3e4,
+    sweep=bd.Table([0.0, 0.6, 0.6, 1.0], [0.0, 0.1, 0.3, 0.5]),
+    prebend=Polynomial([0.0, 0.2]),
+)
+ALL = bd.Physics(2, shear=True, rotary_inertia=True, stretch=True, torsion=True, large_deflection=True)
+
+
+def test_elements_agree_with_ritz() -> None:
+    scene = bd.Scene(SWEPT, bd.Mount(0.5, 2.0, 0.4), physics=ALL)
+    ritz, fem = (bd.natural_modes(scene, 2.0, 3, d) for d in (bd.Ritz(10), bd.Fem(12)))
+    np.testing.assert_allclose(fem.frequency, ritz.frequency, rtol=2e-5)
+    assert (np.abs(fem.frequency / ritz.frequency - 1) < fem.error + ritz.error).all()
+
+
+def test_a_beam_and_its_mount_may_be_turned_against_each_other() -> None:
+    """The sections by the bending angle, or by the twist; the axis swept in the plane, or bent out of it."""
+    mount, quarter = bd.Mount(0.5, 2.0, 0.4), np.pi / 2
+    upright = replace(SWEPT, twist=None, prebend=None)
+    swapped = replace(
+        upright, sweep=None, prebend=upright.sweep, bending_stiffness=SWEPT.second_bending_stiffness,
+        second_bending_stiffness=SWEPT.bending_stiffness, rotary_inertia=SWEPT.second_rotary_inertia,
+        second_rotary_inertia=SWEPT.rotary_inertia,
+    )  # fmt: skip
+    basis, turned = bd.Ritz(8), replace(mount, bending_angle=0.4 + quarter)
+    first = bd.natural_modes(bd.Scene(upright, mount, physics=ALL), 2.0, 4, basis)
+    second = bd.natural_modes(bd.Scene(swapped, turned, physics=ALL), 2.0, 4, basis)
+    np.testing.assert_allclose(second.frequency, first.frequency, rtol=1e-11)
+    tips = (bd.equilibrium(each.scene, 2.0, discretization=basis).tip for each in (first, second))
+    np.testing.assert_allclose(*tips, rtol=0, atol=1e-11)
+    by_mount, more = replace(SWEPT, sweep=None, prebend=None), to_profile("twist", Polynomial([0.3, 0.5]))
+    by_twist = replace(by_mount, twist=more)
+    first = bd.natural_modes(bd.Scene(by_twist, mount, physics=ALL), 2.0, 4, basis)
+    second = bd.natural_modes(bd.Scene(by_mount, replace(mount, bending_angle=0.7), physics=ALL), 2.0, 4, basis)
+    np.testing.assert_allclose(second.frequency, first.frequency, rtol=1e-11)
+
+
+def test_a_curved_axis_is_that_of_its_angles() -> None:
+    """Unloaded: the position is the integral of the direction that the angles give."""
+    found = bd.equilibrium(bd.Scene(SWEPT, bd.Mount(), physics=ALL), 0.0, discretization=bd.Ritz(4))
+    xi, weights = np.polynomial.legendre.leggauss(20)
+    expected = np.zeros(3)
+    for a, b in ((0.0, 0.6), (0.6, 1.0)):
+        at = (a + b) / 2 + (b - a) / 2 * xi
+        sweep, bend = SWEPT.sweep(at), SWEPT.prebend(at)
+        along = [np.cos(sweep) * np.cos(bend), np.cos(sweep) * np.sin(bend), np.sin(sweep)]
+        expected += (b - a) / 2 * np.array(along) @ weights
+    np.testing.assert_allclose(found.tip, expected, rtol=0, atol=1e-13)
