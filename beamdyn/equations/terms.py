@@ -155,7 +155,7 @@ def terms(scene: Scene) -> Terms:
     """
     start = perf_counter()
     check_scene(scene)
-    straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+    straight = scene.straightened
     sampled, assembled = SampledScene(scene), _terms_by_name(straight)
     modelled = (field for field in FIELDS if field.is_modelled(straight))
     complete = reduce(lambda scene, field: field.complete(scene), modelled, straight)

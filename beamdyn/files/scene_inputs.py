@@ -184,7 +184,9 @@ class _BeamInput(CoreSection):
     ] = None
     prebend: Annotated[
         Along | None,
-        Varying("rad", "beta", "angle by which the axis leaves its direction at the root, in that of bending"),
+        Varying(
+            "rad", "beta", "angle by which the axis leaves its direction at the root, in that of bending"
+        ),
     ] = None
     point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
     point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012

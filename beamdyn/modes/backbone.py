@@ -195,6 +195,7 @@ class FreeVibration:
         assert isinstance(solver, DeflectedSolver)
         found = solver.solve(np.array([speed]), mode)
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
+        assert isinstance(state, DeflectedState)
         v = found.vector[0][:, mode - 1].astype(complex)
         angles, tip = state.elastica.angles, state.elastica.points.tip
         along, across = tip(-state.sin * angles) @ v, tip(state.cos * angles) @ v

@@ -25,7 +25,9 @@ _STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes no
 
 @dataclass(frozen=True)
 class Beam(FieldsOnly, OneLine):
-    """A beam, held at its root, straight unless a sweep or prebend is given.  Build it by `rectangular` or `from_stiffness`.
+    """A beam, held at its root: straight, or curved by its sweep and prebend.
+
+    Build it by `rectangular` or `from_stiffness`.
 
     Which of its properties a model reads is said by `Physics`.
 

@@ -181,6 +181,14 @@ class Scene(OneLine):
         return chosen.large_deflection and bool(others or is_oblique)
 
     @property
+    def straightened(self) -> Scene:
+        """The scene with small deflections of a straight axis: without large deflection, sweep and prebend."""
+        straight = replace(self.physics, large_deflection=False, branch="straight")
+        if self.beam.is_curved:
+            return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)
+        return replace(self, physics=straight)
+
+    @property
     def models_width(self) -> bool:
         """Whether deflections vary across the width: rectangular sections camber or twist."""
         return _models_width(self.beam, self.physics)
@@ -203,14 +211,13 @@ def check_scene(scene: object) -> None:
 
 
 def _check_axis(beam: Beam, physics: Physics) -> None:
-    """Refuse a curved axis in equations of straight beams."""
-    if beam.is_curved and not (physics.large_deflection or isinstance(physics, AutomaticPhysics)):
+    """Refuse a curved axis in equations of straight beams, from which a choice of the physics starts, too."""
+    if beam.is_curved and not physics.large_deflection:
         name = "prebend" if beam.sweep is None else "sweep"
         given = getattr(beam, name)
         bound = "without physics.large_deflection the axis of the beam is straight"
         remedy = Words(Setting("physics", large_deflection=True), " includes it")
         raise InvalidValue(name, float(given(np.ones(1))[0]), bound, remedy, "rad", where=" at the tip")
-
 
 
 def _check_large_deflection(scene: Scene) -> None:
@@ -368,7 +375,11 @@ def _models_width(beam: Beam, physics: Physics) -> bool:
 def _with_constants(beam: Beam, physics: Physics) -> Beam:
     """The beam as large deflection with torsion models it: a rectangle by its torsional stiffness alone."""
     section = beam.section
-    if section is None or section.poissons_ratio is None or not (physics.large_deflection and physics.torsion):
+    if (
+        section is None
+        or section.poissons_ratio is None
+        or not (physics.large_deflection and physics.torsion)
+    ):
         return beam
     return replace(beam, section=None, torsion_stiffness=section.torsion_stiffness)
 

@@ -81,8 +81,7 @@ def choose_for_basis(
     speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
     refuse_bending_in_space(scene)
     if scene.physics.large_deflection:  # the modes are those of the straight beam
-        straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
-        return choose_for_basis(straight, discretization, basis, tolerance).of(scene)
+        return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
         return choose_model(scene, discretization, speeds, modes, target)

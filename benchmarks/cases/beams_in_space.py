@@ -44,7 +44,10 @@ def uniform(
     unknown = np.concatenate([_of_strain(name, of_each) for name in strains])
     stiffness = elastic_stiffness(stations, unknown, np.repeat(law[..., None], len(xi), axis=2))
     weights = np.append(quadrature.weights * length, 0.0)
-    offset, tensor = np.zeros(3) if centre is None else centre, np.zeros((3, 3)) if inertia is None else inertia
+    offset, tensor = (
+        np.zeros(3) if centre is None else centre,
+        np.zeros((3, 3)) if inertia is None else inertia,
+    )
     masses = Masses(mass * weights, np.outer(offset, np.ones_like(weights)), tensor[..., None] * weights)
     given = np.outer(initial, np.ones_like(xi))
     straight = np.tile(quaternion_about(0, 0.0), (len(ends) - 1, 1))
@@ -79,7 +82,7 @@ def bend(beam: BeamInSpace, load: TipLoad, steps: int = 4) -> BentBeam:
 
 
 def bend_of_45_deg(torsion: float, strains: Sequence[str] = STRAINS) -> np.ndarray:
-    """Displacement of the tip of Bathe and Bolourchi's arc, along the root, to its centre, and across [in]."""
+    """Displacement of the tip of Bathe and Bolourchi's arc [in], along the root, to the centre, across."""
     modulus, radius, second = 1e7, 100.0, 1 / 12
     law = modulus * np.diag([1.0, 0.5, 0.5, torsion / 2, second, second])
     arc = uniform(radius * np.pi / 4, law, strains, functions=8, initial=(0, 0, 0, 0, 0, 1 / radius))

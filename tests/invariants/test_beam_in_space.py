@@ -141,7 +141,7 @@ def test_rotations_stay_in_their_group() -> None:
 
 
 def test_turned_frame_turns_the_answer() -> None:
-    """Equilibria under a dead load and under one that follows, of beams and loads that are turned at random."""
+    """Equilibria under a dead load and under one that follows, beam and load being turned at random."""
     law = np.diag([50.0, 20.0, 30.0, 1.0, 2.0, 3.0])
     for k in range(3):
         y, Q = random_rotation(np.random.default_rng(k))
@@ -194,6 +194,38 @@ def test_small_vibration_of_a_straight_beam_is_that_of_linear_theory(case: dict[
     bent = replace(linear, physics=replace(linear.physics, large_deflection=True))
     found, expected = (bd.natural_modes(scene, case["gamma"], modes=4) for scene in (bent, linear))
     np.testing.assert_allclose(found.frequency, expected.frequency, rtol=1e-9)
+
+
+@pytest.mark.parametrize("precone", [0.0, 0.3])
+def test_about_the_straight_beam_every_matrix_and_load_is_that_of_linear_theory(precone: float) -> None:
+    """Two planes, twist, rotary inertia, bodies at the tip and along the beam, any motion of the root."""
+    beam = bd.Beam.from_stiffness(
+        1.1,
+        Polynomial([1.2, -0.3]),
+        Polynomial([1.0, -0.2]),
+        second_bending_stiffness=4.0,
+        twist=Polynomial([0.2, 0.5]),
+        rotary_inertia=0.02,
+        second_rotary_inertia=0.04,
+        tip=bd.TipMass(0.4, 0.1, 0.02, 0.03, 0.015),
+        point_masses=[bd.PointMass(0.4, 0.3)],
+    )
+    physics = bd.Physics(2, rotary_inertia=True, large_deflection=True)
+    scene = bd.Scene(beam, bd.Mount(0.7, np.pi, 0.4, precone=precone), damping_ratio=0.1, physics=physics)
+    model = Model(scene, bd.Ritz(6))
+    linear, exact = model.equations, assemble_beam_in_space(scene, model.discretization, model.equations)
+    found, n = exact.about_straight, linear.size
+    for own, expected in zip(
+        (*found.matrices, found.vectors), (*linear.matrices, linear.vectors), strict=True
+    ):
+        for quantity in own.keys() | expected.keys():
+            nothing = np.zeros((n, n) if own is not found.vectors else n)
+            values = own.get(quantity, nothing), expected.get(quantity, nothing)
+            np.testing.assert_allclose(*values, rtol=0, atol=1e-13)
+    for direction in (0, 1):
+        np.testing.assert_allclose(found.P(direction), linear.P(direction), rtol=0, atol=1e-13)
+        np.testing.assert_allclose(found.Q(direction), linear.Q(direction), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(found.tips, linear.tips, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -252,7 +284,9 @@ def test_a_beam_and_its_mount_may_be_turned_against_each_other() -> None:
     by_mount, more = replace(SWEPT, sweep=None, prebend=None), to_profile("twist", Polynomial([0.3, 0.5]))
     by_twist = replace(by_mount, twist=more)
     first = bd.natural_modes(bd.Scene(by_twist, mount, physics=ALL), 2.0, 4, basis)
-    second = bd.natural_modes(bd.Scene(by_mount, replace(mount, bending_angle=0.7), physics=ALL), 2.0, 4, basis)
+    second = bd.natural_modes(
+        bd.Scene(by_mount, replace(mount, bending_angle=0.7), physics=ALL), 2.0, 4, basis
+    )
     np.testing.assert_allclose(second.frequency, first.frequency, rtol=1e-11)
 
 
@@ -263,6 +297,7 @@ def test_a_curved_axis_is_that_of_its_angles() -> None:
     expected = np.zeros(3)
     for a, b in ((0.0, 0.6), (0.6, 1.0)):
         at = (a + b) / 2 + (b - a) / 2 * xi
+        assert SWEPT.sweep is not None and SWEPT.prebend is not None
         sweep, bend = SWEPT.sweep(at), SWEPT.prebend(at)
         along = [np.cos(sweep) * np.cos(bend), np.cos(sweep) * np.sin(bend), np.sin(sweep)]
         expected += (b - a) / 2 * np.array(along) @ weights

@@ -26,7 +26,9 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
     a = at_points(sweep)
     swept, bent = (at_points(angle.derivative()) / beam.length for angle in (sweep, prebend))
     curvature = np.stack([bent * np.sin(a), -swept, bent * np.cos(a)])
-    begin, end = (_axes(*angles) for angles in zip(*(_at_ends(p, cells.ends) for p in (sweep, prebend)), strict=True))
+    begin, end = (
+        _axes(*angles) for angles in zip(*(_at_ends(p, cells.ends) for p in (sweep, prebend)), strict=True)
+    )
     before = np.concatenate([quaternion_about(0, 0.0)[None], end[:-1]]) * [1.0, -1.0, -1.0, -1.0]
     kinks = [product_from_left(y) @ z for y, z in zip(before, begin, strict=True)]
     return curvature, np.array(kinks)

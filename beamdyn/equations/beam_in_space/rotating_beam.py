@@ -33,7 +33,9 @@ from beamdyn.scene.scene import Scene
 _AXES = np.eye(3)
 _KEPT = 4  # states of the beam that are kept
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
-_ROOT: dict[Quantity, np.ndarray] = dict(zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True))
+_ROOT: dict[Quantity, np.ndarray] = dict(
+    zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True)
+)
 
 
 class _Strain(NamedTuple):
@@ -48,7 +50,10 @@ class _Strain(NamedTuple):
 def _strains_of_fields(beam: Beam) -> dict[str, _Strain]:
     """The strain of each field; positive deflection across turns sections backwards."""
     warps = beam.warping_stiffness is not None
-    bending, shear = CLAMPED._replace(stiffness="bending_stiffness"), FIXED._replace(stiffness="shear_stiffness")
+    bending, shear = (
+        CLAMPED._replace(stiffness="bending_stiffness"),
+        FIXED._replace(stiffness="shear_stiffness"),
+    )
     torsion = (
         CLAMPED._replace(stiffness="warping_stiffness")
         if warps
@@ -109,7 +114,9 @@ def _masses(scene: Scene, stations: Stations) -> Masses:
     centre = np.zeros((3, stations.sections))
     centre[0, -1] = tip.offset
     mass = np.concatenate([weights * beam.mass_per_length(xi), [tip.mass], beam.lumps[1]])
-    return Masses(mass, centre, turn_tensors(_turned_sections(beam, xi), principal[:, None] * _AXES[..., None]))
+    return Masses(
+        mass, centre, turn_tensors(_turned_sections(beam, xi), principal[:, None] * _AXES[..., None])
+    )
 
 
 def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -127,7 +127,7 @@ class StationForces:
     def total(cls, each: Iterable[StationForces]) -> StationForces:
         """The sum of some forces."""
         several = [*each]
-        return cls(sum(f.force for f in several), sum(f.tangent for f in several))
+        return cls(*(np.sum([getattr(f, name) for f in several], axis=0) for name in ("force", "tangent")))
 
     def scaled(self, factor: float) -> StationForces:
         """The forces times a factor."""

@@ -169,7 +169,9 @@ def follow_to(
         pending = [
             k for k in np.argsort(towards * squares, kind="stable") if towards * (squares[k] - start**2) > 0
         ]
-        if pending and (load.bends or q.any()):  # otherwise the straight beam is in equilibrium at every speed
+        if pending and (
+            load.bends or q.any()
+        ):  # otherwise the straight beam is in equilibrium at every speed
             found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
     return found
 

@@ -346,7 +346,11 @@ def choose_by(
         try:
             bent = start.add(_BENDING, judge)  # with the effects that it is combined with
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends_in_space})
-            best = min(best, bent, key=lambda candidate: candidate.model_error)
+            refused = [bent.reasons[name] for name in best.included if name in bent.reasons]
+            if bent.model_error < best.model_error:
+                best = bent
+            elif refused:  # what is in the other set keeps it out
+                best = best.without(_BENDING, refused[0])
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
