@@ -182,7 +182,7 @@ class Scene(OneLine):
 
     @property
     def straightened(self) -> Scene:
-        """The scene with small deflections of a straight axis: without large deflection, sweep and prebend."""
+        """The scene with small deflections of a straight axis: no large deflection, sweep or prebend."""
         straight = replace(self.physics, large_deflection=False, branch="straight")
         if self.beam.is_curved:
             return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)

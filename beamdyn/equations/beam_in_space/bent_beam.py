@@ -135,7 +135,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _changes(self) -> np.ndarray:
-        """Stretch, shears and curvatures per coordinate (n, 6, N), by the strains and the helices of fibres."""
+        """Stretch, shears and curvatures per coordinate (n, 6, N), by strains and helices of fibres."""
         beam = self.beam
         if not beam.shortens:
             return beam.functions

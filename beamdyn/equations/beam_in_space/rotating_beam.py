@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
+from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.rotations import turn_tensors
 from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
 from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
@@ -209,7 +209,7 @@ class RotatingBeam(FieldsOnly):
         return np.reshape(tips, (*q.shape[:-1], 3))
 
     def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Curvature (..., k) [1/m] in the direction of bending, at coordinates q (..., n) and x/L = xi (k,)."""
+        """Curvature (..., k) [1/m] in the direction of bending at q (..., n) and x/L = xi (k,)."""
         own = self.beam.functions[:, STRAINS.index("curvature")]
         return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
 

@@ -20,7 +20,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def skew(a: np.ndarray) -> np.ndarray:
-    """Matrices (3, 3, ...) by which vectors are multiplied from the left with a (3, ...): skew(a) b = a x b."""
+    """Matrices (3, 3, ...) of vector products with a (3, ...) from the left: skew(a) b = a x b."""
     matrix = np.zeros((3, *a.shape))
     matrix[0, 1], matrix[0, 2], matrix[1, 2] = -a[2], a[1], -a[0]
     return matrix - matrix.swapaxes(0, 1)

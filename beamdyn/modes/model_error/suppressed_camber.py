@@ -48,7 +48,7 @@ def warn_of_suppressed_camber(
 ) -> Iterator[Statement]:
     """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
 
-    `bending` gives the curvature (k, m) [1/m] in the direction of bending at k speeds or times and at x/L (m,);
+    `bending` gives the curvature (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
     `say_when` says which time or speed it is.
     """
     section = scene.beam.section
