@@ -60,13 +60,13 @@ class Beam(FieldsOnly, OneLine):
     section : rectangle, optional
         The rectangular section that the properties follow from, by `rectangular`; None where they do not.
         Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
+    torsion_stiffness, warping_stiffness : Profile, optional
+        Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
+        rectangular section follow from its sides.
     sweep, prebend : Profile, optional
         Angles by which the axis of the unloaded beam leaves its direction at the root [rad] over x/L, x along
         the axis: it points along (cos a cos b, cos a sin b, sin a), in the axes along the beam at its root,
         in the direction of bending and across, with the sweep a and the prebend b.
-    torsion_stiffness, warping_stiffness : Profile, optional
-        Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
-        rectangular section follow from its sides.
 
     References
     ----------

@@ -178,6 +178,16 @@ class BentBeam(FieldsOnly):
         """Masses at their places in space."""
         return self.beam.masses.turned(self.rotations, self.positions)
 
+    def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rates (3, N), in space, of stretch and shears and of the curvatures, by those of the coordinates."""
+        strains = np.tensordot(rates, self._changes, 1)
+        return turn(self._within, strains[:3]), turn(self._within, strains[3:])
+
+    def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
+        """Stretch (3, N), in space, that accelerates at constant rates as twist shortens the beam."""
+        twist_rate = rates @ self.beam.functions[:, 3]
+        return -self.beam.fibres * twist_rate**2 * self._within[:, 0]
+
     # Motions by the coordinates -----------------------------------------------------------------------
 
     @cached_property
