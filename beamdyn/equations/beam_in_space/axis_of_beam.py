@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.equations.beam_in_space.rotations import product_from_left, quaternion_about
+from beamdyn.equations.beam_in_space.rotations import product, quaternion_about
 from beamdyn.equations.quadrature import ArcQuadrature, Sampler
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import ONE, Profile
@@ -30,8 +30,7 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
         _axes(*angles) for angles in zip(*(_at_ends(p, cells.ends) for p in (sweep, prebend)), strict=True)
     )
     before = np.concatenate([quaternion_about(0, 0.0)[None], end[:-1]]) * [1.0, -1.0, -1.0, -1.0]
-    kinks = [product_from_left(y) @ z for y, z in zip(before, begin, strict=True)]
-    return curvature, np.array(kinks)
+    return curvature, product(before, begin)
 
 
 def _at_ends(angle: Profile, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -41,5 +40,4 @@ def _at_ends(angle: Profile, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _axes(sweep: np.ndarray, prebend: np.ndarray) -> np.ndarray:
     """Unit quaternions (c, 4) of the axes of the beam."""
-    first, then = quaternion_about(2, prebend), quaternion_about(1, -sweep)
-    return np.array([product_from_left(y) @ z for y, z in zip(first, then, strict=True)])
+    return product(quaternion_about(2, prebend), quaternion_about(1, -sweep))

@@ -115,13 +115,13 @@ def elastic_stiffness(stations: Stations, functions: np.ndarray, law: np.ndarray
 
 @dataclass(frozen=True)
 class BentBeam(FieldsOnly):
-    """A beam at given coordinates.
+    """A beam at given coordinates; what is no matrix of them also at several sets (..., n).
 
     Parameters
     ----------
     beam : BeamInSpace
         The beam.
-    q : ndarray, shape (n,)
+    q : ndarray, shape (..., n)
         Coordinates.
     """
 
@@ -130,24 +130,19 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def strains(self) -> np.ndarray:
-        """Strains (6, N)."""
+        """Strains (..., 6, N)."""
         return self.beam.initial + np.tensordot(self.q, self.beam.functions, 1)
 
-    @cached_property
-    def _changes(self) -> np.ndarray:
-        """Stretch, shears and curvatures per coordinate (n, 6, N), by strains and helices of fibres."""
-        beam = self.beam
-        if not beam.shortens:
-            return beam.functions
-        changes = beam.functions.copy()
-        changes[:, 0] -= beam.fibres * (self.strains[3] + beam.pretwist) * changes[:, 3]
-        return changes
+    @property
+    def _shortening(self) -> np.ndarray:
+        """Stretch per twist rate (..., N), by the helices of the fibres."""
+        return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Axes of the sections, in columns (3, 3, N + 1)."""
+        """Axes of the sections, in columns (..., 3, 3, N + 1)."""
         stations = self.beam.stations
-        curvature = stations.length * self.strains[3:]
+        curvature = stations.length * self.strains[..., 3:, :]
         return integrate_curvature(stations.quadrature.cells, curvature, self.beam.kinks)
 
     @cached_property
@@ -157,21 +152,21 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def tangents(self) -> np.ndarray:
-        """Derivative r' of the position (3, N)."""
-        extended, beam = self.strains[:3].copy(), self.beam
-        twist = self.strains[3] + beam.initial[3] + 2 * beam.pretwist
-        extended[0] += 1 - beam.fibres / 2 * twist * (self.strains[3] - beam.initial[3])
+        """Derivative r' of the position (..., 3, N)."""
+        extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
+        both = twist + beam.initial[3] + 2 * beam.pretwist
+        extended[..., 0, :] += 1 - beam.fibres / 2 * both * (twist - beam.initial[3])
         return turn(self._within, extended)
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Positions of the axis at the stations (3, N + 1 + k) [m]."""
+        """Positions of the axis at the stations (..., 3, N + 1 + k) [m]."""
         return self.beam.stations.to_all(self.tangents)
 
     @property
     def tip(self) -> np.ndarray:
-        """Position (3,) of the tip [m]."""
-        return self.positions[:, self.beam.stations.sections - 1]
+        """Position (..., 3) of the tip [m]."""
+        return self.positions[..., self.beam.stations.sections - 1]
 
     @cached_property
     def masses(self) -> MassesInSpace:
@@ -179,14 +174,15 @@ class BentBeam(FieldsOnly):
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (3, N), in space, of stretch and shears and of the curvatures, by those of the coordinates."""
-        strains = np.tensordot(rates, self._changes, 1)
-        return turn(self._within, strains[:3]), turn(self._within, strains[3:])
+        """Rates (..., 3, N), in space, of stretch and shears and of the curvatures, by those of the coordinates."""
+        strains = np.tensordot(rates, self.beam.functions, 1)
+        strains[..., 0, :] += self._shortening * strains[..., 3, :]
+        return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Stretch (3, N), in space, that accelerates at constant rates as twist shortens the beam."""
+        """Stretch (..., 3, N), in space, that accelerates at constant rates as twist shortens the beam."""
         twist_rate = rates @ self.beam.functions[:, 3]
-        return -self.beam.fibres * twist_rate**2 * self._within[:, 0]
+        return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
     # Motions by the coordinates -----------------------------------------------------------------------
 
@@ -198,7 +194,9 @@ class BentBeam(FieldsOnly):
     @cached_property
     def _straining(self) -> np.ndarray:
         """Shears and stretch R dg (n, 3, N) by the coordinates."""
-        return turn(self._within, self._changes[:, :3])
+        strains = self.beam.functions[:, :3].copy()
+        strains[:, 0] += self._shortening * self.beam.functions[:, 3]
+        return turn(self._within, strains)
 
     @cached_property
     def _turned(self) -> np.ndarray:
@@ -223,17 +221,18 @@ class BentBeam(FieldsOnly):
     # Work of forces on the stations -------------------------------------------------------------------
 
     def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces n and moments m (3, N) by what acts beyond, times the weights of the rule."""
+        """Forces n and moments m (..., 3, N) by what acts beyond, times the weights of the rule."""
         stations = self.beam.stations
-        n = stations.from_all(force[:3])
-        moments = force[3:, : stations.sections].copy()
-        moments[:, :-1] += cross(self.tangents, n)
+        n = stations.from_all(force[..., :3, :])
+        moments = force[..., 3:, : stations.sections].copy()
+        moments[..., :-1] += cross(self.tangents, n)
         return n, stations.from_sections(moments)
 
     def work(self, force: np.ndarray) -> np.ndarray:
-        """Virtual work (n,) of forces (6, N + 1 + k) on the stations, per coordinate."""
-        stress = np.concatenate([turn_back(self._within, each) for each in self.resultants(force)])
-        return self._changes.reshape(self.beam.size, -1) @ stress.ravel()
+        """Virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
+        stress = np.concatenate([turn_back(self._within, each) for each in self.resultants(force)], axis=-2)
+        stress[..., 3, :] += self._shortening * stress[..., 0, :]
+        return stress.reshape(*stress.shape[:-2], -1) @ self.beam.functions.reshape(self.beam.size, -1).T
 
     def work_change(self, forces: StationForces) -> np.ndarray:
         """Derivative (n, n) of the virtual work by the coordinates."""

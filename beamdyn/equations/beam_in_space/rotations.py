@@ -1,6 +1,6 @@
 """Rotations along a curve by its curvature, and products of vectors given at many points.
 
-Vectors and matrices at points have the components first and the points last: (..., 3, N) and (3, 3, N).
+Vectors and matrices at points have the points last: (..., 3, N) and (..., 3, 3, N).
 """
 
 from __future__ import annotations
@@ -9,6 +9,9 @@ import numpy as np
 
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.equations.quadrature import Cells, integrals_between_points
+
+
+_UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -27,18 +30,19 @@ def skew(a: np.ndarray) -> np.ndarray:
 
 
 def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Multiply matrices (3, 3, N) with vectors (..., 3, N)."""
-    return np.einsum("abj,...bj->...aj", R, a)
+    """Multiply matrices (..., 3, 3, N) with vectors (..., 3, N), which are broadcast."""
+    return np.einsum("...abj,...bj->...aj", R, a)
 
 
 def turn_back(R: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Multiply the transposes of matrices (3, 3, N) with vectors (..., 3, N)."""
-    return np.einsum("baj,...bj->...aj", R, a)
+    """Multiply the transposes of matrices (..., 3, 3, N) with vectors (..., 3, N)."""
+    return np.einsum("...baj,...bj->...aj", R, a)
 
 
 def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
-    """Turn tensors (3, 3, N) by rotations: R tensor R^T."""
-    return np.einsum("abj,bcj,dcj->adj", R, tensors, R, optimize=["einsum_path", (0, 1), (0, 1)])
+    """Turn tensors (3, 3, N) by rotations (..., 3, 3, N): R tensor R^T."""
+    half = np.einsum("...abj,bcj->...acj", R, tensors)
+    return np.einsum("...acj,...dcj->...adj", half, R)
 
 
 def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
@@ -52,14 +56,14 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     ----------
     cells : Cells
         Cells and their Gauss points.
-    curvature : ndarray, shape (3, N)
+    curvature : ndarray, shape (..., 3, N)
         Twist rate and curvatures in the turned axes, per x/L, at the points.
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each of the c cells begins.
 
     Returns
     -------
-    ndarray, shape (3, 3, N + 1)
+    ndarray, shape (..., 3, 3, N + 1)
         Components of the turned axes, in columns.
 
     References
@@ -68,22 +72,23 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     Numerical Analysis 7, 1-13.
     """
     p, halves = cells.points, np.diff(cells.ends) / 2
-    count = len(halves)
-    rates = product_from_right(curvature).transpose(2, 0, 1).reshape(count, p, 4, 4) / 2
-    rates *= halves[:, None, None, None]
+    count, shape = len(halves), curvature.shape[:-2]
+    of_cells = curvature.reshape(-1, 3, count, p) * halves[:, None]
+    rates = _product_from_right(of_cells.transpose(1, 0, 2, 3)).transpose(2, 3, 4, 0, 1) / 2
     A = integrals_between_points(p)
-    matrix = -A[None, :, None, :, None] * rates[:, None].transpose(0, 1, 3, 2, 4)
-    matrix = matrix.reshape(count, 4 * p, 4 * p)
-    matrix[:, np.arange(4 * p), np.arange(4 * p)] += 1.0
-    unit = np.tile([1.0, 0.0, 0.0, 0.0], p)
-    within = np.linalg.solve(matrix, np.broadcast_to(unit[:, None], (count, 4 * p, 1))).reshape(count, p, 4)
-    across = np.eye(4)[0] + np.einsum("j,cjab,cjb->ca", gauss_rule(p)[1], rates, within)
-    start, turned = np.eye(4)[0], np.empty((count, p, 4))
+    matrix = -A[:, None, :, None] * rates[:, :, None].swapaxes(3, 4)
+    matrix = matrix.reshape(-1, count, 4 * p, 4 * p)
+    matrix[..., np.arange(4 * p), np.arange(4 * p)] += 1.0
+    unit = np.broadcast_to(np.tile(_UNIT, p)[:, None], (*matrix.shape[:3], 1))
+    within = np.linalg.solve(matrix, unit).reshape(-1, count, p, 4)
+    across = _UNIT + np.einsum("j,scjab,scjb->sca", gauss_rule(p)[1], rates, within)
+    start, turned = np.broadcast_to(_UNIT, (len(rates), 4)), np.empty_like(within)
     for cell in range(count):
-        start = product_from_left(start) @ kinks[cell]
-        turned[cell] = within[cell] @ product_from_left(start).T
-        start = product_from_left(start) @ across[cell]
-    return _matrices(np.concatenate([turned.reshape(-1, 4), start[None]]).T)
+        start = product(start, kinks[cell])
+        turned[:, cell] = product(start[:, None], within[:, cell])
+        start = product(start, across[:, cell])
+    every = np.concatenate([turned.reshape(len(rates), -1, 4), start[:, None]], axis=1)
+    return _matrices(every).reshape(*shape, 3, 3, -1)
 
 
 def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
@@ -93,23 +98,22 @@ def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
     return turned
 
 
-def product_from_right(a: np.ndarray) -> np.ndarray:
-    """Matrices (4, 4, N) that multiply quaternions from the right with (0, a), a of shape (3, N)."""
+def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Products of quaternions (..., 4), which are broadcast."""
+    (w, v), (a, b) = (np.split(each, [1], axis=-1) for each in (y, z))
+    real = w * a - (v * b).sum(axis=-1, keepdims=True)
+    return np.concatenate([real, w * b + a * v + np.cross(v, b)], axis=-1)
+
+
+def _product_from_right(a: np.ndarray) -> np.ndarray:
+    """Matrices (4, 4, ...) that multiply quaternions from the right with (0, a), a of shape (3, ...)."""
     matrix = np.zeros((4, 4, *a.shape[1:]))
     matrix[1:, 0], matrix[0, 1:], matrix[1:, 1:] = a, -a, -skew(a)
     return matrix
 
 
-def product_from_left(y: np.ndarray) -> np.ndarray:
-    """Matrix (4, 4) that multiplies quaternions from the left with y (4,)."""
-    w, v = y[0], y[1:]
-    matrix = w * np.eye(4)
-    matrix[1:, 0], matrix[0, 1:] = v, -v
-    matrix[1:, 1:] += skew(v)
-    return matrix
-
-
 def _matrices(y: np.ndarray) -> np.ndarray:
-    """Rotation matrices (3, 3, N) of quaternions (4, N), which are scaled to the length 1."""
-    w, v = np.split(y / np.sqrt((y * y).sum(axis=0)), [1])
-    return (2 * w**2 - 1) * np.eye(3)[..., None] + 2 * (v[:, None] * v + w * skew(v))
+    """Rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are scaled to the length 1."""
+    w, v = np.split(np.moveaxis(y / np.sqrt((y * y).sum(axis=-1, keepdims=True)), -1, 0), [1])
+    matrices = (2 * w**2 - 1) * np.eye(3)[..., None, None] + 2 * (v[:, None] * v + w * skew(v))
+    return np.moveaxis(matrices, 2, 0)

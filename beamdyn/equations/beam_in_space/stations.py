@@ -99,12 +99,12 @@ class Masses:
         return bool(self.inertia.any())
 
     def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
-        """The masses at positions (3, N + 1 + k) of the axis, turned by rotations R (3, 3, N + 1)."""
+        """The masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
         levers = np.zeros_like(positions)
-        levers[:, : self.centre.shape[1]] = turn(R, self.centre)
-        inertia = np.zeros((3, 3, len(self.mass)))
+        levers[..., : self.centre.shape[1]] = turn(R, self.centre)
+        inertia = np.zeros((*R.shape[:-1], len(self.mass)))
         if self.turns:
-            inertia[..., : R.shape[2]] = turn_tensors(R, self.inertia)
+            inertia[..., : R.shape[-1]] = turn_tensors(R, self.inertia)
         return MassesInSpace(self.mass, positions + levers, levers, inertia)
 
 
