@@ -29,13 +29,13 @@ _AT_REST = np.zeros(3)
 
 @dataclass(frozen=True)
 class Carrier:
-    """Motion of the carrier, in axes that turn with it.
+    """Motion of the carrier, in axes that turn with it, at one time or several.
 
     Parameters
     ----------
-    turning, turning_rate : ndarray, shape (3,)
+    turning, turning_rate : ndarray, shape (..., 3)
         Angular velocity [rad/s] and acceleration [rad/s2].
-    root_acceleration : ndarray, shape (3,)
+    root_acceleration : ndarray, shape (..., 3)
         Acceleration of the root, less gravity [m/s2].
     """
 
@@ -46,13 +46,13 @@ class Carrier:
 
 @dataclass(frozen=True)
 class MovingBeam(FieldsOnly):
-    """A beam at given coordinates and rates, on a carrier.
+    """A beam at given coordinates and rates on a carrier, at one time or several.
 
     Parameters
     ----------
     bent : BentBeam
         The beam at the coordinates.
-    rates : ndarray, shape (n,)
+    rates : ndarray, shape (..., n)
         Rates of the coordinates.
     carrier : Carrier
         Motion of the carrier.
@@ -63,62 +63,63 @@ class MovingBeam(FieldsOnly):
     carrier: Carrier
 
     @cached_property
-    def _velocity(self) -> np.ndarray:
-        """Velocities and turning rates of the stations (6, N + 1 + k) against the carrier."""
-        return np.tensordot(self.rates, self.bent.motions, 1)
+    def _strain_rates(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rates (..., 3, N), in space, of stretch and shears, and of the curvatures."""
+        return self.bent.strain_rates(self.rates)
 
     @cached_property
-    def _convective(self) -> np.ndarray:
-        """Accelerations of the stations (6, N + 1 + k) against the carrier while the rates are constant."""
-        bent, stations = self.bent, self.bent.beam.stations
-        turning, w = self._velocity[3:, : stations.sections - 1], np.zeros((6, stations.count))
-        straining, bending = bent.strain_rates(self.rates)
-        w[3:, : stations.sections] = stations.to_sections(cross(turning, bending))
-        rate = cross(turning, bent.tangents) + straining
-        moving = cross(w[3:, : stations.sections - 1], bent.tangents) + cross(turning, rate + straining)
-        w[:3] = stations.to_all(moving + bent.shortening_rate(self.rates))
-        return w
+    def _turning(self) -> np.ndarray:
+        """Turning rates (..., 3, N + 1) of the sections against the carrier."""
+        return self.bent.beam.stations.to_sections(self._strain_rates[1])
+
+    @cached_property
+    def _tangent_rate(self) -> np.ndarray:
+        """Rate (..., 3, N) of the derivative r' of the position."""
+        return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """Velocities (..., 3, N + 1 + k) of the axis against the carrier."""
+        return self.bent.beam.stations.to_all(self._tangent_rate)
 
     def forces(self, accelerations: np.ndarray) -> np.ndarray:
-        """Inertial forces on the stations (6, N + 1 + k), for accelerations (n,) of the coordinates."""
-        masses, carrier = self.bent.masses, self.carrier
-        W, W_rate, root = (each[:, None] for each in vars(carrier).values())
-        velocity, turning = np.split(self._velocity, [3])
-        moving, turning_rate = np.split(
-            self._convective + np.tensordot(accelerations, self.bent.motions, 1), [3]
-        )
+        """Inertial forces on the stations (..., 6, N + 1 + k), for accelerations (..., n)."""
+        bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
+        straining, bending = bent.strain_rates(accelerations)
+        w, strained = self._turning[..., :-1], self._strain_rates
+        turning_rate = stations.to_sections(bending + cross(w, strained[1]))
+        tangent_rate = cross(turning_rate[..., :-1], bent.tangents) + straining
+        tangent_rate += cross(w, self._tangent_rate + strained[0]) + bent.shortening_rate(self.rates)
+        turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))
+        W, W_rate, root = (each[..., None] for each in vars(self.carrier).values())
         of_lever = cross(turning, masses.lever)
-        centre_velocity = velocity + of_lever
-        relative = moving + cross(turning_rate, masses.lever) + cross(turning, of_lever)
-        carried = cross(W_rate, masses.centre) + cross(W, cross(W, masses.centre) + 2 * centre_velocity)
-        F = masses.mass * (relative + carried + root)
+        relative = stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
+        carried = cross(W_rate, masses.centre) + root
+        carried += cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
+        F = masses.mass * (relative + carried)
         spin, spin_rate = turning + W, turning_rate + W_rate + cross(W, turning)
         M = turn(masses.inertia, spin_rate) + cross(spin, turn(masses.inertia, spin))
-        return np.concatenate([F, M + cross(masses.lever, F)])
+        return np.concatenate([F, M + cross(masses.lever, F)], axis=-2)
 
     def residual(self, accelerations: np.ndarray) -> np.ndarray:
-        """Sum of elastic, damping and inertial forces (n,): 0 in motion."""
+        """Sum of elastic, damping and inertial forces (..., n): 0 in motion."""
         beam = self.bent.beam
-        elastic = beam.stiffness @ self.bent.q + beam.damping @ self.rates
+        elastic = self.bent.q @ beam.stiffness + self.rates @ beam.damping
         return elastic + self.bent.work(self.forces(accelerations))
 
-    @cached_property
-    def accelerations(self) -> np.ndarray:
-        """Accelerations (n,) of the coordinates in motion."""
-        return np.linalg.solve(self.bent.mass, -self.residual(np.zeros_like(self.rates)))
-
     @property
-    def energy(self) -> float:
-        """Energy integral [J] of a carrier that turns steadily, constant in free motion without damping.
+    def energy(self) -> np.ndarray:
+        """Energy integral (...) [J] of a carrier that turns steadily: constant in undamped free motion.
 
         It is the kinetic energy against the carrier, the elastic one and the potential of the centrifugal
         forces and of the acceleration of the root.
         """
-        masses, turning = self.bent.masses, self.carrier.turning
-        carried = cross(turning[:, None], masses.centre)
-        centrifugal = (carried**2).sum(axis=0) @ masses.mass
-        centrifugal += np.einsum("a,abj,b->", turning, masses.inertia, turning)
-        kinetic = self.rates @ self.bent.mass @ self.rates
-        elastic = self.bent.q @ self.bent.beam.stiffness @ self.bent.q
-        by_root = self.carrier.root_acceleration @ (masses.centre @ masses.mass)
-        return float((kinetic + elastic - centrifugal) / 2 + by_root)
+        bent, masses, W = self.bent, self.bent.masses, self.carrier.turning[..., None]
+        turning = bent.beam.stations.of_all(self._turning)
+        velocity, carried = self.velocity + cross(turning, masses.lever), cross(W, masses.centre)
+        kinetic = (velocity**2 - carried**2).sum(axis=-2) @ masses.mass
+        each = (turning * turn(masses.inertia, turning)).sum(axis=-2)
+        kinetic += (each - (W * turn(masses.inertia, W)).sum(axis=-2)).sum(axis=-1)
+        elastic = ((bent.q @ bent.beam.stiffness) * bent.q).sum(axis=-1)
+        by_root = (self.carrier.root_acceleration[..., None] * masses.centre).sum(axis=-2) @ masses.mass
+        return (kinetic + elastic) / 2 + by_root

@@ -63,6 +63,11 @@ class Stations(FieldsOnly):
             return to_sections
         return np.concatenate([to_sections, self.length * values @ self._to_lumps.T], axis=-1)
 
+    def of_all(self, of_sections: np.ndarray) -> np.ndarray:
+        """Values (..., N + 1 + k) of all stations from those of sections (..., N + 1); others are 0."""
+        none = np.zeros((*of_sections.shape[:-1], len(self.lumps)))
+        return np.concatenate([of_sections, none], axis=-1) if self.lumps.size else of_sections
+
     def from_sections(self, forces: np.ndarray) -> np.ndarray:
         """Apply the transpose of `to_sections` to forces (..., N + 1): (..., N), sums of what acts beyond."""
         return self.length * self.quadrature.transposed(forces)
