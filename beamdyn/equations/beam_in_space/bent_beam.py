@@ -27,7 +27,7 @@ equations); Simo and Vu-Quoc (1986), Computer Methods in Applied Mechanics and E
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -102,8 +102,17 @@ class BeamInSpace(FieldsOnly):
         """Whether twist shortens the beam."""
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
+    def reduced(self, basis: np.ndarray) -> BeamInSpace:
+        """The beam in other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
+        return replace(
+            self,
+            functions=np.tensordot(basis.T, self.functions, 1),
+            stiffness=basis.T @ self.stiffness @ basis,
+            damping=basis.T @ self.damping @ basis,
+        )
+
     def at(self, q: np.ndarray) -> BentBeam:
-        """The beam at coordinates q (n,)."""
+        """The beam at coordinates q (..., n)."""
         return BentBeam(self, q)
 
 

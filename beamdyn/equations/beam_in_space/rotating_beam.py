@@ -190,6 +190,14 @@ class RotatingBeam(FieldsOnly):
         """Equations of small motions about the straight beam."""
         return self.at(np.zeros(self.size)).linearized()
 
+    def reduced(self, modal: Equations) -> RotatingBeam:
+        """The beam in the coordinates of equations to which those about the straight beam were reduced."""
+        basis = np.zeros((self.size, modal.size))
+        for name, place in self.linear.blocks.items():
+            shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
+            basis[place, modal.blocks[shape.block]] = shape.matrix
+        return RotatingBeam(self.beam.reduced(basis), modal, self.axis)
+
     def at(self, q: np.ndarray) -> BentState:
         """The beam at coordinates q (n,); the last few are kept, as they are asked for again."""
         key = q.tobytes()
