@@ -12,6 +12,8 @@ from beamdyn.equations.quadrature import Cells, integrals_between_points
 
 
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+_ITERATIONS = 30  # of Picard's method, enough for a turn by 2 pi
+_CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion with which the iteration ends
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -75,12 +77,7 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     count, shape = len(halves), curvature.shape[:-2]
     of_cells = curvature.reshape(-1, 3, count, p) * halves[:, None]
     rates = _product_from_right(of_cells.transpose(1, 0, 2, 3)).transpose(2, 3, 4, 0, 1) / 2
-    A = integrals_between_points(p)
-    matrix = -A[:, None, :, None] * rates[:, :, None].swapaxes(3, 4)
-    matrix = matrix.reshape(-1, count, 4 * p, 4 * p)
-    matrix[..., np.arange(4 * p), np.arange(4 * p)] += 1.0
-    unit = np.broadcast_to(np.tile(_UNIT, p)[:, None], (*matrix.shape[:3], 1))
-    within = np.linalg.solve(matrix, unit).reshape(-1, count, p, 4)
+    within = _collocate(rates, integrals_between_points(p))
     across = _UNIT + np.einsum("j,scjab,scjb->sca", gauss_rule(p)[1], rates, within)
     start, turned = np.broadcast_to(_UNIT, (len(rates), 4)), np.empty_like(within)
     for cell in range(count):
@@ -89,6 +86,24 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
         start = product(start, across[:, cell])
     every = np.concatenate([turned.reshape(len(rates), -1, 4), start[:, None]], axis=1)
     return _matrices(every).reshape(*shape, 3, 3, -1)
+
+
+def _collocate(rates: np.ndarray, A: np.ndarray) -> np.ndarray:
+    """Solve y = 1 + A (rates y) for quaternions (S, c, p, 4) at the points of cells, by rates (S, c, p, 4, 4).
+
+    Picard iteration converges as the powers of half the angle over their factorials; where a cell turns so
+    far that it takes many steps, the linear equations are solved instead.
+    """
+    y = np.broadcast_to(_UNIT, rates.shape[:-1])
+    for _ in range(_ITERATIONS):
+        before, y = y, _UNIT + A @ np.einsum("scjab,scjb->scja", rates, y)
+        if np.abs(y - before).max() <= _CONVERGED:
+            return y
+    p = len(A)
+    matrix = (-A[:, None, :, None] * rates[:, :, None].swapaxes(3, 4)).reshape(*rates.shape[:2], 4 * p, 4 * p)
+    matrix[..., np.arange(4 * p), np.arange(4 * p)] += 1.0
+    unit = np.broadcast_to(np.tile(_UNIT, p)[:, None], (*matrix.shape[:3], 1))
+    return np.linalg.solve(matrix, unit).reshape(y.shape)
 
 
 def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
