@@ -182,8 +182,12 @@ class Scene(OneLine):
 
     @property
     def straightened(self) -> Scene:
-        """The scene with small deflections of a straight axis: no large deflection, sweep or prebend."""
-        straight = replace(self.physics, large_deflection=False, branch="straight")
+        """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
+
+        Torsion of a twisted beam, which large deflection alone has, is left out.
+        """
+        torsion = self.physics.torsion and not self.beam.is_twisted
+        straight = replace(self.physics, large_deflection=False, branch="straight", torsion=torsion)
         if self.beam.is_curved:
             return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)
         return replace(self, physics=straight)
