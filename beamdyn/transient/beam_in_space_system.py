@@ -164,31 +164,28 @@ class EvaluationInSpace:
 
     @cached_property
     def _tangents(self) -> np.ndarray:
-        """Derivatives (3, 1, n, n) by coordinates, rates and accelerations at the node in the middle."""
-        middle, n = self.motion.shape[1] // 2, self.system.size
-        here, drive = self.motion[:, middle], self.drive.node(middle)
-        size = np.abs(here).max(axis=1) + 1 / np.abs(self.system.elastica.angles).max()
-        steps = (_STEP * size)[:, None, None] * np.eye(n)  # of each of the three
-        moved = np.zeros((2, 3, n, 3, n)) + here
-        for k in range(3):
-            moved[0, k, :, k] += steps[k]
-            moved[1, k, :, k] -= steps[k]
+        """Derivatives (3, s, n, n) by coordinates, rates and accelerations."""
+        (_, s, n), angles = self.motion.shape, self.system.elastica.angles
+        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(angles).max())
+        moved = np.broadcast_to(self.motion, (2, 3, n, 3, s, n)).copy()  # sign, of which, which; motion
+        for k, i in np.ndindex(3, n):
+            moved[:, k, i, k, :, i] += np.array([step[k], -step[k]])[:, None]
+        drive = DriveInSpace(*(np.tile(values, 6 * n) for values in self.drive))
         motion = np.moveaxis(moved, 3, 0).reshape(3, -1, n)
-        more, less = self.system.residual(drive, motion).reshape(2, 3, n, n)
-        derivatives = (more - less) / (2 * _STEP * size)[:, None, None]
-        return derivatives.swapaxes(1, 2)[:, None]
+        more, less = self.system.residual(drive, motion).reshape(2, 3, n, s, n)
+        return np.moveaxis(more - less, 1, 3) / (2 * step)[:, None, None, None]
 
     @property
     def stiffness(self) -> np.ndarray:
-        """Derivative by the coordinates (1, n, n), near enough for Newton's method."""
+        """Derivative by the coordinates (s, n, n), near enough for Newton's method."""
         return self._tangents[0]
 
     @property
     def damping(self) -> np.ndarray:
-        """Derivative by the rates (1, n, n)."""
+        """Derivative by the rates (s, n, n)."""
         return self._tangents[1]
 
     @property
     def mass(self) -> np.ndarray:
-        """Derivative by the accelerations (1, n, n)."""
+        """Derivative by the accelerations (s, n, n)."""
         return self._tangents[2]

@@ -14,15 +14,19 @@ from numpy.polynomial import Polynomial
 import beamdyn as bd
 from beamdyn.equations.beam_in_space.bent_beam import BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
+from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 from beamdyn.equations.beam_in_space.rotations import skew
 from beamdyn.equations.beam_in_space.stations import StationForces
 from beamdyn.equations.elastica import Elastica
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
+from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.profile import to_profile
+from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
+from beamdyn.transient.elastica_steps import propagate_elastica
 from benchmarks.cases.beams_in_space import bend, uniform
-from benchmarks.cases.elastica import published, scene_of
+from benchmarks.cases.elastica import harvester_at, published, scene_of
 from benchmarks.cases.two_planes import models, second_method_cases
 from benchmarks.cases.two_planes import scene_of as two_planes_scene
 
@@ -302,3 +306,61 @@ def test_a_curved_axis_is_that_of_its_angles() -> None:
         along = [np.cos(sweep) * np.cos(bend), np.cos(sweep) * np.sin(bend), np.sin(sweep)]
         expected += (b - a) / 2 * np.array(along) @ weights
     np.testing.assert_allclose(found.tip, expected, rtol=0, atol=1e-13)
+
+
+# Motion -------------------------------------------------------------------------------------------
+
+
+def test_inertial_forces_are_those_of_lagrange() -> None:
+    """d/dt of the momentum, and the derivative of the kinetic energy in fixed axes, by the coordinates."""
+    beam, q, turning = general(), somewhere(), AXIS / np.linalg.norm(AXIS)
+    rates, accelerations = RNG.normal(size=(2, beam.size))
+
+    def momentum(q: np.ndarray) -> np.ndarray:
+        bent = beam.at(q)
+        return bent.mass @ rates + bent.work(bent.masses.euler(turning).force)
+
+    def kinetic_energy(q: np.ndarray) -> np.ndarray:
+        bent = beam.at(q)
+        velocity = np.cross(turning, bent.masses.centre, axisb=0, axisc=0)
+        sections = np.einsum("a,abj,b->", turning, bent.masses.inertia, turning)
+        carried = (velocity**2).sum(axis=0) @ bent.masses.mass + sections
+        return rates @ bent.mass @ rates / 2 + rates @ bent.work(bent.masses.euler(turning).force) + carried / 2
+
+    exact = derivative(momentum, q) @ rates + beam.at(q).mass @ accelerations - derivative(kinetic_energy, q)
+    moving = MovingBeam(beam.at(q), rates, Carrier(turning))
+    found = moving.bent.work(moving.forces(accelerations))
+    np.testing.assert_allclose(found, exact, rtol=0, atol=DIFFERENCES * np.abs(exact).max())
+
+
+def test_carrier_that_speeds_up_and_moves_loads_the_beam_at_rest() -> None:
+    beam, q, rest = general(), somewhere(), np.zeros(general().size)
+    moving = MovingBeam(beam.at(q), rest, Carrier(0 * AXIS, AXIS, FORCE))
+    expected = beam.at(q).work(moving.bent.masses.euler(AXIS).force)
+    expected += beam.at(q).work(moving.bent.masses.translated(FORCE).force)
+    np.testing.assert_allclose(moving.bent.work(moving.forces(rest)), expected, rtol=0, atol=ROUNDING)
+
+
+def test_energy_of_large_motion_at_constant_speed() -> None:
+    """Of a twisted beam with torsion on an oblique carrier, the tip of which moves by a third of its length."""
+    beam = replace(SWEPT, sweep=None, shear_stiffness=None, axial_stiffness=None)
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    motion = bd.SteadyRotation(2.0)
+    scene = bd.Scene(beam, bd.Mount(0.5, 2.0, 0.4), motion, physics=physics)
+    system = BeamInSpaceSystem.of_model(Model(scene, bd.Ritz(5)), ModalBasis(3), motion)
+    run = propagate_elastica(system, 0.0, 0.4, 8, np.zeros(3), np.array([1.0, 1.0, 0.5]), stages=8)
+    q, v = np.split(run.state[:, 1:], 2, axis=1)
+    energy = system.energy(np.linspace(0.0, 0.4, 9), q, v)
+    assert np.abs(system.deflections(q)).max() > 0.3
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+
+
+def test_motion_in_a_plane_is_that_of_the_elastica() -> None:
+    scene = replace(harvester_at(45.0), motion=bd.SpinUp(100.0, 0.01))
+    both = replace(scene, physics=replace(scene.physics, planes=2))
+    planar, in_space = (bd.simulate(each, 0.01, modes=2, tolerance=1e-5) for each in (scene, both))
+    t = np.linspace(0, 0.01, 41)
+    first, second = planar.at(t)[0], in_space.at(t)[0]
+    length = scene.beam.length
+    tips = planar.system.deflections(first)[:, 0], in_space.system.deflections(second)[:, 0]
+    np.testing.assert_allclose(tips[1], tips[0], rtol=0, atol=1e-9 * length)

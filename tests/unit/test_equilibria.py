@@ -112,7 +112,6 @@ def test_critical_speed_is_that_of_a_straight_beam() -> None:
         (lambda: bd.Scene(harvester(0.0).beam, OBLIQUE_SPRING, physics=BENT), "mount.root_stiffness"),
         (lambda: bd.Scene(replace(harvester(0.0).beam, prebend=SLOPE)), "prebend"),
         (lambda: bd.backbone(IN_SPACE, 50.0), "physics.large_deflection"),
-        (lambda: bd.simulate(replace(IN_SPACE, motion=bd.SteadyRotation(50.0)), 0.1), "physics.large"),
         (lambda: bd.setting_angle_limits(harvester(0.0), 400.0), "physics.large_deflection"),
         (lambda: bd.frequency_bounds(harvester(0.0), 10.0), "physics.large_deflection"),
         (lambda: bd.equilibrium(harvester(0.0), 10.0, "up"), "branch"),
