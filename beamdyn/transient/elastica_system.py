@@ -87,8 +87,11 @@ class BentSystem(ABC):
         """Quantities of the root's motion as they enter the equations."""
 
     @abstractmethod
-    def evaluate(self, drive: Any, motion: np.ndarray) -> Evaluated:
-        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,)."""
+    def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
+        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).
+
+        What is returned has the attributes of `Evaluated`.
+        """
 
     @property
     def size(self) -> int:

@@ -307,7 +307,9 @@ def _bent_equilibrium(system: BentSystem) -> np.ndarray:
         raise InvalidValue(
             "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
         )
-    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in system.elastica.quantities}
+    values: dict[Quantity, float] = {
+        name: float(getattr(root, name)) / speed**2 for name in system.elastica.quantities
+    }
     size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
     load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
     try:

@@ -325,7 +325,9 @@ def test_inertial_forces_are_those_of_lagrange() -> None:
         velocity = np.cross(turning, bent.masses.centre, axisb=0, axisc=0)
         sections = np.einsum("a,abj,b->", turning, bent.masses.inertia, turning)
         carried = (velocity**2).sum(axis=0) @ bent.masses.mass + sections
-        return rates @ bent.mass @ rates / 2 + rates @ bent.work(bent.masses.euler(turning).force) + carried / 2
+        return (
+            rates @ bent.mass @ rates / 2 + rates @ bent.work(bent.masses.euler(turning).force) + carried / 2
+        )
 
     exact = derivative(momentum, q) @ rates + beam.at(q).mass @ accelerations - derivative(kinetic_energy, q)
     moving = MovingBeam(beam.at(q), rates, Carrier(turning))
@@ -342,7 +344,7 @@ def test_carrier_that_speeds_up_and_moves_loads_the_beam_at_rest() -> None:
 
 
 def test_energy_of_large_motion_at_constant_speed() -> None:
-    """Of a twisted beam with torsion on an oblique carrier, the tip of which moves by a third of its length."""
+    """Of a twisted beam with torsion at an oblique angle, whose tip moves by a third of its length."""
     beam = replace(SWEPT, sweep=None, shear_stiffness=None, axial_stiffness=None)
     physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
     motion = bd.SteadyRotation(2.0)

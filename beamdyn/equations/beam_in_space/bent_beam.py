@@ -183,7 +183,7 @@ class BentBeam(FieldsOnly):
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (..., 3, N), in space, of stretch and shears and of the curvatures, by those of the coordinates."""
+        """Rates (..., 3, N), in space, of stretch and shears, and of curvatures, by those (..., n)."""
         strains = np.tensordot(rates, self.beam.functions, 1)
         strains[..., 0, :] += self._shortening * strains[..., 3, :]
         return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])

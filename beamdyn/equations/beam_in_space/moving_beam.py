@@ -93,7 +93,9 @@ class MovingBeam(FieldsOnly):
         turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))
         W, W_rate, root = (each[..., None] for each in vars(self.carrier).values())
         of_lever = cross(turning, masses.lever)
-        relative = stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
+        relative = (
+            stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
+        )
         carried = cross(W_rate, masses.centre) + root
         carried += cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
         F = masses.mass * (relative + carried)

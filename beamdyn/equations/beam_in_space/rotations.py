@@ -10,7 +10,6 @@ import numpy as np
 from beamdyn.common.legendre import gauss_rule
 from beamdyn.equations.quadrature import Cells, integrals_between_points
 
-
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 _ITERATIONS = 30  # of Picard's method, enough for a turn by 2 pi
 _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion with which the iteration ends
@@ -89,7 +88,7 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
 
 
 def _collocate(rates: np.ndarray, A: np.ndarray) -> np.ndarray:
-    """Solve y = 1 + A (rates y) for quaternions (S, c, p, 4) at the points of cells, by rates (S, c, p, 4, 4).
+    """Solve y = 1 + A (rates y) for quaternions (S, c, p, 4) at points of cells, by rates (S, c, p, 4, 4).
 
     Picard iteration converges as the powers of half the angle over their factorials; where a cell turns so
     far that it takes many steps, the linear equations are solved instead.
