@@ -32,6 +32,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.rotations import cross, integrate_curvature, turn, turn_back
 from beamdyn.equations.beam_in_space.stations import Masses, MassesInSpace, StationForces, Stations
@@ -117,7 +118,22 @@ class BeamInSpace(FieldsOnly):
 
 
 def elastic_stiffness(stations: Stations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Stiffness (n, n) of strains (n, 6, N) by the law of the sections (6, 6, N)."""
+    """Stiffness (n, n) of strains (n, 6, N) by the law of the sections (6, 6, N).
+
+    Raises
+    ------
+    InvalidValue
+        If the law of a section is not positive definite: it would deform without a force.
+    """
+    least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
+    if (least <= 0).any():
+        k = int(least.argmin())
+        bound, remedy = (
+            "it must be positive: such a section deforms without a force",
+            "check its 6 x 6 matrix",
+        )
+        where = f" at x/L = {stations.quadrature.xi[k]:.3g}"
+        raise InvalidValue("least eigenvalue of the section", float(least[k]), bound, remedy, where=where)
     stress = np.einsum("abj,nbj->naj", law * stations.quadrature.weights * stations.length, functions)
     return functions.reshape(len(functions), -1) @ stress.reshape(len(functions), -1).T
 
