@@ -35,7 +35,7 @@ class Effect:
     needs : tuple of str
         Properties of the beam, of which the effect needs one; those that follow from others come last.
     bends : bool
-        Whether it can be combined with large deflection.
+        Whether it can be combined with large deflection in one plane.
     taken_out : str
         Name of what is taken out where large deflection takes its place.
     uncertainty : float
@@ -59,6 +59,11 @@ class Effect:
         """Whether the model of a scene lacks the effect: the twist only of a beam that has one."""
         return not self.is_in(scene) and (self is not TWIST or scene.beam.is_twisted)
 
+    @property
+    def bends_in_space(self) -> bool:
+        """Whether it can be combined with large deflection in space: sections keep their shape there."""
+        return self is not CAMBER
+
     def reason(self, scene: Scene) -> str:
         """Say what the model of a scene assumes in place of the effect, and how to include that."""
         assumed = self.assumption(scene)
@@ -69,13 +74,13 @@ class Effect:
         return self.assumed.format(across=name_directions(scene)[1][0])
 
     def _how_to_include(self, scene: Scene) -> str:
-        if scene.physics.large_deflection and not self.bends:
+        if scene.physics.large_deflection and not self.bends_in_space:
             return EXCLUSIVE
         if (refused := self._why_refused(scene)) is not None:
             return refused
         lacking = [name for name in self.needs[:1] if _lacks(scene.beam, name)]
         data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
-        others = [e.taken_out for e in EFFECTS if e.taken_out and e.is_in(scene)]
+        others = [e.taken_out for e in EFFECTS if not e.bends_in_space and e.is_in(scene)]
         without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
         return Words(Setting("physics", **{self.switch: self.value}), f" includes it{data}{without}")
 

@@ -17,6 +17,7 @@ kept as well as in the exact equations.  Derivation: docs/conventions.md.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -149,6 +150,16 @@ class Elastica(FieldsOnly):
         """Number n of coordinates."""
         return self.linear.size
 
+    @property
+    def about_straight(self) -> Equations:
+        """Equations of small motions about the straight beam."""
+        return self.linear
+
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Quantities of the root's motion that load the beam."""
+        return QUANTITIES
+
     @cached_property
     def in_plane(self) -> float:
         """Component c of the direction of bending in the plane of rotation: 1, -1 or 0."""
@@ -182,6 +193,14 @@ class Elastica(FieldsOnly):
         """Position (..., 2) of the tip from the root, along b1 and e [m], at coordinates q (..., n)."""
         state = self.at(q)
         return np.stack([self.points.tip(state.cos), self.points.tip(state.sin)], axis=-1)
+
+    def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        """Curvature (..., k) [1/m] at coordinates q (..., n) and x/L = xi of shape (k,)."""
+        return q @ self.linear.deflection(xi, order=2) / self.length**2
+
+    def tip_angle(self, q: np.ndarray) -> float:
+        """Slope angle of the tip [rad] at coordinates q (n,)."""
+        return float(q @ self.angles[:, -1])
 
 
 def assemble_elastica(scene: Scene, discretization: Discretization, linear: Equations) -> Elastica:
@@ -257,6 +276,16 @@ class DeflectedState:
     def inertia_of(self, quantity: Quantity) -> np.ndarray:
         """Generalized inertial force (..., n) per unit of a quantity."""
         return self.generalized(self.inertial_forces(quantity))
+
+    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Generalized inertial force (n,) under given values of the quantities."""
+        each = (value * self.inertia_of(quantity) for quantity, value in values.items())
+        return sum(each, np.zeros(self.elastica.size))
+
+    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Derivative (n, n) of `inertia` by the coordinates."""
+        each = (value * self.stiffness_of(quantity) for quantity, value in values.items())
+        return sum(each, np.zeros((self.elastica.size, self.elastica.size)))
 
     def work(self, q_rate: np.ndarray, q_acceleration: np.ndarray, root: RootMotion) -> np.ndarray:
         """Residual (..., n) of the equations of motion, for rates and accelerations of the shape of q."""

@@ -324,6 +324,11 @@ class Equations:
         ordered = (tuple(each for each in self.blocks if each in set_of[name]) for name in self.blocks)
         return tuple(dict.fromkeys(ordered))
 
+    @property
+    def deflecting(self) -> list[str]:
+        """Names of the blocks of the fields that deflect the straight beam, before a reduction."""
+        return [name for name in self.deflections if name in self.blocks]
+
     def places(self, names: Iterable[str]) -> np.ndarray:
         """Indices of the coordinates of some blocks."""
         return np.concatenate([np.arange(self.blocks[n].start, self.blocks[n].stop) for n in names])

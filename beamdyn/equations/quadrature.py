@@ -66,7 +66,7 @@ class ArcQuadrature:
         )
         integrals = np.empty((*values.shape[:-1], N + 1))  # new memory costs more than the arithmetic
         inside = integrals[..., :N].reshape(shape)
-        np.multiply((of_cells @ _cumulative(p).T).reshape(shape), self._half_lengths, out=inside)
+        np.multiply((of_cells @ integrals_between_points(p).T).reshape(shape), self._half_lengths, out=inside)
         inside[..., 1:, :] += ends[..., :-1, None]
         integrals[..., N] = ends[..., -1]
         return integrals
@@ -78,7 +78,7 @@ class ArcQuadrature:
         inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
         of_cells = inside.sum(axis=-1)
         beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
-        scaled = (inside @ _cumulative(p) + beyond[..., None] * w) * self._half_lengths
+        scaled = (inside @ integrals_between_points(p) + beyond[..., None] * w) * self._half_lengths
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
@@ -106,7 +106,7 @@ class ArcQuadrature:
 
 
 @cache
-def _cumulative(points: int) -> np.ndarray:
+def integrals_between_points(points: int) -> np.ndarray:
     """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
     return _integrate_interpolant(gauss_rule(points)[0], points)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import reduce
 from time import perf_counter
 
@@ -155,7 +155,7 @@ def terms(scene: Scene) -> Terms:
     """
     start = perf_counter()
     check_scene(scene)
-    straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+    straight = scene.straightened
     sampled, assembled = SampledScene(scene), _terms_by_name(straight)
     modelled = (field for field in FIELDS if field.is_modelled(straight))
     complete = reduce(lambda scene, field: field.complete(scene), modelled, straight)

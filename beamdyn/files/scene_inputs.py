@@ -178,6 +178,16 @@ class _BeamInput(CoreSection):
         Along | None,
         Varying("rad", "tau", "angle by which the section is turned, added to the bending angle"),
     ] = None
+    sweep: Annotated[
+        Along | None,
+        Varying("rad", "Lambda", "angle by which the axis leaves its direction at the root, towards across"),
+    ] = None
+    prebend: Annotated[
+        Along | None,
+        Varying(
+            "rad", "beta", "angle by which the axis leaves its direction at the root, in that of bending"
+        ),
+    ] = None
     point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
     point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
 

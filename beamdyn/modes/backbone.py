@@ -29,7 +29,7 @@ from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.validity import check_speeds, refuse_bending_in_space
 
 
 @dataclass(frozen=True)
@@ -142,6 +142,7 @@ def backbone(
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
+    refuse_bending_in_space(scene)
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
@@ -194,6 +195,7 @@ class FreeVibration:
         assert isinstance(solver, DeflectedSolver)
         found = solver.solve(np.array([speed]), mode)
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
+        assert isinstance(state, DeflectedState)
         v = found.vector[0][:, mode - 1].astype(complex)
         angles, tip = state.elastica.angles, state.elastica.points.tip
         along, across = tip(-state.sin * angles) @ v, tip(state.cos * angles) @ v

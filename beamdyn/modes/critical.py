@@ -203,7 +203,7 @@ def critical_point(
     if scene.physics.large_deflection and _is_loaded_across(scene):
         return _argued(scene, Buckling(False, _BENT), start)
     # Large deflection does not change when a straight beam buckles.
-    scene = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+    scene = scene.straightened
     target = affordable_target(scene, discretization, target)
     models = partial(models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
@@ -244,6 +244,8 @@ def critical_point(
 
 def _is_loaded_across(scene: Scene) -> bool:
     """Whether rotation bends the beam at every speed, in a direction that is modelled."""
+    if scene.beam.is_curved:
+        return True
     in_plane = 1.0 if scene.physics.planes == 2 else aligned_cos_sin(scene.mount.bending_angle)[0]
     return bool(scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[1] * in_plane)
 

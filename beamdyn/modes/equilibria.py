@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -39,6 +39,7 @@ from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.modes.modes import provenance_of
+from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -68,7 +69,8 @@ class Equilibrium(StatesModelError):
     tip : ndarray, shape (3,)
         Position of the tip from the root along b1, b2, b3 [m].
     tip_angle : float
-        Slope angle of the tip, from b1 towards the direction of bending [rad].
+        Slope angle of the tip, from b1 towards the direction of bending [rad]; in space the angle between
+        the beam at the tip and b1.
     error : float
         Estimated error of the position of the tip [m].
     stable : bool
@@ -133,7 +135,7 @@ class Equilibrium(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam."""
-        across = _direction(self.scene)
+        across = _directions(self.scene)[0]
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
         title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
         stable = "" if self.stable else ", unstable"
@@ -195,7 +197,7 @@ def equilibrium(
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
     at = Words("at ", Speeds(float(speeds[0])))
-    flat = warn_of_suppressed_camber(scene, solution.model.equations, q[None], lambda _: at)
+    flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     remedy = 'branch="bent" asks for the stable one beside it'
     unstable = Statement(
         "the equilibrium is unstable ",
@@ -211,7 +213,7 @@ def equilibrium(
         speed=float(speeds[0]),
         branch=scene.physics.branch,
         tip=_in_space(solver.elastica.tip(q), scene),
-        tip_angle=float(q @ solver.elastica.angles[:, -1]),
+        tip_angle=solver.elastica.tip_angle(q),
         error=float(error) + _ROUNDING * scene.beam.length,
         stable=growth <= 0,
         growth_rate=max(growth, 0.0),
@@ -237,15 +239,15 @@ def _solver(model: Model) -> DeflectedSolver:
     return model.solver
 
 
-def _direction(scene: Scene) -> np.ndarray:
-    """Components of the direction of bending on b2, b3."""
-    angle = scene.mount.bending_angle
-    return np.round([np.cos(angle), np.sin(angle)])
+def _directions(scene: Scene) -> np.ndarray:
+    """Components (2, 2) of the direction of bending, and of that across, on b2, b3."""
+    c, s = aligned_cos_sin(scene.mount.bending_angle)
+    return np.array([[c, s], [-s, c]])
 
 
 def _in_space(positions: np.ndarray, scene: Scene) -> np.ndarray:
-    """Positions (..., 3) along b1, b2, b3 from those along b1 and the direction of bending (..., 2)."""
-    across = positions[..., 1:] * _direction(scene)
+    """Positions (..., 3) along b1, b2, b3 from those along b1, the direction of bending and maybe across."""
+    across = positions[..., 1:] @ _directions(scene)[: positions.shape[-1] - 1]
     return np.concatenate([positions[..., :1], across], axis=-1)
 
 
@@ -326,7 +328,7 @@ class EquilibriumBranches(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        across, length = _direction(self.scene), self.scene.beam.length
+        across, length = _directions(self.scene)[0], self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
         return plot_branches(lines, ax, self.display_units)
 
@@ -368,7 +370,7 @@ def equilibrium_branches(
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
     solver = _solver(model)
     load, rest = solver.load, np.zeros(solver.size)
-    if load.transverse:
+    if load.bends:
         branches = [_collect("straight", load, start_curve(load, rest, 0.0, 1.0), top, scene)]
     else:
         speeds = np.linspace(0, top, 101)

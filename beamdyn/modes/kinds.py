@@ -23,7 +23,7 @@ def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | No
     if not own:
         return None
     energy = np.real(vectors.conj() * equations.momentum(vectors))
-    fields = [[*equations.deflections], *([name] for name in own)]
+    fields = [equations.deflecting, *([name] for name in own)]
     of_each = np.stack([energy[:, equations.places(names)].sum(axis=1) for names in fields])
     return np.array([BENDING, *own])[(of_each >= (1 - _TIE) * of_each.max(axis=0)).argmax(axis=0)]
 

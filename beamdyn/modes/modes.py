@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, TypeAlias
@@ -376,10 +376,8 @@ def warn_of_modes(
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
         assert isinstance(model.solver, DeflectedSolver)
-        bent = model.solver.equilibria(speeds)
-        yield from warn_of_suppressed_camber(
-            scene, model.equations, bent, lambda k: Words("at ", Speeds(speeds[k]))
-        )
+        bending = partial(model.solver.elastica.curvature, model.solver.equilibria(speeds))
+        yield from warn_of_suppressed_camber(scene, bending, lambda k: Words("at ", Speeds(speeds[k])))
     else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
         yield from warn_of_straight(deflection, speeds, model)

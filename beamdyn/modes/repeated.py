@@ -28,7 +28,6 @@ BY_FREQUENCY = "by the first frequency"
 _LOADED = "it, or what it was made of, was loaded from a file without it: ask for it before saving"
 _NOTHING = "there is no value that it could change"
 _LOWEST, _SMALL = 2, 1e-5  # lowest modes, and change of their frequencies up to which nothing is repeated
-_STRAIGHT = {"large_deflection": False, "branch": "straight"}
 
 
 class JudgedByRepeating(StatesModelError):
@@ -88,8 +87,7 @@ class JudgedByRepeating(StatesModelError):
             return SolvedValues(np.full(own.shape, np.nan), reason_of(error))
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
-                straight = replace(scene, physics=replace(scene.physics, **_STRAIGHT))
-                return self.bent_values(self.solve(straight, "").values, refusal.bound)
+                return self.bent_values(self.solve(scene.straightened, "").values, refusal.bound)
             if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound it
                 return self.solve(without_camber(self.scene), name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)

@@ -25,7 +25,9 @@ _STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes no
 
 @dataclass(frozen=True)
 class Beam(FieldsOnly, OneLine):
-    """A straight beam, held at its root.  Build it by `rectangular` or `from_stiffness`.
+    """A beam, held at its root: straight, or curved by its sweep and prebend.
+
+    Build it by `rectangular` or `from_stiffness`.
 
     Which of its properties a model reads is said by `Physics`.
 
@@ -61,6 +63,10 @@ class Beam(FieldsOnly, OneLine):
     torsion_stiffness, warping_stiffness : Profile, optional
         Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
         rectangular section follow from its sides.
+    sweep, prebend : Profile, optional
+        Angles by which the axis of the unloaded beam leaves its direction at the root [rad] over x/L, x along
+        the axis: it points along (cos a cos b, cos a sin b, sin a), in the axes along the beam at its root,
+        in the direction of bending and across, with the sweep a and the prebend b.
 
     References
     ----------
@@ -92,13 +98,15 @@ class Beam(FieldsOnly, OneLine):
     section: Rectangle | None = field(default=None, repr=False, compare=False)
     torsion_stiffness: Profile | None = field(default=None, metadata=ADDED_LATER)
     warping_stiffness: Profile | None = field(default=None, metadata=ADDED_LATER)
+    sweep: Profile | None = field(default=None, metadata=ADDED_LATER)
+    prebend: Profile | None = field(default=None, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
         given = (name for name in OPTIONAL_PROPERTIES if getattr(self, name) is not None)
         for name in (*_REQUIRED, *given):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
-            if name != "twist":
+            if name not in ANGLE_UNITS:
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
@@ -148,6 +156,8 @@ class Beam(FieldsOnly, OneLine):
         poissons_ratio: float | None = None,
         point_masses: Sequence[PointMass] = (),
         point_springs: Sequence[PointSpring] = (),
+        sweep: Property | None = None,
+        prebend: Property | None = None,
     ) -> Beam:
         """Build a beam of rectangular section that bends in the direction of its thickness.
 
@@ -178,6 +188,9 @@ class Beam(FieldsOnly, OneLine):
             Point masses along the beam; those at one place add up.
         point_springs : sequence of PointSpring
             Springs that hold points of the beam to the carrier; those at one place add up.
+        sweep, prebend : float, Polynomial, Table or callable, optional
+            Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
+            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
 
         Returns
         -------
@@ -199,15 +212,16 @@ class Beam(FieldsOnly, OneLine):
         section = Rectangle(b, h, youngs_modulus, density, poissons_ratio)
         section.check_thickness(length)
         warn_of_material(section.youngs_modulus, section.density)
-        turned = None if twist is None else to_profile("twist", twist, breakpoints)
-        warn_of_twist(turned)
+        angles = {"twist": twist, "sweep": sweep, "prebend": prebend}
+        turned = {n: to_profile(n, a, breakpoints) for n, a in angles.items() if a is not None}
+        warn_of_twist(turned.get("twist"))
         return cls(
             length=length,
             tip=tip,
-            twist=turned,
             point_masses=point_masses,
             point_springs=point_springs,
             section=section,
+            **turned,
             **section.properties,
         )
 
@@ -231,6 +245,8 @@ class Beam(FieldsOnly, OneLine):
         point_springs: Sequence[PointSpring] = (),
         torsion_stiffness: Property | None = None,
         warping_stiffness: Property | None = None,
+        sweep: Property | None = None,
+        prebend: Property | None = None,
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -267,6 +283,9 @@ class Beam(FieldsOnly, OneLine):
             G J [N m2]; torsion also needs both rotary inertias.
         warping_stiffness : float, Polynomial, Table or callable, optional
             E Cw [N m4], against warping of the section, which the root then holds.
+        sweep, prebend : float, Polynomial, Table or callable, optional
+            Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
+            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
 
         Returns
         -------
@@ -298,11 +317,13 @@ class Beam(FieldsOnly, OneLine):
             "second_rotary_inertia": second_rotary_inertia,
             "torsion_stiffness": torsion_stiffness,
             "warping_stiffness": warping_stiffness,
+            "sweep": sweep,
+            "prebend": prebend,
         }
         length = size("length", length, "m")
         given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
         made: dict[str, Any] = {
-            name: (to_profile if name == "twist" else as_profile)(name, value, breakpoints)
+            name: (to_profile if name in ANGLE_UNITS else as_profile)(name, value, breakpoints)
             for name, value in given.items()
         }
         beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
@@ -317,6 +338,7 @@ class Beam(FieldsOnly, OneLine):
         for name, unit, letters in (("mass_per_length", "kg/m", ""), ("bending_stiffness", "N m2", "EI ")):
             yield letters + spanned(getattr(self, name)(np.linspace(0, 1, 11)), unit)
         yield f"twist to {number(np.degrees(self.tip_twist), 'deg')}" if self.twist is not None else ""
+        yield "curved axis" if self.is_curved else ""
         yield f"tip mass {number(self.tip.mass, 'kg')}" if self.tip is not None else ""
         yield counted(len(self.point_masses), "point mass", "point masses") if self.point_masses else ""
         yield counted(len(self.point_springs), "spring") if self.point_springs else ""
@@ -361,6 +383,12 @@ class Beam(FieldsOnly, OneLine):
         """Whether a twist is given that turns any section by more than rounding, 1e-9 rad."""
         return self.twist is not None and bool(np.abs(self.twist.series).sum(axis=0).max() > _STRAIGHT)
 
+    @cached_property
+    def is_curved(self) -> bool:
+        """Whether a sweep or a prebend is given by which the axis is not straight."""
+        angles = (angle for angle in (self.sweep, self.prebend) if angle is not None)
+        return any(bool(np.abs(angle.series).max() > _STRAIGHT) for angle in angles)
+
     @property
     def root_twist(self) -> float:
         """Angle by which the section at the root is turned [rad]."""
@@ -393,9 +421,11 @@ PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "outer_fibre": "m",
 }
 
+ANGLE_UNITS = {"twist": "rad", "sweep": "rad", "prebend": "rad"}  # of what may have any sign
+
 _REQUIRED = ("mass_per_length", "bending_stiffness")
 OPTIONAL_PROPERTIES = tuple(
-    f.name for f in fields(Beam) if f.name in {**PROPERTY_UNITS, "twist": "rad"} and f.name not in _REQUIRED
+    f.name for f in fields(Beam) if f.name in PROPERTY_UNITS | ANGLE_UNITS and f.name not in _REQUIRED
 )
 
 

@@ -17,7 +17,7 @@ from typing import Any, get_type_hints
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.inputs.described import description, kinds_of
 from beamdyn.common.inputs.paths import part_at, with_parts
-from beamdyn.scene.beam import PROPERTY_UNITS, Beam, TipMass
+from beamdyn.scene.beam import ANGLE_UNITS, PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Motion
 from beamdyn.scene.mount import Mount
@@ -49,7 +49,7 @@ _SIDE_POWERS = {
 @cache
 def units() -> dict[str, str]:
     """SI units of the numbers that scenes may have by their paths, of those in lists without an index."""
-    of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | {"twist": "rad"}
+    of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
     for name, kind in _POINTS.items():
@@ -220,7 +220,7 @@ def _beam_with(beam: Beam, values: Mapping[str, float]) -> Beam:
 
 
 def _as_property(name: str, value: float) -> float | Profile:
-    if name == "twist":
+    if name in ANGLE_UNITS:
         return to_profile(name, value)
     return as_profile(name, value) if name in PROPERTY_UNITS else value
 

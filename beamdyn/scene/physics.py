@@ -32,9 +32,10 @@ class Physics:
     stretch : bool
         Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
     large_deflection : bool
-        Slopes of any size (the inextensible elastica): the beam vibrates about the equilibrium to which
-        rotation bends it.  It bends in the plane of rotation or out of it, and with rotary inertia alone of
-        the other effects.
+        Slopes and angles of any size: the beam vibrates about the equilibrium to which rotation bends it.
+        In one plane, in or out of the plane of rotation, it is the inextensible elastica; with both planes,
+        torsion, shear or stretch a geometrically exact beam in space.  It is not combined with camber, and
+        torsion is then that of sections by their constants, with all of their rotary inertia.
     branch : {"straight", "bent"}
         With large deflection, the equilibria that are meant: those that follow from rest as the speed rises,
         or those that stand beside them at high speed, bent to the other side.
@@ -47,8 +48,8 @@ class Physics:
     Raises
     ------
     ValueError
-        If `planes` is neither 1 nor 2, another value is no truth value, or large deflection cannot be
-        combined with another effect.
+        If `planes` is neither 1 nor 2, another value is no truth value, or large deflection is combined with
+        camber.
 
     References
     ----------
@@ -70,7 +71,7 @@ class Physics:
     rotary_inertia: Annotated[bool, Described(meaning="rotary inertia of the sections")] = False
     stretch: Annotated[bool, Described(meaning="stretch of the beam and its Coriolis coupling")] = False
 
-    large_deflection: Annotated[bool, Described(meaning="slopes of any size: the elastica")] = False
+    large_deflection: Annotated[bool, Described(meaning="slopes and angles of any size")] = False
     branch: Annotated[
         Literal["straight", "bent"],
         Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
@@ -103,17 +104,10 @@ class Physics:
             raise replace(refusal, bound=bound, remedy="leave it out") from None
 
     def _check_combination(self) -> None:
-        """Refuse what the elastica is not combined with."""
-        for name, without in (
-            ("planes", 1),
-            ("shear", False),
-            ("camber", False),
-            ("torsion", False),
-            ("stretch", False),
-        ):
-            if (given := getattr(self, name)) != without:
-                bound = "it cannot be combined with large_deflection"
-                raise InvalidValue(f"physics.{name}", given, bound, "leave one of the two out")
+        """Refuse what large deflection is not combined with: sections that change their form."""
+        if self.camber:
+            bound = "it cannot be combined with large_deflection"
+            raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
 
 
 @dataclass(frozen=True, repr=False)

@@ -82,6 +82,13 @@ class Rectangle:
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
+    def torsion_stiffness(self) -> Profile:
+        """Torsional stiffness G J [N m2] of the section (Saint-Venant); it needs Poisson's ratio."""
+        assert self.poissons_ratio is not None, "torsion of a rectangle has its Poisson's ratio"
+        shear_modulus, t = self.youngs_modulus / (2 * (1 + self.poissons_ratio)), self.thickness
+        return (self.width * t * t * t * self.torsion_factor).scaled(shear_modulus / 3)
+
+    @cached_property
     def camber_ratio(self) -> Profile:
         """Effective Poisson's ratio for camber, less than nu in thick sections.
 

@@ -121,6 +121,7 @@ class Scene(OneLine):
             set_fields(self, physics_choice=None)  # the choice was that of another physics
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
+        _check_axis(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
@@ -172,6 +173,26 @@ class Scene(OneLine):
         return _without_unmodelled(self.beam, self.physics)
 
     @property
+    def bends_in_space(self) -> bool:
+        """Whether large deflection leaves the one plane, in or out of that of rotation, of the elastica."""
+        chosen, mount = self.physics, self.mount
+        is_oblique = mount.precone or min(map(abs, aligned_cos_sin(mount.bending_angle))) != 0
+        others = self.beam.is_curved or chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
+        return chosen.large_deflection and bool(others or is_oblique)
+
+    @property
+    def straightened(self) -> Scene:
+        """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
+
+        Torsion of a twisted beam, which large deflection alone has, is left out.
+        """
+        torsion = self.physics.torsion and not self.beam.is_twisted
+        straight = replace(self.physics, large_deflection=False, branch="straight", torsion=torsion)
+        if self.beam.is_curved:
+            return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)
+        return replace(self, physics=straight)
+
+    @property
     def models_width(self) -> bool:
         """Whether deflections vary across the width: rectangular sections camber or twist."""
         return _models_width(self.beam, self.physics)
@@ -190,11 +211,21 @@ def check_scene(scene: object) -> None:
     kind("scene", scene, Scene, remedy)
 
 
-# Large deflection ---------------------------------------------------------------------------------
+# Curved axes, and large deflection -----------------------------------------------------------------
+
+
+def _check_axis(beam: Beam, physics: Physics) -> None:
+    """Refuse a curved axis in equations of straight beams, from which a choice of the physics starts, too."""
+    if beam.is_curved and not physics.large_deflection:
+        name = "prebend" if beam.sweep is None else "sweep"
+        given = getattr(beam, name)
+        bound = "without physics.large_deflection the axis of the beam is straight"
+        remedy = Words(Setting("physics", large_deflection=True), " includes it")
+        raise InvalidValue(name, float(given(np.ones(1))[0]), bound, remedy, "rad", where=" at the tip")
 
 
 def _check_large_deflection(scene: Scene) -> None:
-    """Refuse large deflection that would leave the plane of bending, or has no equilibrium at rest."""
+    """Refuse large deflection without an equilibrium at rest, and what is defined for small ones alone."""
     if not scene.physics.large_deflection:
         return
     if scene.mount.root_stiffness == 0:
@@ -208,16 +239,12 @@ def _check_large_deflection(scene: Scene) -> None:
         bound = "with physics.large_deflection there is none: the tip also moves along the beam"
         remedy = "give damping.ratios, or leave large_deflection out"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
-    if scene.mount.precone:
-        bound = (
-            "with physics.large_deflection there is none: precone bends a beam out of one plane of bending"
-        )
-        remedy = "give 0, or leave large_deflection out"
-        raise InvalidValue("mount.precone", scene.mount.precone, bound, remedy, "rad")
-    if min(map(abs, aligned_cos_sin(scene.mount.bending_angle))) != 0:
-        bound = "with physics.large_deflection it must be a multiple of 90 deg"
-        remedy = "bend in the plane of rotation (0) or out of it (90 deg), or leave large_deflection out"
-        raise InvalidValue("mount.bending_angle", scene.mount.bending_angle, bound, remedy, "rad")
+    if scene.bends_in_space:
+        for name, spring in zip(("", "second_"), scene.mount.root_stiffnesses, strict=True):
+            if spring < math.inf:
+                bound = "with large deflection in space the root is clamped"
+                remedy = "leave it out, or model large deflection in one plane alone"
+                raise InvalidValue(f"mount.{name}root_stiffness", spring, bound, remedy, "N m/rad")
 
 
 # Springs at the root ------------------------------------------------------------------------------
@@ -294,6 +321,7 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
 
 def _check_properties(beam: Beam, physics: Physics) -> None:
     """Refuse physics for which the beam lacks properties: name all of them that one effect needs."""
+    beam = _with_constants(beam, physics)
     needed = _needed_properties(beam, physics)
     lacking = [name for name in needed if getattr(beam, name) is None]
     if not lacking:
@@ -322,7 +350,7 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
         remedy = Words(RECTANGULAR, given, " makes one of steel")
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
-    if beam.is_twisted:
+    if beam.is_twisted and not physics.large_deflection:
         bound, remedy = "camber and torsion of a twisted beam are not modelled", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
     if section is None or not physics.camber:
@@ -345,7 +373,19 @@ def _check_width(beam: Beam, physics: Physics) -> None:
 
 def _models_width(beam: Beam, physics: Physics) -> bool:
     """Whether deflections vary across the width."""
-    return beam.section is not None and (physics.camber or physics.torsion)
+    return _with_constants(beam, physics).section is not None and (physics.camber or physics.torsion)
+
+
+def _with_constants(beam: Beam, physics: Physics) -> Beam:
+    """The beam as large deflection with torsion models it: a rectangle by its torsional stiffness alone."""
+    section = beam.section
+    if (
+        section is None
+        or section.poissons_ratio is None
+        or not (physics.large_deflection and physics.torsion)
+    ):
+        return beam
+    return replace(beam, section=None, torsion_stiffness=section.torsion_stiffness)
 
 
 def _with_corners(beam: Beam, planes: int) -> Profile:
@@ -363,6 +403,7 @@ def _with_corners(beam: Beam, planes: int) -> Profile:
 @lru_cache(maxsize=256)
 def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     """The beam without the properties that a model with this physics does not read."""
+    beam = _with_constants(beam, physics)
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
     unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
     unread |= {"twist"} if physics.planes == 1 or not beam.is_twisted else set()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import MOST, refuse
+from beamdyn.common.inputs.checks import MOST, InvalidValue, refuse
 from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import (
     EXCITATION,
@@ -39,6 +39,14 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
     """Raise an `InvalidValue` for speeds [rad/s], the argument of that name, whose powers would overflow."""
     bound = "give at most {limit} either way"
     refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
+
+
+def refuse_bending_in_space(scene: Scene) -> None:
+    """Refuse what is computed of beams that bend far in one plane, and not of others: an `InvalidValue`."""
+    if scene.bends_in_space:
+        bound = "this analysis has large deflection in one plane alone, in the plane of rotation or out of it"
+        remedy = "leave large_deflection out where the deflection is small, or model one such plane"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:

@@ -19,6 +19,7 @@ from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_bending_in_space
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance
 from beamdyn.steady.periodic_system import (
     Pair,
@@ -118,6 +119,7 @@ def _about_equilibria(
 
     The directions of the tip are that of bending, and along the beam axis.
     """
+    refuse_bending_in_space(model.scene)
     q, elastica = find_equilibria(model, speeds), model.elastica
     assert elastica is not None
     missing = np.asarray(np.isnan(q).any(axis=1))

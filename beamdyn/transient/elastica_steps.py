@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from beamdyn.transient.elastica_system import Drive, ElasticaSystem, Evaluation
+from beamdyn.transient.elastica_system import BentSystem, Evaluated
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, interpolate, step_maps, tableau
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
@@ -56,7 +56,7 @@ _MANY = 64  # number of pieces of a motion, such as one given by samples, above 
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
-def rest_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
+def rest_in_equilibrium(system: BentSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
     """The path of a beam that stays at rest, by a constant motion of the root and forces in equilibrium."""
     q, v = y0[None, : system.size], y0[None, system.size :]
     if system.motion.steady_start > 0 or v.any():
@@ -74,7 +74,7 @@ def rest_in_equilibrium(system: ElasticaSystem, y0: np.ndarray, t_end: float) ->
 
 
 def attempt_elastica(
-    system: ElasticaSystem, y0: np.ndarray, t_end: float, step_size: StepSize, before: Attempt | None = None
+    system: BentSystem, y0: np.ndarray, t_end: float, step_size: StepSize, before: Attempt | None = None
 ) -> Attempt:
     """Integrate twice with equal steps in each segment, of 8 and of 10 stages; shorter ones if not solved.
 
@@ -111,12 +111,12 @@ def attempt_elastica(
     return Attempt(step_size, Trajectory(fine), _error(system, coarse, fine), largest, method)
 
 
-def _tips(system: ElasticaSystem, segment: Segment) -> np.ndarray:
+def _tips(system: BentSystem, segment: Segment) -> np.ndarray:
     """Deflections of the tip at the ends of the steps [m]."""
     return system.deflections(segment.state[:, 1 : system.size + 1])[:, 0]
 
 
-def _error(system: ElasticaSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
+def _error(system: BentSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
     """Error of the tip deflection: distance of two runs, divided among the coordinates."""
     tip, n, straight = 0.0, system.size, system.straight
     change = np.zeros(n)
@@ -134,7 +134,7 @@ def _error(system: ElasticaSystem, coarse: tuple[Segment, ...], fine: tuple[Segm
     return TimeError.of_coordinates(straight, modes, interpolation, phases > UNRESOLVED_PHASE)
 
 
-def _interpolation_error(system: ElasticaSystem, segment: Segment) -> float:
+def _interpolation_error(system: BentSystem, segment: Segment) -> float:
     """Largest error of the tip's deflection between the ends of steps [m], by steps with more stages."""
     error, h = 0.0, segment.h
     for k in np.unique(np.linspace(0, len(segment.acceleration) - 1, _CHECKED).astype(int)):
@@ -158,7 +158,7 @@ class StepNotSolved(ArithmeticError):
 
 
 def propagate_elastica(
-    system: ElasticaSystem,
+    system: BentSystem,
     t0: float,
     t1: float,
     steps: int,
@@ -171,7 +171,7 @@ def propagate_elastica(
 
     Parameters
     ----------
-    system : ElasticaSystem
+    system : BentSystem
         The equations; smooth between t0 and t1.
     t0, t1 : float
         Beginning and end [s].
@@ -194,14 +194,14 @@ def propagate_elastica(
     state, acceleration = allocate_steps(steps, stages, q0, v0)
     known = None if like is None else _at_nodes(like.acceleration.shape[1], stages)
     q, v = q0, v0
-    drives = iter(())
+    drive: Any = None
     with np.errstate(over="ignore", invalid="ignore"):  # a step that is too long overflows, and is refused
         for k in range(steps):
             if k % BLOCK == 0:
                 some = np.arange(k, min(k + BLOCK, steps))
-                drives = zip(*system.drive(system.root(t0 + h * (some[:, None] + step.table.c))), strict=True)
+                drive = system.drive(system.root(t0 + h * (some[:, None] + step.table.c)))
             guess = None if like is None or known is None else known @ like.acceleration[k]
-            q, v, a = step.advance(Drive(*next(drives)), q, v, guess)
+            q, v, a = step.advance(drive.step(k % BLOCK), q, v, guess)
             acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
     return Segment(t0, h, state, acceleration)
 
@@ -228,7 +228,7 @@ class Tangent(NamedTuple):
 class _Step:
     """Solution of steps of one length h [s] and one number of stages."""
 
-    def __init__(self, system: ElasticaSystem, h: float, table: Tableau) -> None:
+    def __init__(self, system: BentSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
         self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
         self.to_motion = np.concatenate([self.to_q, self.to_v, np.eye(len(table.c))])
@@ -236,7 +236,7 @@ class _Step:
         self.tangent: Tangent | None = None
 
     def advance(
-        self, drive: Drive, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
+        self, drive: Any, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Coordinates and rates at the end of a step, and accelerations at its nodes."""
         drift, middle = self.drift * v, len(self.table.c) // 2
@@ -252,13 +252,13 @@ class _Step:
         a = self._solve(drive, q + drift, v, guess)
         return q + self.h * v + self.end_q @ a, v + self.end_v @ a, a
 
-    def _solve(self, drive: Drive, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+    def _solve(self, drive: Any, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Solve for the accelerations (s, n) by Newton's method; the tangent is kept while it serves."""
         assert self.tangent is not None
         factors: Factors | None = self.tangent.factors
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
-            now = Evaluation(self.system, drive, start + self.to_motion.dot(a).reshape(start.shape))
+            now = self.system.evaluate(drive, start + self.to_motion.dot(a).reshape(start.shape))
             factors = factors or self._factorize(now)
             residual = now.residual
             change = _divide(factors, residual)
@@ -279,7 +279,7 @@ class _Step:
             last = size
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
-    def _factorize(self, now: Evaluation) -> Factors:
+    def _factorize(self, now: Evaluated) -> Factors:
         """LU factors of the derivative of all residuals of a step by all accelerations."""
         s, n = len(self.table.c), self.system.size
         matrix = self.to_q[:, None, :, None] * now.stiffness[:, :, None]

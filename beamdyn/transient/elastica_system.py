@@ -11,9 +11,10 @@ with X, Y the changes along the beam of the acceleration along b1 and e, as seen
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
@@ -28,8 +29,116 @@ from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 
 
+class Evaluated(Protocol):
+    """Equations at s sets of coordinates, rates and accelerations; derivatives of each set, or of one."""
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Residual of the equations of motion (s, n)."""
+        ...
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """Elastic force (s, n)."""
+        ...
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Derivative by the accelerations (s or 1, n, n)."""
+        ...
+
+    @property
+    def damping(self) -> np.ndarray:
+        """Derivative by the rates (s or 1, n, n)."""
+        ...
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """Derivative by the coordinates (s or 1, n, n)."""
+        ...
+
+
+class BentSystem(ABC):
+    """Base class of equations of motion of beams that bend by any amount, at arrays of times."""
+
+    elastica: Any
+    motion: Motion
+    branch: Branch
+
+    @property
+    @abstractmethod
+    def equations(self) -> Equations:
+        """Equations of the same coordinates, linear about the straight beam."""
+
+    @abstractmethod
+    def deflections(self, q: np.ndarray) -> np.ndarray:
+        """Deflections of the tip [m] at coordinates q (..., n): shape (..., directions)."""
+
+    @abstractmethod
+    def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
+        """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+
+    @abstractmethod
+    def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Energy [J] at times t (T,), coordinates and rates (T, n)."""
+
+    @abstractmethod
+    def drive(self, root: RootMotion) -> Any:
+        """Quantities of the root's motion as they enter the equations."""
+
+    @abstractmethod
+    def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
+        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).
+
+        What is returned has the attributes of `Evaluated`.
+        """
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return self.elastica.size
+
+    @cached_property
+    def straight(self) -> ModalSystem:
+        """Equations of motion of the same coordinates, linear about the straight beam."""
+        return ModalSystem(self.equations, self.motion)
+
+    def root(self, t: np.ndarray) -> RootMotion:
+        """Motion of the root at times t [s]."""
+        return self.equations.root(self.motion.at(t))
+
+    def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Deflection [m] over a strip, whose sections keep their shape, at xi (k,), eta (l,): (T, k, l)."""
+        return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
+
+    def at(self, drive: Any, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluated:
+        """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
+        return self.evaluate(drive, np.stack([q, v, a]))
+
+    def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
+        q, v = np.split(y, 2)
+        return np.concatenate([v, self._acceleration(t, q, v)])
+
+    def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Accelerations (n,) at a time [s]."""
+        here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
+        return np.linalg.solve(here.mass[0], -here.residual[0])
+
+    def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        n = self.size
+        q, v = np.split(y, 2)
+        drive = self.drive(self.root(np.array([t])))
+        here = self.at(drive, q[None], v[None], self._acceleration(t, q, v)[None])
+        J = np.zeros((2 * n, 2 * n))
+        J[:n, n:] = np.eye(n)
+        J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
+        return J
+
+
 @dataclass(frozen=True)
-class ElasticaSystem:
+class ElasticaSystem(BentSystem):
     """Equations of motion of a beam that bends by any angle, at arrays of times.
 
     Parameters
@@ -54,23 +163,9 @@ class ElasticaSystem:
         return cls(elastica, motion, model.scene.physics.branch)
 
     @property
-    def size(self) -> int:
-        """Number n of coordinates."""
-        return self.elastica.size
-
-    @property
     def equations(self) -> Equations:
         """Equations of the same coordinates, linear about the straight beam."""
         return self.elastica.linear
-
-    @cached_property
-    def straight(self) -> ModalSystem:
-        """Equations of motion of the same coordinates, linear about the straight beam."""
-        return ModalSystem(self.equations, self.motion)
-
-    def root(self, t: np.ndarray) -> RootMotion:
-        """Motion of the root at times t [s]."""
-        return self.equations.root(self.motion.at(t))
 
     # Outputs ------------------------------------------------------------------------------------------
 
@@ -85,10 +180,6 @@ class ElasticaSystem:
         points = self.elastica.points
         slopes = np.sin(q @ self.elastica.angles)[..., :-1]
         return points.length * slopes @ points.quadrature.integrate_to(np.asarray(xi)).T
-
-    def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Deflection [m] over a strip, whose sections keep their shape, at xi (k,), eta (l,): (T, k, l)."""
-        return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Energy [J] at times t (T,): kinetic relative to the rotating axes, elastic, of the root's motion.
@@ -156,33 +247,12 @@ class ElasticaSystem:
             root=np.stack([root.root_axial, root.root_transverse], axis=-2),
         )
 
-    def at(self, drive: Drive, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluation:
-        """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
-        return Evaluation(self, drive, np.stack([q, v, a]))
-
-    def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
-        q, v = np.split(y, 2)
-        return np.concatenate([v, self._acceleration(t, q, v)])
-
-    def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Accelerations (n,) at a time [s]."""
-        here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
-        return np.linalg.solve(here.mass[0], -here.residual[0])
-
-    def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
-        n = self.size
-        q, v = np.split(y, 2)
-        drive = self.drive(self.root(np.array([t])))
-        here = self.at(drive, q[None], v[None], self._acceleration(t, q, v)[None])
-        J = np.zeros((2 * n, 2 * n))
-        J[:n, n:] = np.eye(n)
-        J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
-        return J
+    def evaluate(self, drive: Drive, motion: np.ndarray) -> Evaluation:
+        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,)."""
+        return Evaluation(self, drive, motion)
 
 
-AnySystem: TypeAlias = ModalSystem | ElasticaSystem
+AnySystem: TypeAlias = ModalSystem | BentSystem
 
 
 class Drive(NamedTuple):
@@ -201,6 +271,10 @@ class Drive(NamedTuple):
     turning: np.ndarray
     squared: np.ndarray
     root: np.ndarray
+
+    def step(self, k: int) -> Drive:
+        """The drive in one of several steps."""
+        return Drive(*(values[k] for values in self))
 
     def node(self, k: int) -> Drive:
         """The drive at one node of a step alone, s = 1."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.elastica_steps import attempt_elastica, rest_in_equilibrium
-from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, BentSystem
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.record_steps import (
     RecordSteps,
@@ -78,7 +78,7 @@ def integrate(
     ArithmeticError
         If the steps of a bent beam cannot be solved at any size.
     """
-    if isinstance(system, ElasticaSystem):
+    if isinstance(system, BentSystem):
         path = rest_in_equilibrium(system, y0, t_end)
         attempt = partial(attempt_elastica, system, y0, t_end)
     else:

@@ -12,7 +12,6 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.effects import check_direction
-from beamdyn.equations.elastica import QUANTITIES
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modes.modal.eigenproblem import Solver
@@ -20,9 +19,10 @@ from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
+from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.along_path import distance_along_path
-from beamdyn.transient.elastica_system import AnySystem, ElasticaSystem
+from beamdyn.transient.elastica_system import AnySystem, BentSystem, ElasticaSystem
 from beamdyn.transient.gauss import growth_without_bound
 from beamdyn.transient.integration import follow_steps, integrate
 from beamdyn.transient.step_size import TooManySteps
@@ -78,9 +78,11 @@ def choose_for_basis(
     mass of its own, some do not exist.
     """
     speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
+    if scene.bends_in_space:
+        plain = replace(scene.straightened, physics=Physics(planes=scene.physics.planes))
+        return Model(scene, choose_for_basis(plain, discretization, basis, tolerance).discretization)
     if scene.physics.large_deflection:  # the modes are those of the straight beam
-        straight = replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
-        return choose_for_basis(straight, discretization, basis, tolerance).of(scene)
+        return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
         return choose_model(scene, discretization, speeds, modes, target)
@@ -114,6 +116,11 @@ class TransientProblem(FieldsOnly):
 
     def system(self) -> AnySystem:
         """Equations of the run, without the coordinates that stay at rest."""
+        if self.scene.bends_in_space:
+            # Few scenes need it.
+            from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
+
+            return BeamInSpaceSystem.of_model(self.model, self.basis, self.motion)
         if self.scene.physics.large_deflection:
             return ElasticaSystem.of_model(self.model, self.basis, self.motion)
         equations = self.model.modal_equations(self.basis)
@@ -242,7 +249,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
         if initial == "rest":
             return np.zeros(2 * n)
         if initial == "equilibrium":
-            found = _bent_equilibrium(system) if isinstance(system, ElasticaSystem) else _equilibrium(system)
+            found = _bent_equilibrium(system) if isinstance(system, BentSystem) else _equilibrium(system)
             return np.concatenate([found, np.zeros(n)])
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
     y0 = as_floats(initial)
@@ -290,7 +297,7 @@ class LoadAtOnce(SteadyLoad):
         return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
 
 
-def _bent_equilibrium(system: ElasticaSystem) -> np.ndarray:
+def _bent_equilibrium(system: BentSystem) -> np.ndarray:
     """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0
@@ -300,7 +307,9 @@ def _bent_equilibrium(system: ElasticaSystem) -> np.ndarray:
         raise InvalidValue(
             "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
         )
-    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    values: dict[Quantity, float] = {
+        name: float(getattr(root, name)) / speed**2 for name in system.elastica.quantities
+    }
     size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
     load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
     try:

@@ -6,7 +6,7 @@ import pathlib
 from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -27,7 +27,7 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesMod
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
-from beamdyn.transient.elastica_system import AnySystem
+from beamdyn.transient.elastica_system import AnySystem, BentSystem
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.problem import Solution, TransientProblem, unless_unbounded
 from beamdyn.transient.root_strain import RootStrain
@@ -363,9 +363,9 @@ class TransientRequest(TransientProblem):
         yield from warn_of_peak(scene, largest)
         if scene.physics.large_deflection:
             t, q, _ = solution.path.samples
-            yield from warn_of_suppressed_camber(
-                scene, solution.system.equations, q, lambda k: f"at {t[k]:.4g} s"
-            )
+            assert isinstance(solution.system, BentSystem)
+            bending = partial(solution.system.elastica.curvature, q)
+            yield from warn_of_suppressed_camber(scene, bending, lambda k: f"at {t[k]:.4g} s")
         else:
             yield from warn_of_deflection(np.array([largest]), scene.beam.length)
         road = self.motion.at(np.linspace(0, self.t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]

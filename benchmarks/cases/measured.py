@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
+from dataclasses import replace
+from math import pi, radians
 
 import beamdyn as bd
 from beamdyn.common.results.comparison import Comparison
@@ -27,6 +28,26 @@ def straight_beam() -> bd.Scene:
         given["density"] * LBF / INCH**4,
     )
     return bd.Scene(beam, bd.Mount(given["hub_radius"] * INCH, pi, pi / 2))
+
+
+def swept_beam(sweep_deg: float) -> bd.Scene:
+    """The same beam with its tip swept back, bending in two directions, and turning."""
+    straight, given = straight_beam(), load("epps_chandra_1996")["input"]
+    beam = bd.Beam.rectangular(
+        straight.beam.length,
+        given["width"]["value"] * INCH,
+        given["thickness"]["value"] * INCH,
+        given["youngs_modulus"]["value"] * LBF / INCH**2,
+        given["density"]["value"] * LBF / INCH**4,
+        poissons_ratio=given["poissons_ratio"]["value"],
+        sweep=_kink_at(given["straight_length"]["value"] / given["length"]["value"], radians(sweep_deg)),
+    )
+    physics = bd.Physics(planes=2, rotary_inertia=True, torsion=True, large_deflection=True)
+    return replace(straight, beam=beam, physics=physics)
+
+
+def _kink_at(place: float, angle: float) -> bd.Table:
+    return bd.Table([0.0, place, place, 1.0], [0.0, 0.0, angle, angle])
 
 
 def compare() -> Iterator[Comparison]:

@@ -218,7 +218,7 @@ def test_stations_beside_other_keys():
         ((0, 2), "twist", '[0][2] = "twist": give "twist [deg]"'),
         ((0, 2), "twist [m]", '[0][2] = "twist [m]": give "twist [deg]"'),
         ((0, 2), "Twist [deg]", '[0][2] = "Twist [deg]": unknown column; did you mean twist?'),
-        ((0, 2), 5, "[0][2] = 5: unknown column; known are x/L, x, twist, width, thickness, mass"),
+        ((0, 2), 5, "[0][2] = 5: unknown column; known are x/L, x, twist, sweep, prebend, width, thick"),
         ((0, 0), "x/L [m]", '[0][0] = "x/L [m]": give it without a unit, "x/L"'),
         ((0, 0), "x", '[0][0] = "x": give "x [mm]"'),
         ((0, 2), "x [m]", '[0] = ["x/L", "mass_per_length [kg/m]"'),

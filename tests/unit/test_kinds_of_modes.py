@@ -56,7 +56,7 @@ def test_equal_shares_are_decided_by_the_order(energy, kind):
     places = {"bending": [0], "torsion": [1], "camber": [2]}
     equations = SimpleNamespace(
         blocks=places,
-        deflections={"bending": None},
+        deflecting=["bending"],
         momentum=lambda vectors: vectors,
         places=lambda names: np.concatenate([places[name] for name in names]),
     )

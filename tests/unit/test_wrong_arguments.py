@@ -33,7 +33,7 @@ CALLS = {
         bd.Beam.rectangular,
         {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
         | {"tip": None, "breakpoints": (), "twist": 0.1, "poissons_ratio": 0.3, "point_masses": ()}
-        | {"point_springs": ()},
+        | {"point_springs": (), "sweep": None, "prebend": 0.1},
     ),
     "Beam.from_stiffness": (
         bd.Beam.from_stiffness,
@@ -41,7 +41,8 @@ CALLS = {
         | {"outer_fibre": 1e-4, "tip": None, "breakpoints": (), "second_bending_stiffness": 3.0, "twist": 0.1}
         | {"shear_stiffness": 1e5, "second_shear_stiffness": 1e5}
         | {"rotary_inertia": 5e-11, "second_rotary_inertia": 1e-7, "point_masses": ()}
-        | {"point_springs": (), "torsion_stiffness": 0.1, "warping_stiffness": 1e-9},
+        | {"point_springs": (), "torsion_stiffness": 0.1, "warping_stiffness": 1e-9}
+        | {"sweep": 0.1, "prebend": None},
     ),
     "PointMass": (bd.PointMass, {"position": 0.02, "mass": 1e-3}),
     "PointSpring": (bd.PointSpring, {"position": 0.02, "stiffness": 1.0, "direction": "bending"}),
@@ -375,7 +376,11 @@ def test_a_road_of_too_short_waves_is_refused():
 def test_a_size_beyond_all_use_is_refused_before_it_overflows(size):
     for call in ("Beam.rectangular", "Beam.from_stiffness"):
         make, good = CALLS[call]
-        for name in set(good) - {"tip", "point_masses", "breakpoints", "twist", "poissons_ratio"}:
+        for name in (
+            set(good)
+            - {"tip", "point_masses", "breakpoints", "twist", "sweep", "prebend"}
+            - {"poissons_ratio"}
+        ):
             varying = (bd.Table([0, 1], [size, size]), lambda xi, size=size: size * (1 + xi))
             for value in (size, *varying) if name not in ("length", "youngs_modulus", "density") else (size,):
                 with pytest.raises(ValueError, match=name):

@@ -10,7 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from beamdyn.equations.elastica import QUANTITIES, DeflectedState, Elastica
+from beamdyn.equations.beam_in_space.rotating_beam import BentState, RotatingBeam
+from beamdyn.equations.elastica import DeflectedState, Elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.modes.modal.continuation import (
@@ -47,7 +48,7 @@ class SteadyLoad:
 
     Parameters
     ----------
-    elastica : Elastica
+    elastica : Elastica or RotatingBeam
         Equations of motion.
     scale : float
         Squared speed at which rotation matters [rad2/s2].
@@ -55,7 +56,7 @@ class SteadyLoad:
         Further transverse acceleration of the root per squared speed [m].
     """
 
-    elastica: Elastica
+    elastica: Elastica | RotatingBeam
     scale: float
     push: float = 0.0
 
@@ -67,7 +68,8 @@ class SteadyLoad:
     @cached_property
     def _values(self) -> dict[Quantity, float]:
         root = root_motion(self.elastica.linear.mount, MotionSample.steady(1.0))
-        values: dict[Quantity, float] = {quantity: float(getattr(root, quantity)) for quantity in QUANTITIES}
+        quantities = self.elastica.quantities
+        values: dict[Quantity, float] = {quantity: float(getattr(root, quantity)) for quantity in quantities}
         values["root_transverse"] += self.push
         return {quantity: value for quantity, value in values.items() if value}
 
@@ -76,12 +78,14 @@ class SteadyLoad:
         """Transverse acceleration of the root per squared speed [m]."""
         return self._values.get("root_transverse", 0.0)
 
-    def load(self, state: DeflectedState) -> np.ndarray:
+    @cached_property
+    def bends(self) -> bool:
+        """Whether rotation loads the straight beam otherwise than along it."""
+        return bool(self.load(self.elastica.at(np.zeros(self.elastica.size))).any())
+
+    def load(self, state: DeflectedState | BentState) -> np.ndarray:
         """Inertial force (n,) per squared speed."""
-        return sum(
-            (value * state.inertia_of(quantity) for quantity, value in self._values.items()),
-            np.zeros(self.elastica.size),
-        )
+        return state.inertia(self._values)
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
         """Sum of elastic and inertial forces (n,)."""
@@ -89,9 +93,7 @@ class SteadyLoad:
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
         """Tangent stiffness (n, n)."""
-        state = self.elastica.at(q)
-        by_rotation = (value * state.stiffness_of(quantity) for quantity, value in self._values.items())
-        return self.elastica.stiffness + p * sum(by_rotation, np.zeros_like(self.elastica.stiffness))
+        return self.elastica.stiffness + p * self.elastica.at(q).inertia_change(self._values)
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
         """Derivative of the residual by the squared speed."""
@@ -168,7 +170,7 @@ def follow_to(
             k for k in np.argsort(towards * squares, kind="stable") if towards * (squares[k] - start**2) > 0
         ]
         if pending and (
-            load.transverse or q.any()
+            load.bends or q.any()
         ):  # otherwise the straight beam is in equilibrium at every speed
             found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
     return found
@@ -246,14 +248,14 @@ class DeflectedSolver(Eigensolver):
 
     Parameters
     ----------
-    elastica : Elastica
+    elastica : Elastica or RotatingBeam
         Equations of motion.
     branch : {"straight", "bent"}
         Equilibria that are meant: those that follow from rest, or those beside them.
     """
 
-    def __init__(self, elastica: Elastica, branch: Branch) -> None:
-        super().__init__(elastica.linear.steady())  # about the straight beam
+    def __init__(self, elastica: Elastica | RotatingBeam, branch: Branch) -> None:
+        super().__init__(elastica.about_straight.steady())  # about the straight beam
         self.elastica, self.branch = elastica, branch
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
@@ -282,7 +284,7 @@ class DeflectedSolver(Eigensolver):
     @property
     def critical_speed(self) -> float:
         """Lowest speed at which the straight beam buckles [rad/s]; inf where rotation bends it instead."""
-        return np.inf if self.load.transverse else self._straight.critical_speed
+        return np.inf if self.load.bends else self._straight.critical_speed
 
     @property
     def critical_rounding(self) -> float:
@@ -313,8 +315,8 @@ class DeflectedSolver(Eigensolver):
         return [self.elastica.at(q).linearized() for q in self.equilibria(speeds)]
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
-        """Deflection of the tip along e in equilibrium [m], shape (S, 1)."""
-        return self.elastica.tip(self.equilibria(speeds))[:, 1:]
+        """Deflection of the tip across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
+        return (self.elastica.tip(self.equilibria(speeds)) - self.elastica.tip(np.zeros(self.size)))[:, 1:]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
         """Coordinates (S, n) in equilibrium at each speed, each computed once."""

@@ -18,6 +18,7 @@ from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
     from beamdyn.equations.elastica import Elastica
     from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from collections.abc import Iterator
@@ -50,7 +51,9 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam."""
-        return assemble_over(self.scene, self.discretization.spaces(self.scene.modelled_beam))
+        beam = self.scene.modelled_beam
+        scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
+        return assemble_over(scene, self.discretization.spaces(beam))
 
     @cached_property
     def solver(self) -> Eigensolver:
@@ -62,17 +65,28 @@ class Model(FieldsOnly):
         """Solver of equations for deflections of any size."""
         from beamdyn.modes.modal.equilibrium import DeflectedSolver  # few scenes need it
 
-        assert self.elastica is not None
-        return DeflectedSolver(self.elastica, self.scene.physics.branch)
+        bent = self.in_space or self.elastica
+        assert bent is not None
+        return DeflectedSolver(bent, self.scene.physics.branch)
 
     @cached_property
     def elastica(self) -> Elastica | None:
-        """Equations of motion for deflections of any size; None where they are linear."""
-        if not self.scene.physics.large_deflection:
+        """Equations of motion for deflections of any size in one plane; None where they are others."""
+        if not self.scene.physics.large_deflection or self.scene.bends_in_space:
             return None
         from beamdyn.equations.elastica import assemble_elastica  # few scenes need it
 
         return assemble_elastica(self.scene, self.discretization, self.equations)
+
+    @cached_property
+    def in_space(self) -> RotatingBeam | None:
+        """Equations of motion for deflections of any size in space; None where they are others."""
+        if not self.scene.bends_in_space:
+            return None
+        # Few scenes need it.
+        from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
+
+        return assemble_beam_in_space(self.scene, self.discretization, self.equations)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
@@ -112,7 +126,7 @@ class Model(FieldsOnly):
         None where the sections keep their shape, or their width is not known.
         """
         section = self.scene.beam.section
-        if section is None or not self.equations.sections:
+        if section is None or not self.scene.models_width:
             return None
         xi, eta = np.linspace(0, 1, along), np.linspace(1, -1, across)
         return self.scene.beam.length * xi, eta, np.outer(section.width(xi), -eta / 2)
@@ -140,8 +154,8 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     if equations.planes == 1:
         return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
     energy, planes = kinetic_energy(equations, vectors), [[], []]
-    for name, deflection in equations.deflections.items():
-        planes[deflection.direction].append(name)
+    for name in equations.deflecting:
+        planes[equations.deflections[name].direction].append(name)
     first, second = (energy[:, equations.places(names)].sum(axis=1) for names in planes)
     total = first + second
     return np.stack([first, second], axis=2) / np.where(total == 0, 1.0, total)[..., None]
@@ -204,6 +218,6 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
 def bends(model: Model) -> bool:
     """Whether a steady rotation loads the straight beam transversely, but for a misalignment of 1e-8 rad."""
     equations, scene = model.equations, model.scene
-    load = np.abs(equations.steady().f2[equations.places(equations.deflections)]).max(initial=0.0)
+    load = np.abs(equations.steady().f2[equations.places(equations.deflecting)]).max(initial=0.0)
     along = max(np.abs(equations.P(d)).max() for d in range(scene.physics.planes))
     return bool(load > RIGHT_ANGLE * along * (scene.mount.radius + scene.beam.length))

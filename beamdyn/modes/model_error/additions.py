@@ -109,7 +109,7 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
         try:
             additions.append(add_effect(scene, effect))
         except InvalidValue as refusal:
-            excluded = scene.physics.large_deflection and not effect.bends
+            excluded = scene.physics.large_deflection and not effect.bends_in_space
             why = EXCLUSIVE if excluded else str(refusal)
             not_known[effect.name] = f"give {refusal.other}" if refusal.other else why
     not_modelled = [effect.name for effect in left_out if not effect.switch]

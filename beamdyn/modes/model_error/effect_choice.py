@@ -3,8 +3,8 @@
 The sizes of the effects are estimated about the plain beam.  The largest is added, and the rest estimated
 again about the beam with it, until the sizes of those left out, summed at each value of the answer, are at
 most half the tolerance: an estimate may be low by a factor of two.  So nothing below a tenth of the tolerance
-is added.  Large deflection excludes shear, stretch and a second plane: where both sides are needed, the set
-that leaves less out is taken.
+is added.  Large deflection excludes camber, and in motions, which have it in one plane alone, shear, stretch
+and a second plane: where both sides are needed, the set that leaves less out is taken.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from beamdyn.modes.model_error.left_out_changes import (
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_bending_in_space
 
 NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
 PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
@@ -80,6 +81,7 @@ def choose_physics(
     modes: int,
     tolerance: float | None = None,
     barred: Mapping[str, str] = NOTHING_BARRED,
+    in_space: bool = True,
 ) -> Scene:
     """Choose the physics of a scene where it is "auto", by the frequencies at some speeds.
 
@@ -95,6 +97,8 @@ def choose_physics(
         Relative change of a frequency that may be left out; 1e-3 if not given.
     barred : mapping of str to str
         Names of effects that the analysis cannot do with, and why.
+    in_space : bool
+        Whether the analysis has large deflection in space, too.
 
     Returns
     -------
@@ -111,6 +115,8 @@ def choose_physics(
         return solve_to_tolerance(candidate, "ritz", some, modes, target)
 
     def judge(candidate: Scene) -> EffectSizes:
+        if not in_space:
+            refuse_bending_in_space(candidate)
         found, bent, rough = solve(candidate), candidate.physics.large_deflection, math.nan
         s = found.eigen.eigenvalue[:, :modes]
         effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
@@ -138,7 +144,8 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
     the analysis, but at least 1e-3: the default tolerances of motions are for the numerical errors.  The
     other parameters and what is returned are those of `choose_physics`.
     """
-    return choose_physics(scene, speeds, modes or _MODES, max(tolerance, PHYSICS_TOLERANCE))
+    tolerance = max(tolerance, PHYSICS_TOLERANCE)
+    return choose_physics(scene, speeds, modes or _MODES, tolerance, in_space=False)
 
 
 def plain_physics(scene: Scene) -> Scene:
@@ -207,6 +214,7 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     lost = sum(sizes[name] for name in choice.included if name not in kept)
     try:
         bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
+        refuse_bending_in_space(bent)
     except InvalidValue:  # an oblique direction
         return None
     if lost >= size:
@@ -337,8 +345,12 @@ def choose_by(
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
             bent = start.add(_BENDING, judge)  # with the effects that it is combined with
-            bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends})
-            best = min(best, bent, key=lambda candidate: candidate.model_error)
+            bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends_in_space})
+            refused = [bent.reasons[name] for name in best.included if name in bent.reasons]
+            if bent.model_error < best.model_error:
+                best = bent
+            elif refused:  # what is in the other set keeps it out
+                best = best.without(_BENDING, refused[0])
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))
     return replace(best.scene, physics_choice=_describe(best, plain, solve, tolerance, speeds))
@@ -355,7 +367,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
         try:
             return found.add(largest, judge)
         except (InvalidValue, ArithmeticError) as error:
-            excluded = found.scene.physics.large_deflection and not NAMED[largest].bends
+            excluded = found.scene.physics.large_deflection and not NAMED[largest].bends_in_space
             return found.without(largest, EXCLUSIVE if excluded else reason_of(error))
 
     def meets(found: _Candidate) -> bool:
@@ -399,9 +411,9 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
         return ""
     if name in best.reasons:
         return best.reasons[name]
-    if _BENDING in best.included and not NAMED[name].bends:
+    if _BENDING in best.included and not NAMED[name].bends_in_space:
         return EXCLUSIVE
-    others = ", ".join(n for n in best.included if not NAMED[n].bends)
+    others = ", ".join(n for n in best.included if not NAMED[n].bends_in_space)
     return f"it cannot be combined with {others}" if name == _BENDING and others else ""
 
 

@@ -246,7 +246,7 @@ def without_large_deflection(model: Model) -> Model:
 
 
 def _straightened(scene: Scene) -> Scene:
-    return replace(scene, physics=replace(scene.physics, large_deflection=False, branch="straight"))
+    return scene.straightened
 
 
 def _reasons(scene: Scene) -> dict[str, str]:

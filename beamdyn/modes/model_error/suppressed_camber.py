@@ -24,7 +24,6 @@ import numpy as np
 from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import MODEL_ERROR, Statement
 from beamdyn.common.words import Words
-from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 
@@ -45,17 +44,18 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
 
 
 def warn_of_suppressed_camber(
-    scene: Scene, equations: Equations, coordinates: np.ndarray, say_when: Callable[[int], Words | str]
+    scene: Scene, bending: Callable[[np.ndarray], np.ndarray], say_when: Callable[[int], Words | str]
 ) -> Iterator[Statement]:
     """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
 
-    The coordinates (k, n) are those of the equations, at k speeds or times; `say_when` says which.
+    `bending` gives the curvature (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
+    `say_when` says which time or speed it is.
     """
     section = scene.beam.section
     if section is None or section.poissons_ratio == 0:
         return  # without Poisson's ratio there is no camber to suppress
-    nu, length, xi = section.poissons_ratio, scene.beam.length, np.linspace(0, 1, _STATIONS)
-    curvature = np.abs(coordinates @ equations.deflection(xi, order=2)) / length**2
+    nu, xi = section.poissons_ratio, np.linspace(0, 1, _STATIONS)
+    curvature = np.abs(bending(xi))
     b, t = section.width(xi), section.thickness(xi)
     searle = b**2 * curvature / t
     if not searle.max(initial=0.0) > _CAMBER_DECLINES:

@@ -17,7 +17,7 @@ from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.modes.repeated import JudgedByRepeating
-from beamdyn.scene.beam import PROPERTY_UNITS, Beam
+from beamdyn.scene.beam import ANGLE_UNITS, PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
 from beamdyn.scene.profile import mean
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
@@ -115,9 +115,9 @@ def _value_of(scene: Scene, path: str) -> float | None:
     name = path.removeprefix("beam.")
     if name in SECTION_UNITS:
         return number_at(scene, path) if _has_constant_section(scene) else None
-    if name in PROPERTY_UNITS or name == "twist":
+    if name in PROPERTY_UNITS or name in ANGLE_UNITS:
         unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
-        follows = name != "twist" and _has_constant_section(scene)
+        follows = name not in ANGLE_UNITS and _has_constant_section(scene)
         if follows or name in unused or getattr(scene.modelled_beam, name) is None:
             return None
     return number_at(scene, path)

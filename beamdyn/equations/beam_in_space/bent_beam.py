@@ -1,0 +1,286 @@
+"""The geometrically exact beam, and its equations linear about any state.
+
+The unknowns are the strains along the axis, six functions of x/L: stretch g1 and shears g2, g3 of the
+section against the tangent, twist rate k1 and curvatures k2, k3, in the axes of the section.  With the
+rotation R of the sections and the position r of the axis,
+
+    R' = R skew(k),   r' = R (e1 + g),
+
+any strains are possible, so that they need satisfy no condition, and the elastic energy is a quadratic form
+of the coordinates.  Fibres off the axis become helices by the twist and so pull the ends together (trapeze
+effect): with the mean strain e of the fibres, i^2 the mean square of their distance from the axis, and t the
+twist of the unloaded sections against the axes in which strains are given,
+
+    g1 = e - i^2/2 ((k1 + t)^2 - (k1_0 + t)^2).
+  A change of the coordinates turns the sections by W and displaces the axis by X,
+
+    W' = R dk,   X' = W x r' + R dg,
+
+all components in space.  With n and m the resultants of the forces F and moments M that act beyond a point,
+virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, is
+
+    int [W_i' . (m x W_j) + R g_i . (n x W_j) + W_i . (X_j' x n) + R'n . g_ij].
+
+References: Hodges (1990), International Journal of Solids and Structures 26, 1253-1273 (strains, intrinsic
+equations); Simo and Vu-Quoc (1986), Computer Methods in Applied Mechanics and Engineering 58, 79-116.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.beam_in_space.rotations import cross, integrate_curvature, turn, turn_back
+from beamdyn.equations.beam_in_space.stations import Masses, MassesInSpace, StationForces, Stations
+
+STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
+
+
+@dataclass(frozen=True)
+class BeamInSpace(FieldsOnly):
+    """A clamped beam that bends, twists, shears and stretches by any amount.
+
+    The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
+
+    Parameters
+    ----------
+    stations : Stations
+        Points along the beam, N of them of a Gauss rule.
+    masses : Masses
+        Masses at the stations.
+    initial : ndarray, shape (6, N)
+        Strains of the unloaded beam, in the order of `STRAINS`; curvatures in 1/m.
+    functions : ndarray, shape (n, 6, N)
+        Strains per coordinate.
+    stiffness, damping : ndarray, shape (n, n)
+        Elastic stiffness and damping of the coordinates.
+    fibres : ndarray, shape (N,)
+        Mean square i^2 of the distance of fibres from the axis [m2]; 0 leaves their shortening out.
+    pretwist : ndarray, shape (N,)
+        Twist t of the unloaded sections against the axes of the strains [1/m].
+    kinks : ndarray, shape (c, 4)
+        Unit quaternions by which the axes turn where each cell of the rule begins: those of a beam whose axis
+        has kinks, or does not begin along e1.
+    """
+
+    stations: Stations
+    masses: Masses
+    initial: np.ndarray
+    functions: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    fibres: np.ndarray
+    pretwist: np.ndarray
+    kinks: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return len(self.functions)
+
+    @property
+    def length(self) -> float:
+        """Length of the beam [m]."""
+        return self.stations.length
+
+    @cached_property
+    def angles(self) -> np.ndarray:
+        """Integrated strains per coordinate, by which changes are measured: shape (n, k)."""
+        used = self.functions.any(axis=(0, 2))
+        return self.stations.to_sections(self.functions[:, used]).reshape(self.size, -1)
+
+    @cached_property
+    def shears(self) -> bool:
+        """Whether the beam shears or stretches, or twist shortens it."""
+        return bool(self.functions[:, :3].any() or self.shortens)
+
+    @cached_property
+    def shortens(self) -> bool:
+        """Whether twist shortens the beam."""
+        return bool(self.fibres.any() and self.functions[:, 3].any())
+
+    def reduced(self, basis: np.ndarray) -> BeamInSpace:
+        """The beam in other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
+        return replace(
+            self,
+            functions=np.tensordot(basis.T, self.functions, 1),
+            stiffness=basis.T @ self.stiffness @ basis,
+            damping=basis.T @ self.damping @ basis,
+        )
+
+    def at(self, q: np.ndarray) -> BentBeam:
+        """The beam at coordinates q (..., n)."""
+        return BentBeam(self, q)
+
+
+def elastic_stiffness(stations: Stations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
+    """Stiffness (n, n) of strains (n, 6, N) by the law of the sections (6, 6, N).
+
+    Raises
+    ------
+    InvalidValue
+        If the law of a section is not positive definite: it would deform without a force.
+    """
+    least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
+    if (least <= 0).any():
+        k = int(least.argmin())
+        bound, remedy = (
+            "it must be positive: such a section deforms without a force",
+            "check its 6 x 6 matrix",
+        )
+        where = f" at x/L = {stations.quadrature.xi[k]:.3g}"
+        raise InvalidValue("least eigenvalue of the section", float(least[k]), bound, remedy, where=where)
+    stress = np.einsum("abj,nbj->naj", law * stations.quadrature.weights * stations.length, functions)
+    return functions.reshape(len(functions), -1) @ stress.reshape(len(functions), -1).T
+
+
+@dataclass(frozen=True)
+class BentBeam(FieldsOnly):
+    """A beam at given coordinates; what is no matrix of them also at several sets (..., n).
+
+    Parameters
+    ----------
+    beam : BeamInSpace
+        The beam.
+    q : ndarray, shape (..., n)
+        Coordinates.
+    """
+
+    beam: BeamInSpace
+    q: np.ndarray
+
+    @cached_property
+    def strains(self) -> np.ndarray:
+        """Strains (..., 6, N)."""
+        return self.beam.initial + np.tensordot(self.q, self.beam.functions, 1)
+
+    @property
+    def _shortening(self) -> np.ndarray:
+        """Stretch per twist rate (..., N), by the helices of the fibres."""
+        return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
+
+    @cached_property
+    def rotations(self) -> np.ndarray:
+        """Axes of the sections, in columns (..., 3, 3, N + 1)."""
+        stations = self.beam.stations
+        curvature = stations.length * self.strains[..., 3:, :]
+        return integrate_curvature(stations.quadrature.cells, curvature, self.beam.kinks)
+
+    @cached_property
+    def _within(self) -> np.ndarray:
+        """Axes of the sections at the Gauss points (3, 3, N)."""
+        return self.rotations[..., :-1]
+
+    @cached_property
+    def tangents(self) -> np.ndarray:
+        """Derivative r' of the position (..., 3, N)."""
+        extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
+        both = twist + beam.initial[3] + 2 * beam.pretwist
+        extended[..., 0, :] += 1 - beam.fibres / 2 * both * (twist - beam.initial[3])
+        return turn(self._within, extended)
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """Positions of the axis at the stations (..., 3, N + 1 + k) [m]."""
+        return self.beam.stations.to_all(self.tangents)
+
+    @property
+    def tip(self) -> np.ndarray:
+        """Position (..., 3) of the tip [m]."""
+        return self.positions[..., self.beam.stations.sections - 1]
+
+    @cached_property
+    def masses(self) -> MassesInSpace:
+        """Masses at their places in space."""
+        return self.beam.masses.turned(self.rotations, self.positions)
+
+    def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rates (..., 3, N), in space, of stretch and shears, and of curvatures, by those (..., n)."""
+        strains = np.tensordot(rates, self.beam.functions, 1)
+        strains[..., 0, :] += self._shortening * strains[..., 3, :]
+        return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])
+
+    def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
+        """Stretch (..., 3, N), in space, that accelerates at constant rates as twist shortens the beam."""
+        twist_rate = rates @ self.beam.functions[:, 3]
+        return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
+
+    # Motions by the coordinates -----------------------------------------------------------------------
+
+    @cached_property
+    def _turning(self) -> np.ndarray:
+        """Derivatives W' (n, 3, N) of the rotations by the coordinates."""
+        return turn(self._within, self.beam.functions[:, 3:])
+
+    @cached_property
+    def _straining(self) -> np.ndarray:
+        """Shears and stretch R dg (n, 3, N) by the coordinates."""
+        strains = self.beam.functions[:, :3].copy()
+        strains[:, 0] += self._shortening * self.beam.functions[:, 3]
+        return turn(self._within, strains)
+
+    @cached_property
+    def _turned(self) -> np.ndarray:
+        """Rotations W (n, 3, N + 1) by the coordinates."""
+        return self.beam.stations.to_sections(self._turning)
+
+    @cached_property
+    def displacement_rates(self) -> np.ndarray:
+        """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
+        rates = cross(self._turned[..., :-1], self.tangents)
+        return rates + self._straining if self.beam.shears else rates
+
+    @cached_property
+    def motions(self) -> np.ndarray:
+        """Displacements and rotations of the stations by the coordinates (n, 6, N + 1 + k)."""
+        stations = self.beam.stations
+        motions = np.zeros((self.beam.size, 6, stations.count))
+        motions[:, :3] = stations.to_all(self.displacement_rates)
+        motions[:, 3:, : stations.sections] = self._turned
+        return motions
+
+    # Work of forces on the stations -------------------------------------------------------------------
+
+    def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces n and moments m (..., 3, N) by what acts beyond, times the weights of the rule."""
+        stations = self.beam.stations
+        n = stations.from_all(force[..., :3, :])
+        moments = force[..., 3:, : stations.sections].copy()
+        moments[..., :-1] += cross(self.tangents, n)
+        return n, stations.from_sections(moments)
+
+    def work(self, force: np.ndarray) -> np.ndarray:
+        """Virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
+        stress = np.concatenate([turn_back(self._within, each) for each in self.resultants(force)], axis=-2)
+        stress[..., 3, :] += self._shortening * stress[..., 0, :]
+        return stress.reshape(*stress.shape[:-2], -1) @ self.beam.functions.reshape(self.beam.size, -1).T
+
+    def work_change(self, forces: StationForces) -> np.ndarray:
+        """Derivative (n, n) of the virtual work by the coordinates."""
+        n, m = self.resultants(forces.force)
+        W = self._turned[..., :-1]
+        change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
+        if self.beam.shears:
+            change += _product(self._straining, cross(n, W))
+        if self.beam.shortens:
+            twist, along = self.beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
+            change -= _product(twist * (self.beam.fibres * along), twist)
+        return change + self.of_stations(forces.tangent)
+
+    def of_stations(self, matrices: np.ndarray) -> np.ndarray:
+        """Matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
+        return _product(self.motions, np.einsum("abj,nbj->naj", matrices, self.motions))
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """Mass matrix (n, n)."""
+        return self.of_stations(self.masses.matrix)
+
+
+def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Products (n, n) of vectors (n, ..., N), summed over components and points."""
+    return a.reshape(len(a), -1) @ b.reshape(len(b), -1).T

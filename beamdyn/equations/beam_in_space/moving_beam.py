@@ -1,0 +1,127 @@
+"""A beam in space in any motion on a carrier in any motion: its exact inertial forces and energies.
+
+With the rates k. and g. of the strains, the sections turn against the carrier with the rate w and move with
+the velocity v,
+
+    w' = R k.,                            v' = w x r' + R g.,
+    (w.)' = R k.. + w x R k.,             (v.)' = w. x r' + w x v' + w x R g. + R g..,
+
+and in axes that turn with the carrier at the rate W a centre of mass c has the acceleration of the root and
+
+    c.. + 2 W x c. + W. x c + W x (W x c),
+
+a section of inertia I the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.beam_in_space.bent_beam import BentBeam
+from beamdyn.equations.beam_in_space.rotations import cross, turn
+
+_AT_REST = np.zeros(3)
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """Motion of the carrier, in axes that turn with it, at one time or several.
+
+    Parameters
+    ----------
+    turning, turning_rate : ndarray, shape (..., 3)
+        Angular velocity [rad/s] and acceleration [rad/s2].
+    root_acceleration : ndarray, shape (..., 3)
+        Acceleration of the root, less gravity [m/s2].
+    """
+
+    turning: np.ndarray = field(default_factory=_AT_REST.copy)
+    turning_rate: np.ndarray = field(default_factory=_AT_REST.copy)
+    root_acceleration: np.ndarray = field(default_factory=_AT_REST.copy)
+
+
+@dataclass(frozen=True)
+class MovingBeam(FieldsOnly):
+    """A beam at given coordinates and rates on a carrier, at one time or several.
+
+    Parameters
+    ----------
+    bent : BentBeam
+        The beam at the coordinates.
+    rates : ndarray, shape (..., n)
+        Rates of the coordinates.
+    carrier : Carrier
+        Motion of the carrier.
+    """
+
+    bent: BentBeam
+    rates: np.ndarray
+    carrier: Carrier
+
+    @cached_property
+    def _strain_rates(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rates (..., 3, N), in space, of stretch and shears, and of the curvatures."""
+        return self.bent.strain_rates(self.rates)
+
+    @cached_property
+    def _turning(self) -> np.ndarray:
+        """Turning rates (..., 3, N + 1) of the sections against the carrier."""
+        return self.bent.beam.stations.to_sections(self._strain_rates[1])
+
+    @cached_property
+    def _tangent_rate(self) -> np.ndarray:
+        """Rate (..., 3, N) of the derivative r' of the position."""
+        return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """Velocities (..., 3, N + 1 + k) of the axis against the carrier."""
+        return self.bent.beam.stations.to_all(self._tangent_rate)
+
+    def forces(self, accelerations: np.ndarray) -> np.ndarray:
+        """Inertial forces on the stations (..., 6, N + 1 + k), for accelerations (..., n)."""
+        bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
+        straining, bending = bent.strain_rates(accelerations)
+        w, strained = self._turning[..., :-1], self._strain_rates
+        turning_rate = stations.to_sections(bending + cross(w, strained[1]))
+        tangent_rate = cross(turning_rate[..., :-1], bent.tangents) + straining
+        tangent_rate += cross(w, self._tangent_rate + strained[0]) + bent.shortening_rate(self.rates)
+        turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))
+        W, W_rate, root = (each[..., None] for each in vars(self.carrier).values())
+        of_lever = cross(turning, masses.lever)
+        relative = (
+            stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
+        )
+        carried = cross(W_rate, masses.centre) + root
+        carried += cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
+        F = masses.mass * (relative + carried)
+        spin, spin_rate = turning + W, turning_rate + W_rate + cross(W, turning)
+        M = turn(masses.inertia, spin_rate) + cross(spin, turn(masses.inertia, spin))
+        return np.concatenate([F, M + cross(masses.lever, F)], axis=-2)
+
+    def residual(self, accelerations: np.ndarray) -> np.ndarray:
+        """Sum of elastic, damping and inertial forces (..., n): 0 in motion."""
+        beam = self.bent.beam
+        elastic = self.bent.q @ beam.stiffness + self.rates @ beam.damping
+        return elastic + self.bent.work(self.forces(accelerations))
+
+    @property
+    def energy(self) -> np.ndarray:
+        """Energy integral (...) [J] of a carrier that turns steadily: constant in undamped free motion.
+
+        It is the kinetic energy against the carrier, the elastic one and the potential of the centrifugal
+        forces and of the acceleration of the root.
+        """
+        bent, masses, W = self.bent, self.bent.masses, self.carrier.turning[..., None]
+        turning = bent.beam.stations.of_all(self._turning)
+        velocity, carried = self.velocity + cross(turning, masses.lever), cross(W, masses.centre)
+        kinetic = (velocity**2 - carried**2).sum(axis=-2) @ masses.mass
+        each = (turning * turn(masses.inertia, turning)).sum(axis=-2)
+        kinetic += (each - (W * turn(masses.inertia, W)).sum(axis=-2)).sum(axis=-1)
+        elastic = ((bent.q @ bent.beam.stiffness) * bent.q).sum(axis=-1)
+        by_root = (self.carrier.root_acceleration[..., None] * masses.centre).sum(axis=-2) @ masses.mass
+        return (kinetic + elastic) / 2 + by_root

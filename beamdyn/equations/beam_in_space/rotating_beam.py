@@ -1,0 +1,391 @@
+"""The beam in space on a carrier that turns: its equations of motion, and linear about any state.
+
+The coordinates and the elastic energy are those of the fields of the straight beam (bending in two
+directions, shear, stretch, torsion), whose functions are here those of the strains.  What the root's motion
+does to the masses is exact.  The Coriolis forces need no derivation of their own: with the generalized
+inertial force p by a unit angular acceleration, which is the angular momentum per coordinate, and E its
+derivative by the coordinates, the gyroscopic matrix per speed is E - E^T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
+from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
+from beamdyn.equations.beam_in_space.rotations import turn_tensors
+from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
+from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
+from beamdyn.equations.equations_of_motion import Equations, Shape
+from beamdyn.equations.fields.field import Deflection, Load, Term
+from beamdyn.equations.quadrature import ArcQuadrature
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
+from beamdyn.scene.scene import Scene
+
+_AXES = np.eye(3)
+_KEPT = 4  # states of the beam that are kept
+_DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
+_ROOT: dict[Quantity, np.ndarray] = dict(
+    zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True)
+)
+
+
+class _Strain(NamedTuple):
+    """The strain of a field of the straight beam: a derivative by x of its functions, times a sign."""
+
+    name: str
+    order: int
+    conditions: RootConditions
+    sign: float = 1.0
+
+
+def _strains_of_fields(beam: Beam) -> dict[str, _Strain]:
+    """The strain of each field; positive deflection across turns sections backwards."""
+    warps = beam.warping_stiffness is not None
+    bending, shear = (
+        CLAMPED._replace(stiffness="bending_stiffness"),
+        FIXED._replace(stiffness="shear_stiffness"),
+    )
+    torsion = (
+        CLAMPED._replace(stiffness="warping_stiffness")
+        if warps
+        else FIXED._replace(stiffness="torsion_stiffness")
+    )
+    return {
+        "bending": _Strain("curvature", 2, bending),
+        "second bending": _Strain("second curvature", 2, bending._replace(direction=1), -1.0),
+        "shear": _Strain("shear", 1, shear),
+        "second shear": _Strain("second shear", 1, shear._replace(direction=1)),
+        "stretch": _Strain("stretch", 1, FIXED._replace(stiffness="axial_stiffness")),
+        "torsion": _Strain("twist rate", 1, torsion),
+    }
+
+
+def axis_of_rotation(scene: Scene) -> np.ndarray:
+    """Axis (3,) of positive rotation of the carrier along e1, e2, e3."""
+    (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
+    return -np.array([sine, cosine * s, cosine * c])
+
+
+def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear: Equations) -> RotatingBeam:
+    """Assemble the equations of a scene for large deflection in space, over those of the straight beam."""
+    beam = scene.modelled_beam
+    quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
+    stations, length = Stations(quadrature, beam.length, beam.lumps[0]), beam.length
+    functions = np.zeros((linear.size, 6, len(quadrature.xi)))
+    known = _strains_of_fields(beam)
+    for name, place in linear.blocks.items():
+        strain = known[name]
+        along = spaces.functions(strain.conditions).evaluate(quadrature.xi, strain.order)
+        functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
+    curvature, kinks = curve_of_axis(beam, quadrature)
+    nothing = np.zeros((linear.size, linear.size))
+    model = BeamInSpace(
+        stations,
+        _masses(scene, stations),
+        np.concatenate([np.zeros((3, len(quadrature.xi))), curvature]),
+        functions,
+        linear.matrices[0]["unity"],
+        linear.matrices[1].get("unity", nothing),
+        *_fibres(beam, quadrature.xi),
+        kinks,
+    )
+    return RotatingBeam(model, linear, axis_of_rotation(scene))
+
+
+def _masses(scene: Scene, stations: Stations) -> Masses:
+    """Masses of a scene's beam at stations: of sections, of the body at the tip, and point masses."""
+    beam, tip, xi = scene.modelled_beam, scene.beam.tip or TipMass(0.0), stations.quadrature.xi
+    weights = stations.quadrature.weights * beam.length
+    first, second = (
+        weights * (np.zeros_like(xi) if inertia is None else inertia(xi))
+        for inertia in (beam.rotary_inertia, beam.second_rotary_inertia)
+    )
+    body = tip.axial_inertia, tip.inertia_about_bending_direction, tip.inertia
+    principal = np.column_stack([np.stack([first + second, second, first]), body])
+    centre = np.zeros((3, stations.sections))
+    centre[0, -1] = tip.offset
+    mass = np.concatenate([weights * beam.mass_per_length(xi), [tip.mass], beam.lumps[1]])
+    return Masses(
+        mass, centre, turn_tensors(_turned_sections(beam, xi), principal[:, None] * _AXES[..., None])
+    )
+
+
+def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean square distance (N,) of fibres from the axis, and twist (N,) of the unloaded sections, at xi.
+
+    Sections are as homogeneous in their stiffness as in their mass; without torsion it does not matter.
+    """
+    twist = np.zeros_like(xi) if beam.twist is None else beam.twist.derivative()(xi) / beam.length
+    if beam.torsion_stiffness is None:
+        return np.zeros_like(xi), twist
+    assert beam.rotary_inertia is not None and beam.second_rotary_inertia is not None
+    polar = beam.rotary_inertia(xi) + beam.second_rotary_inertia(xi)
+    return polar / beam.mass_per_length(xi), twist
+
+
+def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
+    """Axes (3, 3, N + 1) of the unloaded sections at xi (N,) and at the tip, turned by the twist."""
+    twist = np.zeros(len(xi) + 1) if beam.twist is None else np.append(beam.twist(xi), beam.tip_twist)
+    axes = np.zeros((3, 3, len(twist)))
+    axes[0, 0] = 1.0
+    axes[1:, 1:] = [[np.cos(twist), -np.sin(twist)], [np.sin(twist), np.cos(twist)]]
+    return axes
+
+
+@dataclass(frozen=True)
+class RotatingBeam(FieldsOnly):
+    """Equations of motion of a beam in space on a carrier.
+
+    Parameters
+    ----------
+    beam : BeamInSpace
+        The beam.
+    linear : Equations
+        Equations of the same coordinates by the fields of the straight beam, each of which is a block: their
+        functions, elastic stiffness and damping are those of this beam.
+    axis : ndarray, shape (3,)
+        Axis of positive rotation of the carrier along e1, e2, e3.
+    """
+
+    beam: BeamInSpace
+    linear: Equations
+    axis: np.ndarray
+
+    @property
+    def quantities(self) -> tuple[Quantity, ...]:
+        """Quantities of the root's motion that load the beam."""
+        return "speed_squared", "acceleration", *_ROOT
+
+    @property
+    def length(self) -> float:
+        """Length of the beam [m]."""
+        return self.beam.length
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return self.beam.size
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Integrated strains per coordinate, by which changes are measured: shape (n, k)."""
+        return self.beam.angles
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """Elastic stiffness (n, n)."""
+        return self.beam.stiffness
+
+    @cached_property
+    def about_straight(self) -> Equations:
+        """Equations of small motions about the straight beam."""
+        return self.at(np.zeros(self.size)).linearized()
+
+    def reduced(self, modal: Equations) -> RotatingBeam:
+        """The beam in the coordinates of equations to which those about the straight beam were reduced."""
+        basis = np.zeros((self.size, modal.size))
+        for name, place in self.linear.blocks.items():
+            shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
+            basis[place, modal.blocks[shape.block]] = shape.matrix
+        return RotatingBeam(self.beam.reduced(basis), modal, self.axis)
+
+    def at(self, q: np.ndarray) -> BentState:
+        """The beam at coordinates q (n,); the last few are kept, as they are asked for again."""
+        key = q.tobytes()
+        if key not in self._kept:
+            if len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[key] = BentState(self, self.beam.at(q.copy()))
+        return self._kept[key]
+
+    @cached_property
+    def _kept(self) -> dict[bytes, BentState]:
+        return {}
+
+    def tip(self, q: np.ndarray) -> np.ndarray:
+        """Position (..., 3) of the tip from the root along e1, e2, e3 [m], at coordinates q (..., n)."""
+        tips = [self.beam.at(each).tip for each in q.reshape(-1, self.size)]
+        return np.reshape(tips, (*q.shape[:-1], 3))
+
+    def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
+        """Curvature (..., k) [1/m] in the direction of bending at q (..., n) and x/L = xi (k,)."""
+        own = self.beam.functions[:, STRAINS.index("curvature")]
+        return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
+
+    def tip_angle(self, q: np.ndarray) -> float:
+        """Angle between the beam at the tip and at the root [rad], at coordinates q (n,)."""
+        along = self.beam.at(q).rotations[:, 0, -1]
+        return float(np.arctan2(np.hypot(along[1], along[2]), along[0]))
+
+
+@dataclass(frozen=True)
+class BentState(FieldsOnly):
+    """A beam on a carrier at given coordinates.
+
+    Parameters
+    ----------
+    of : RotatingBeam
+        Equations of motion.
+    bent : BentBeam
+        The beam at the coordinates.
+    """
+
+    of: RotatingBeam
+    bent: BentBeam
+
+    def positions(self, xi: np.ndarray) -> np.ndarray:
+        """Positions (k, 3) along e1, e2, e3 [m] at x/L = xi of shape (k,)."""
+        weights = self.of.length * self.of.beam.stations.quadrature.integrate_to(xi)
+        return weights @ self.bent.tangents.T
+
+    def inertial_forces(self, quantity: Quantity) -> StationForces:
+        """Inertial forces on the stations per unit of a quantity of the root's motion."""
+        masses = self.bent.masses
+        if quantity == "speed_squared":
+            return masses.centrifugal(self.of.axis)
+        if quantity == "acceleration":
+            return masses.euler(self.of.axis)
+        return masses.translated(_ROOT[quantity])
+
+    def inertia_of(self, quantity: Quantity) -> np.ndarray:
+        """Generalized inertial force (n,) per unit of a quantity."""
+        return self.bent.work(self.inertial_forces(quantity).force)
+
+    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Generalized inertial force (n,) under given values of the quantities."""
+        return self._under(values).work
+
+    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Derivative (n, n) of `inertia` by the coordinates."""
+        return self._under(values).change
+
+    def _under(self, values: Mapping[Quantity, float]) -> _Loaded:
+        """The beam under given values of the quantities, kept as it is asked for again."""
+        key = tuple(values.items())
+        if key not in self._known:
+            each = (self.inertial_forces(quantity).scaled(value) for quantity, value in key)
+            self._known[key] = _Loaded(self.bent, StationForces.total(each))
+        return self._known[key]
+
+    @cached_property
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], _Loaded]:
+        return {}
+
+    def stiffness_of(self, quantity: Quantity) -> np.ndarray:
+        """Derivative (n, n) of `inertia_of` by the coordinates."""
+        return self.bent.work_change(self.inertial_forces(quantity))
+
+    def linearized(self) -> Equations:
+        """Equations of small motions about this state, the elastic force of which is among the loads."""
+        linear, beam = self.of.linear, self.of.beam
+        euler = self.stiffness_of("acceleration")
+        terms = [
+            *self._terms("mass", self.bent.mass, 2),
+            *self._terms("Coriolis coupling", euler - euler.T, 1, "speed"),
+            *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
+        ]
+        loads = [*self._loads("elastic force", beam.stiffness @ self.bent.q, "unity")]
+        for quantity in self.of.quantities:
+            change = euler if quantity == "acceleration" else self.stiffness_of(quantity)
+            terms += self._terms(f"stiffness by {quantity}", change, 0, quantity)
+            loads += self._loads(f"load by {quantity}", self.inertia_of(quantity), quantity)
+        shapes, deflections = {}, {}
+        for name, place in linear.blocks.items():
+            for direction in range(linear.planes):
+                own = linear.deflections.get(name)
+                key = name if own and own.direction == direction else f"{name}, {_DIRECTIONS[direction]}"
+                deflections[key] = self._deflection(place, direction)
+                shapes[key] = Shape(name, np.eye(place.stop - place.start))
+        shapes |= {name: shape for name, shape in linear.shapes.items() if name not in shapes}
+        return replace(
+            linear, terms=(*terms,), loads=(*loads,), deflections=deflections, shapes=shapes, coarse=None
+        )
+
+    def _terms(
+        self, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
+    ) -> Iterator[Term]:
+        """Terms of a matrix (n, n), by blocks."""
+        blocks = self.of.linear.blocks
+        for row, i in blocks.items():
+            for column, j in blocks.items():
+                if matrix[i, j].any():
+                    yield Term(name, row, column, order, matrix[i, j], quantity)
+
+    def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
+        """Loads of the left-hand side (n,), by blocks."""
+        for row, i in self.of.linear.blocks.items():
+            yield Load(name, row, vector[i], quantity, -1.0)
+
+    def _deflection(self, place: slice, direction: int) -> Deflection:
+        """Deflection in a direction by the coordinates of a block, with its loads."""
+        masses, axis = self.bent.masses, np.array([-_AXES[2], _AXES[1]][direction])
+        by_root = self.bent.work(masses.translated(_AXES[1 + direction]).force)
+        by_turning = -self.bent.work(masses.euler(axis).force)
+        none = np.zeros(place.stop - place.start)
+        functions = DeflectedFunctions(self.bent, place, direction)
+        return Deflection(functions, by_root[place], by_turning[place], none, direction)
+
+
+@dataclass(frozen=True)
+class _Loaded(FieldsOnly):
+    """A bent beam with forces on its stations."""
+
+    bent: BentBeam
+    forces: StationForces
+
+    @cached_property
+    def work(self) -> np.ndarray:
+        """Virtual work (n,)."""
+        return self.bent.work(self.forces.force)
+
+    @cached_property
+    def change(self) -> np.ndarray:
+        """Derivative (n, n) of the virtual work."""
+        return self.bent.work_change(self.forces)
+
+
+@dataclass(frozen=True)
+class DeflectedFunctions(FieldsOnly):
+    """Changes of the deflection of a bent beam in a direction, as functions of x/L.
+
+    Parameters
+    ----------
+    bent : BentBeam
+        The bent beam.
+    place : slice
+        Coordinates of a block.
+    direction : int
+        0 for the direction of bending at the root, 1 for that across.
+    """
+
+    bent: BentBeam
+    place: slice
+    direction: int
+
+    @property
+    def size(self) -> int:
+        """Number of functions."""
+        return self.place.stop - self.place.start
+
+    def end(self, order: int) -> np.ndarray:
+        """Evaluate the `order`-th derivatives at the tip."""
+        return self.evaluate(np.ones(1), order)[:, 0]
+
+    def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
+        """Evaluate the functions (order 0) or derivatives by x/L (1, 2) at xi (k,): shape (n, k)."""
+        stations = self.bent.beam.stations
+        moving = self.bent.displacement_rates[self.place, 1 + self.direction] * stations.length
+        if order == 0:
+            return moving @ stations.quadrature.integrate_to(xi).T
+        if order == 1:
+            return moving @ stations.quadrature.interpolate_to(xi).T
+        raise ValueError("only the deflection and its slope follow a deflected beam")

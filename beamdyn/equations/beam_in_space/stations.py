@@ -1,0 +1,215 @@
+"""Stations along a beam: the points at which its masses stand and at which forces act.
+
+Stations are the N Gauss points of a rule along the beam, its tip, and k point masses.  Motions of a station
+are (X, W): the displacement of the beam's axis and the rotation of its section, components in space.  Forces
+are (F, M): the force and the moment about the axis that do work on them.  Arrays have 6 components, then the
+N + 1 + k stations; the rotation of a point mass is not counted, and taken as 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.equations.beam_in_space.rotations import cross, skew, turn, turn_tensors
+from beamdyn.equations.quadrature import ArcQuadrature
+
+
+@dataclass(frozen=True)
+class Stations(FieldsOnly):
+    """Integrals along a beam to its stations, and their transposes.
+
+    Parameters
+    ----------
+    quadrature : ArcQuadrature
+        Gauss rule along the beam, of N points.
+    length : float
+        Length of the beam [m].
+    lumps : ndarray, shape (k,)
+        Positions x/L of the point masses.
+    """
+
+    quadrature: ArcQuadrature
+    length: float
+    lumps: np.ndarray
+
+    @property
+    def sections(self) -> int:
+        """Number N + 1 of stations that have a rotation."""
+        return len(self.quadrature.xi) + 1
+
+    @property
+    def count(self) -> int:
+        """Number of all stations."""
+        return self.sections + len(self.lumps)
+
+    @cached_property
+    def _to_lumps(self) -> np.ndarray:
+        """Weights (k, N) of the integrals from the root to the point masses."""
+        return self.quadrature.integrate_to(self.lumps)
+
+    def to_sections(self, values: np.ndarray) -> np.ndarray:
+        """Integrate values (..., N) per length from the root: (..., N + 1)."""
+        return self.length * self.quadrature.integrate(values)
+
+    def to_all(self, values: np.ndarray) -> np.ndarray:
+        """Integrate values (..., N) per length from the root: (..., N + 1 + k)."""
+        to_sections = self.to_sections(values)
+        if not self.lumps.size:
+            return to_sections
+        return np.concatenate([to_sections, self.length * values @ self._to_lumps.T], axis=-1)
+
+    def of_all(self, of_sections: np.ndarray) -> np.ndarray:
+        """Values (..., N + 1 + k) of all stations from those of sections (..., N + 1); others are 0."""
+        none = np.zeros((*of_sections.shape[:-1], len(self.lumps)))
+        return np.concatenate([of_sections, none], axis=-1) if self.lumps.size else of_sections
+
+    def from_sections(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `to_sections` to forces (..., N + 1): (..., N), sums of what acts beyond."""
+        return self.length * self.quadrature.transposed(forces)
+
+    def from_all(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `to_all` to forces (..., N + 1 + k): (..., N)."""
+        total = self.from_sections(forces[..., : self.sections])
+        if self.lumps.size:
+            total += self.length * forces[..., self.sections :] @ self._to_lumps
+        return total
+
+
+@dataclass(frozen=True)
+class Masses:
+    """Masses at the stations; moments and positions are given in the axes of the undeformed beam.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (N + 1 + k,)
+        Masses [kg].
+    centre : ndarray, shape (3, N + 1)
+        Centres of mass from the axis [m].
+    inertia : ndarray, shape (3, 3, N + 1)
+        Tensors of inertia about the centres of mass [kg m2].
+    """
+
+    mass: np.ndarray
+    centre: np.ndarray
+    inertia: np.ndarray
+
+    @cached_property
+    def turns(self) -> bool:
+        """Whether any station has a tensor of inertia."""
+        return bool(self.inertia.any())
+
+    def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
+        """The masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
+        levers = np.zeros_like(positions)
+        levers[..., : self.centre.shape[1]] = turn(R, self.centre)
+        inertia = np.zeros((*R.shape[:-1], len(self.mass)))
+        if self.turns:
+            inertia[..., : R.shape[-1]] = turn_tensors(R, self.inertia)
+        return MassesInSpace(self.mass, positions + levers, levers, inertia)
+
+
+@dataclass(frozen=True)
+class StationForces:
+    """Forces on the stations and how they follow a motion: (F, M) = force + tangent (X, W).
+
+    Parameters
+    ----------
+    force : ndarray, shape (6, N + 1 + k)
+        Forces [N] and moments [N m].
+    tangent : ndarray, shape (6, 6, N + 1 + k)
+        Their derivatives by displacements and rotations.
+    """
+
+    force: np.ndarray
+    tangent: np.ndarray
+
+    @classmethod
+    def total(cls, each: Iterable[StationForces]) -> StationForces:
+        """The sum of some forces."""
+        several = [*each]
+        return cls(*(np.sum([getattr(f, name) for f in several], axis=0) for name in ("force", "tangent")))
+
+    def scaled(self, factor: float) -> StationForces:
+        """The forces times a factor."""
+        return StationForces(factor * self.force, factor * self.tangent)
+
+
+@dataclass(frozen=True)
+class MassesInSpace:
+    """Masses at their places in space: mass m, centre c = axis + lever, tensor of inertia I about it.
+
+    Their inertial forces are mass times acceleration, and the rate of angular momentum, with the sign of the
+    left-hand side of the equations of motion.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (N + 1 + k,)
+        Masses [kg].
+    centre, lever : ndarray, shape (3, N + 1 + k)
+        Centres of mass from the root and from the axis [m].
+    inertia : ndarray, shape (3, 3, N + 1 + k)
+        Tensors of inertia [kg m2].
+    """
+
+    mass: np.ndarray
+    centre: np.ndarray
+    lever: np.ndarray
+    inertia: np.ndarray
+
+    @cached_property
+    def matrix(self) -> np.ndarray:
+        """Mass matrices (6, 6, N + 1 + k)."""
+        return self._of_centre(np.eye(3), self.inertia)
+
+    def centrifugal(self, axis: np.ndarray) -> StationForces:
+        """Inertial forces per squared speed of a rotation about a unit axis (3,), and their derivatives."""
+        A = skew(axis)
+        return self._accelerated(A @ A, A[:, :, None], self._momentum(axis), axis)
+
+    def euler(self, axis: np.ndarray) -> StationForces:
+        """Inertial forces per angular acceleration about an axis (3,), and their derivatives."""
+        return self._accelerated(skew(axis), np.eye(3)[..., None], self._momentum(axis), axis)
+
+    def translated(self, direction: np.ndarray) -> StationForces:
+        """Inertial forces per acceleration of the root in a direction (3,), and their derivatives."""
+        tangent = np.zeros((6, 6, len(self.mass)))
+        return self._with_levers(self.mass * direction[:, None], tangent)
+
+    def _momentum(self, axis: np.ndarray) -> np.ndarray:
+        """Angular momentum about the centres per speed (3, N + 1 + k)."""
+        return np.einsum("abj,b->aj", self.inertia, axis)
+
+    def _accelerated(
+        self, A: np.ndarray, of_momentum: np.ndarray, momentum: np.ndarray, axis: np.ndarray
+    ) -> StationForces:
+        """Inertial forces m A c and moments `of_momentum` (I a), and their derivatives."""
+        turned = np.einsum("abj,bc->acj", self.inertia, skew(axis)) - skew(momentum)  # d(I a) by W
+        rate = np.broadcast_to(of_momentum, turned.shape)
+        tangent = self._of_centre(A, np.einsum("abj,bcj->acj", rate, turned))
+        forces = self._with_levers(self.mass * (A @ self.centre), tangent)
+        forces.force[3:] += np.einsum("abj,bj->aj", rate, momentum)
+        return forces
+
+    def _with_levers(self, F: np.ndarray, tangent: np.ndarray) -> StationForces:
+        """Forces at the centres, with their moments about the axis, which change as the levers turn."""
+        if self.lever.any():
+            tangent[3:, 3:] += np.einsum("abj,bcj->acj", skew(F), skew(self.lever))
+        return StationForces(np.concatenate([F, cross(self.lever, F)]), tangent)
+
+    def _of_centre(self, A: np.ndarray, turning: np.ndarray) -> np.ndarray:
+        """Matrices (6, 6, N + 1 + k) of forces m A (displacement of the centre) and moments turning W."""
+        matrix = np.zeros((6, 6, len(self.mass)))
+        matrix[:3, :3] = A[..., None] * self.mass
+        matrix[3:, 3:] = turning
+        if self.lever.any():
+            levers = skew(self.lever)
+            by_turning = -np.einsum("abj,bcj->acj", matrix[:3, :3], levers)
+            matrix[:3, 3:] = by_turning
+            matrix[3:, :3] = np.einsum("abj,bcj->acj", levers, matrix[:3, :3])
+            matrix[3:, 3:] += np.einsum("abj,bcj->acj", levers, by_turning)
+        return matrix

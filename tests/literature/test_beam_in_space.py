@@ -1,0 +1,83 @@
+"""The beam in space: closed forms, and published static cases, converged."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import jv
+
+from beamdyn.equations.beam_in_space.bent_beam import STRAINS
+from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
+from benchmarks.cases.beams_in_space import (
+    BENDING,
+    E1,
+    E3,
+    bend,
+    bend_of_45_deg,
+    flutter_load,
+    helix,
+    lateral_buckling_load,
+    uniform,
+)
+
+CLOSED = 1e-9
+
+
+def test_pure_bending_closes_a_circle() -> None:
+    stiffness = 2.0
+    beam = uniform(1.5, np.diag([1, 1, 1, 1, 1, stiffness]), ("curvature",))
+    bent = bend(beam, TipLoad(couple=2 * np.pi * stiffness / 1.5 * E3))
+    np.testing.assert_allclose(bent.tip, 0.0, atol=CLOSED)
+    np.testing.assert_allclose(bent.rotations[..., -1], np.eye(3), atol=CLOSED)
+
+
+@pytest.mark.parametrize("torsion", [2.0, 1.2], ids=["one stiffness", "torsion softer"])
+def test_oblique_couple_bends_to_a_helix(torsion: float) -> None:
+    stiffness, couple = 2.0, 12.0 * (np.cos(0.5) * E1 + np.sin(0.5) * E3)
+    beam = uniform(1.0, np.diag([1, 1, 1, torsion, stiffness, stiffness]), BENDING, functions=16)
+    bent = bend(beam, TipLoad(couple=couple), steps=12)
+    np.testing.assert_allclose(bent.tip, helix(1.0, stiffness, couple), atol=CLOSED)
+    twist, *curvature = bent.strains[3:]
+    np.testing.assert_allclose(twist, 12 * np.cos(0.5) / torsion, rtol=1e-8)  # at single points
+    np.testing.assert_allclose(np.hypot(*curvature), 12 * np.sin(0.5) / stiffness, rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("torsion", "strains", "converged"),
+    [  # digits printed: by a boundary-value problem of its own
+        (1 / 6, STRAINS, [-23.5602, -13.6045, 53.4749]),
+        (1 / 6, BENDING, [-23.559, -13.604, 53.469]),
+        (0.14058, STRAINS, [-23.819, -13.732, 53.607]),
+    ],
+    ids=["extensible, J = 1/6", "inextensible, J = 1/6", "extensible, J of the square"],
+)
+def test_bend_of_45_deg(torsion: float, strains: tuple[str, ...], converged: list[float]) -> None:
+    digits = 0.51e-4 if strains is STRAINS and torsion == 1 / 6 else 0.51e-3
+    np.testing.assert_allclose(bend_of_45_deg(torsion, strains), converged, rtol=0, atol=digits)
+
+
+def test_lateral_buckling() -> None:
+    exact = 2 * float(brentq(lambda x: jv(-0.25, x), 1.8, 2.2, xtol=1e-14))
+    assert exact == pytest.approx(4.0126, abs=5e-5)
+    assert lateral_buckling_load() == pytest.approx(exact, rel=CLOSED)
+
+
+def frequency_equation(load: float, frequency: float) -> float:
+    """Zero where a beam of unit length, stiffness and mass under a load that follows it vibrates (Beck)."""
+    root = np.hypot(load / 2, frequency)
+    a, b = np.sqrt(root + load / 2), np.sqrt(root - load / 2)
+    waves = load * frequency * np.sin(a) * np.sinh(b) + 2 * frequency**2 * np.cos(a) * np.cosh(b)
+    return float(load**2 + 2 * frequency**2 + waves)
+
+
+def test_flutter_under_a_load_that_follows() -> None:
+    def least(load: float) -> float:  # between the first two frequencies, which meet where it is 0
+        between = minimize_scalar(
+            lambda w: frequency_equation(load, w), bounds=(8, 14), method="bounded", options={"xatol": 1e-9}
+        )
+        return float(between.fun)
+
+    exact = float(brentq(least, 19.5, 20.5, xtol=1e-12))
+    assert exact == pytest.approx(20.0509, rel=1e-5)  # as printed, cut off
+    assert flutter_load() == pytest.approx(exact, rel=CLOSED)
