@@ -351,7 +351,7 @@ def test_a_speed_whose_powers_overflow_is_refused_by_name(speed):
 @pytest.mark.parametrize(
     ("call", "name", "value", "sentence"),
     [
-        ("natural_modes", "modes", 10**9, "modes = 1000000000: Ritz(functions=200, "),
+        ("natural_modes", "modes", 10**9, "modes = 1000000000: Rayleigh-Ritz with 200 Legendre functions"),
         ("resonance_speeds", "order", 1e300, "order = 1e+300: give a whole number from 1 to 20"),
         ("steady_response", "harmonics", 10**6, "harmonics = 1000000: give a whole number from 0 to 20"),
         ("natural_modes", "scene", BEAM, "give a Scene; Scene(beam, mount) makes one of a beam"),
