@@ -27,6 +27,8 @@ Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; th
 def section_tensor(beam: Beam, name: str) -> Tensor:
     """Tensor of a property of the sections, such as "bending_stiffness", in the directions e1, e2.
 
+    That of the rotary inertia is about the axis, not the centre of mass, where the two differ.
+
     Parameters
     ----------
     beam : Beam
@@ -43,6 +45,8 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}
+    if name == "rotary_inertia" and second is not None and beam.mass_offset is not None:
+        second = second + beam.mass_per_length * beam.mass_offset * beam.mass_offset
     if second is None:
         return {(0, 0): first}
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
@@ -65,6 +69,18 @@ def _turned_values(
     """Entries 11, 12 and 22 of the tensor."""
     c, s = np.cos(twist), np.sin(twist)
     return np.stack([first * c**2 + second * s**2, excess * (c * s), first * s**2 + second * c**2])
+
+
+@lru_cache(maxsize=64)
+def offset_components(beam: Beam, name: str) -> tuple[Profile, Profile] | None:
+    """Components of an offset of the sections in the directions e1, e2 [m]; None where it is 0 or not given."""
+    offset, twist = getattr(beam, name), beam.twist
+    if offset is None or not any(any(row) for row in offset.coefficients):
+        return None
+    if twist is None:
+        return offset.scaled(0.0), offset
+    first, second = combine(lambda e, beta: np.stack([-e * np.sin(beta), e * np.cos(beta)]), offset, twist)
+    return first, second
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:

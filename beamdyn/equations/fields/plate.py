@@ -48,7 +48,8 @@ from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.section_torsion import assemble_section_torsion
-from beamdyn.equations.fields.transverse import axis_in_section
+from beamdyn.equations.fields.stretch import STRETCHED, Stretch
+from beamdyn.equations.fields.transverse import TransverseField, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
@@ -458,6 +459,7 @@ class Torsion(SectionField):
     """Torsion of a strip: the deflections that are odd across its width."""
 
     name = "torsion"
+    partners: ClassVar[tuple[TransverseField, ...]] = Stretch.partners
     requires: ClassVar[Mapping[str, object]] = {"torsion": True}
     damping_name = "damping of torsion"
     first = 1
@@ -479,7 +481,9 @@ class Torsion(SectionField):
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble torsion of a strip; of another section by its constants."""
         if scene.beam.section is None:
-            return assemble_section_torsion(scene, spaces)
+            deflecting = [field for field in self.partners if field.is_modelled(scene)]
+            stretched = STRETCHED if Stretch().is_modelled(scene) else None
+            return assemble_section_torsion(scene, spaces, deflecting, stretched)
         return super().assemble(scene, spaces)
 
     def warping(self, section: Rectangle) -> Profile:

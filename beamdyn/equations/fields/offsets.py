@@ -1,0 +1,356 @@
+"""What offsets of the sections' centres add: coupling of torsion with bending, and loads.
+
+The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it, that
+of tension, about which the section bends, at t; both have components along e1 and e2.  A section that tilts by
+p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, to second order, by
+
+    u - p.y - theta p.K y,    w + theta K y - theta^2 y/2 - p (p.y)/2,    K = (0, 1; -1, 0),
+
+u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps its
+length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
+-(v' w'' - v'' w')/2, integrated from the root, as no bend in both directions is without that.
+
+In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r, with
+B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms are
+its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
+inertia (`beamdyn.scene.sections`, `TipMass.about_axis`) and their terms; products of a tilt and a turn with
+them are left out.  In the inertia of tilting, the line of centres of tension is straight.  Derivation:
+docs/conventions.md and tests/invariants/test_offsets.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, combinations_with_replacement, product
+from typing import NamedTuple
+
+import numpy as np
+
+from beamdyn.equations.discretization import RootConditions, Spaces
+from beamdyn.equations.fields.field import Load, Term
+from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
+from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.scene.beam import TipMass
+from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.profile import FRACTION, ONE, Profile
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import offset_components
+
+_C, _T = 0, 2  # first components of c and of t, among those of both
+_TURN = 2  # number of the rotation by torsion, after the tilts towards e1 and e2
+
+NAMES: dict[tuple[Quantity, int], str] = {
+    ("unity", 2): "mass of offsets",
+    ("speed", 1): "Coriolis coupling of offsets",
+    ("acceleration", 0): "Euler coupling of offsets",
+    ("speed_squared", 0): "rotation of offsets",
+    ("root_axial", 0): "tension by root acceleration of offsets",
+    ("root_transverse", 0): "root acceleration of offsets",
+    ("root_across", 0): "root acceleration of offsets",
+}
+NAMES_OF_LOADS: dict[Quantity, str] = {
+    "acceleration": "angular acceleration on offsets",
+    "speed_squared": "rotation on offsets",
+    "root_axial": "axial root acceleration on offsets",
+    "root_transverse": "root acceleration on offsets",
+    "root_across": "root acceleration on offsets",
+}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A displacement of the axis, or a rotation of the sections, by a field.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field.
+    conditions : RootConditions
+        Conditions of its functions at the root.
+    at_tip : ndarray, shape (n,)
+        Its value at the tip body's place on the axis, per coordinate.
+    along : int or None
+        Direction of the displacement: 0, 1, 2 for b1, e1, e2; None for a rotation.
+    rotation : int or None
+        0, 1 for a tilt towards e1, e2, and 2 for a turn by torsion; None for a displacement.
+    """
+
+    field: str
+    conditions: RootConditions
+    at_tip: np.ndarray
+    along: int | None = None
+    rotation: int | None = None
+
+    @property
+    def order(self) -> int:
+        """Order of the derivative of the functions by x: 1 for a tilt."""
+        return int(self.rotation in (0, 1))
+
+    @cached_property
+    def on_axis(self) -> np.ndarray:
+        """Displacement of the axis along b1, e1, e2: shape (3,)."""
+        return np.zeros(3) if self.along is None else np.eye(3)[self.along]
+
+    @cached_property
+    def beside(self) -> np.ndarray:
+        """Displacement of the centre of mass beyond that, per component of c and t: shape (3, 4)."""
+        moved = np.zeros((3, 4))
+        if self.rotation == _TURN:  # K c
+            moved[1, _C + 1], moved[2, _C] = 1.0, -1.0
+        elif self.rotation is not None:
+            moved[0, _C + self.rotation], moved[0, _T + self.rotation] = -1.0, 1.0
+        return moved
+
+
+def _second_order(rows: Motion, columns: Motion) -> np.ndarray:
+    """Second derivative of the displacement of the centre of mass by two rotations: shape (3, 4)."""
+    i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
+    assert i is not None and j is not None, "both are rotations"
+    if i == j == _TURN:
+        moved[1, _C] = moved[2, _C + 1] = -1.0
+    elif _TURN in (i, j):  # -K c along the beam
+        tilt = min(i, j)
+        moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
+    else:
+        moved[1 + i, _C + j] -= 0.5
+        moved[1 + j, _C + i] -= 0.5
+    return moved
+
+
+class _Part(NamedTuple):
+    """A matrix over the coordinates of two motions, with its transpose times a sign where they are two."""
+
+    rows: str
+    columns: str
+    quantity: Quantity
+    order: int
+    matrix: np.ndarray
+    mirrored: float = 1.0
+
+    def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
+        """Yield the matrix, and that of the columns' equations, each with its place."""
+        yield (self.rows, self.columns, self.quantity, self.order), self.matrix
+        if self.mirrored:
+            place = self.columns, self.rows, self.quantity, self.order
+            yield place, self.mirrored * self.matrix.T
+
+
+@dataclass(frozen=True)
+class Offsets:
+    """The terms of offsets of a scene over function spaces.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spaces : Spaces
+        Function spaces on the beam.
+    turn : Motion
+        The turn by torsion.
+    trials : sequence of Trial
+        Fields that deflect the beam.
+    stretched : sequence of Motion
+        Displacement along the beam, where stretch is modelled.
+    """
+
+    scene: Scene
+    spaces: Spaces
+    turn: Motion
+    trials: Sequence[Trial]
+    stretched: Sequence[Motion] = ()
+
+    @cached_property
+    def tilting(self) -> list[Trial]:
+        """The fields that tilt the sections."""
+        return [trial for trial in self.trials if trial.field.rotates]
+
+    @cached_property
+    def motions(self) -> list[Motion]:
+        """All motions of the sections."""
+        moved = [Motion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction) for t in self.trials]
+        tilts = [
+            Motion(t.field.name, t.conditions, t.rotation, rotation=t.field.direction) for t in self.tilting
+        ]
+        return [*self.stretched, *moved, *tilts, self.turn]
+
+    @cached_property
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """B and P, along b1, e1, e2."""
+        a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
+        return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
+
+    @cached_property
+    def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
+        """Acceleration of the axis by each quantity: a vector, times x to a power, 0 or 1."""
+        (B, P), (along, first, second) = self.frame, np.eye(3)
+        return [
+            ("root_axial", along, 0),
+            ("root_transverse", first, 0),
+            ("root_across", second, 0),
+            ("acceleration", B[:, 0], 1),
+            ("speed_squared", -P[:, 0], 1),
+        ]
+
+    # Moments of the mass and integrals ----------------------------------------------------------------
+
+    @cached_property
+    def offsets(self) -> list[Profile | None]:
+        """Components of c and t along the beam [m]; None where they vanish."""
+        beam, found = self.scene.modelled_beam, []
+        for name in ("mass_offset", "tension_offset"):
+            components = offset_components(beam, name) or ()
+            found += [e if any(map(any, e.coefficients)) else None for e in components] or [None, None]
+        return found
+
+    @cached_property
+    def _tip(self) -> tuple[TipMass, np.ndarray]:
+        """Tip body, and the components of c and t there (4,) [m]."""
+        beam = self.scene.modelled_beam
+        tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
+        of_tension = [0.0 if t is None else float(t.end_values()[1][-1]) for t in self.offsets[_T:]]
+        return tip, np.array([-tip.offset_across * np.sin(twist), tip.offset_across * np.cos(twist), *of_tension])
+
+    @cached_property
+    def _moments(self) -> list[list[Profile | None]]:
+        """Mass per length times each component, without x and with it [kg, kg m]."""
+        beam = self.scene.modelled_beam
+        first = [e and beam.mass_per_length * e for e in self.offsets]
+        return [first, [m and (m * FRACTION).scaled(beam.length) for m in first]]
+
+    def _weigh(self, coefficients: np.ndarray, power: int) -> tuple[Profile | None, float]:
+        """Sum moments with coefficients of c and t (4,): of the sections, None if 0, and of the tip body."""
+        (tip, components), length, total = self._tip, self.scene.beam.length, None
+        for value, moment in zip(coefficients.tolist(), self._moments[power], strict=True):
+            if value and moment is not None:
+                total = moment.scaled(value) if total is None else total + moment.scaled(value)
+        return total, float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
+
+    def _integrate(self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int) -> np.ndarray | None:
+        """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
+        of_sections, of_tip = self._weigh(coefficients, power)
+        if of_sections is None:
+            return of_tip * np.outer(rows.at_tip, columns.at_tip) if of_tip else None
+        along = self._along(of_sections, rows.conditions, columns.conditions, (rows.order, columns.order))
+        return along + of_tip * np.outer(rows.at_tip, columns.at_tip)
+
+    def _along(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
+    ) -> np.ndarray:
+        """Integrate over x derivatives by x of two sets of functions."""
+        return self.spaces.product(weight, rows, columns, orders) * self.scene.beam.length ** (1 - sum(orders))
+
+    # Terms --------------------------------------------------------------------------------------------
+
+    def terms(self) -> Iterator[Term]:
+        """Yield the terms; those of one name and place are summed."""
+        sums: dict[tuple[str, str, Quantity, int], np.ndarray] = {}
+        for part in (*self._moved(), *self._carried(), *self._drawn_in(), *self._sheared(), *self._turned()):
+            for place, matrix in part.placed():
+                sums[place] = matrix if place not in sums else sums[place] + matrix
+        for (rows, columns, quantity, order), matrix in sums.items():
+            yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
+
+    def _moved(self) -> Iterator[_Part]:
+        """Yield the work of the acceleration of what two motions move, each to first order."""
+        B, P = self.frame
+        kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
+            (np.eye(3), 1.0, [("unity", 2, 1.0)]),
+            (B, -1.0, [("speed", 1, 2.0), ("acceleration", 0, 1.0)]),
+            (-P, 1.0, [("speed_squared", 0, 1.0)]),
+        ]
+        for rows, columns in combinations(self.motions, 2):
+            for matrix, mirrored, uses in kinds:
+                moved = rows.on_axis @ matrix @ columns.beside + columns.on_axis @ matrix.T @ rows.beside
+                if (found := self._integrate(rows, columns, moved, 0)) is not None:
+                    for quantity, order, factor in uses:
+                        yield _Part(rows.field, columns.field, quantity, order, factor * found, mirrored)
+
+    def _carried(self) -> Iterator[_Part]:
+        """Yield the work of the acceleration of the axis on what rotations move to second order."""
+        rotations = [motion for motion in self.motions if motion.rotation is not None]
+        for rows, columns in combinations_with_replacement(rotations, 2):
+            for quantity, vector, power in self.accelerations:
+                moved = vector @ _second_order(rows, columns)
+                if (found := self._integrate(rows, columns, moved, power)) is not None:
+                    mirrored = 0.0 if rows is columns else 1.0
+                    yield _Part(rows.field, columns.field, quantity, 0, found, mirrored)
+
+    def _drawn_in(self) -> Iterator[_Part]:
+        """Yield the work of the axial force as bending and torsion draw in the line of centres of tension."""
+        for quantity, vector, power in self.accelerations:
+            outboard = axial_tension(self.scene.modelled_beam)[power]
+            for trial in self.trials if vector[0] else ():
+                i, tilts = trial.field.direction, trial.field.rotates
+                if (t := self.offsets[_T + 1 - i]) is not None:
+                    sign = 1.0 if tilts == (i == 0) else -1.0
+                    orders = (0, 2) if tilts else (1, 1)
+                    weight = (outboard * t).scaled(sign * float(vector[0]))
+                    matrix = self._along(weight, self.turn.conditions, trial.conditions, orders)
+                    yield _Part(self.turn.field, trial.field.name, quantity, 0, matrix)
+
+    def _sheared(self) -> Iterator[_Part]:
+        """Yield the work of shear forces as bending moves the axis along its slope."""
+        for quantity, vector, power in self.accelerations:
+            outboard = axial_tension(self.scene.modelled_beam)[power]
+            for rows, columns in product(self.tilting, repeat=2):
+                force, t = float(vector[1 + rows.field.direction]), self.offsets[_T + columns.field.direction]
+                if force and t is not None:
+                    weight = (outboard * t).scaled(force)
+                    matrix = self._along(weight, rows.conditions, columns.conditions, (1, 2))
+                    yield _Part(rows.field.name, columns.field.name, quantity, 0, matrix)
+
+    def _turned(self) -> Iterator[_Part]:
+        """Yield the work of the twisting moment as bending in both directions turns the sections."""
+        for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
+            for quantity, vector, power in self.accelerations:
+                of_sections, of_tip = self._weigh(vector @ self.turn.beside, power)
+                moment = ONE.scaled(of_tip)
+                if of_sections is not None:
+                    moment = moment + of_sections.scaled(self.scene.beam.length).outboard_integral()
+                if of_sections is not None or of_tip:
+                    names = pair.rows.field.name, pair.columns.field.name
+                    yield _Part(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
+
+    # Loads --------------------------------------------------------------------------------------------
+
+    def loads(self) -> Iterator[Load]:
+        """Yield the loads by the accelerations of the axis and of what lies beside it."""
+        sums: dict[tuple[str, Quantity], np.ndarray] = {}
+        for motion in self.motions:
+            for quantity, coefficients, power in self._accelerated(motion):
+                of_sections, of_tip = self._weigh(coefficients, power)
+                work = of_tip * motion.at_tip
+                if of_sections is not None:
+                    work = work + self._load(of_sections, motion.conditions, motion.order)
+                place = motion.field, quantity
+                sums[place] = sums.get(place, 0.0) - work
+        for quantity, vector, power in self.accelerations:
+            outboard = axial_tension(self.scene.modelled_beam)[power]
+            for trial in self.tilting if vector[0] else ():
+                if (t := self.offsets[_T + trial.field.direction]) is not None:
+                    work = self._load((outboard * t).scaled(float(vector[0])), trial.conditions, 2)
+                    place = trial.field.name, quantity
+                    sums[place] = sums.get(place, 0.0) - work
+        for (field, quantity), vector in sums.items():
+            if vector.any():
+                yield Load(NAMES_OF_LOADS[quantity], field, vector, quantity)
+
+    def _accelerated(self, motion: Motion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
+        """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.
+
+        The axial force acts at the centre of tension; what it does there stands apart.
+        """
+        B, P = self.frame
+        of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])
+        for quantity, vector, power in self.accelerations:
+            yield quantity, vector @ of_mass, power
+        turning: list[tuple[Quantity, np.ndarray]] = [("acceleration", B), ("speed_squared", -P)]
+        for quantity, matrix in turning:
+            yield quantity, np.array([*(motion.on_axis @ matrix)[1:], 0.0, 0.0]), 0
+
+    def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
+        """Integrate over x derivatives by x of functions."""
+        return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)
