@@ -63,8 +63,8 @@ class Beam(FieldsOnly, OneLine):
         Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
         rectangular section follow from its sides.
     mass_offset, tension_offset : Profile, optional
-        Distance of the sections' centre of mass, and of their centre of tension, from their shear centre in the
-        direction across [m], of either sign, over x/L.  The shear centres are the axis of the beam.
+        Distance of the sections' centre of mass, and of their centre of tension, from their shear centre in
+        the direction across [m], of either sign, over x/L.  The shear centres are the axis of the beam.
 
     References
     ----------
@@ -148,7 +148,9 @@ class Beam(FieldsOnly, OneLine):
                 value, where = float(given(np.array(place))), f" at x/L = {place:.3f}"
                 raise InvalidValue(name, value, bound, GIVE_OR_COMPUTE, "m", where=where, **said)
         if self.tip is not None and self.tip.offset_across:
-            raise InvalidValue("tip.offset_across", self.tip.offset_across, bound, GIVE_OR_COMPUTE, "m", **said)
+            raise InvalidValue(
+                "tip.offset_across", self.tip.offset_across, bound, GIVE_OR_COMPUTE, "m", **said
+            )
 
     @cached_property
     def has_offsets(self) -> bool:
@@ -301,8 +303,8 @@ class Beam(FieldsOnly, OneLine):
             E Cw [N m4], against warping of the section, which the root then holds.
         mass_offset, tension_offset : float, Polynomial, Table or callable, optional
             Distance of the centre of mass, and of that of tension, from the shear centre in the direction
-            across [m], of either sign; 0 without it.  Torsion reads them, and they need its stiffness.  Bending
-            stiffnesses are about the centre of tension.
+            across [m], of either sign; 0 without it.  Torsion reads them, and they need its stiffness.
+            Bending stiffnesses are about the centre of tension.
 
         Returns
         -------

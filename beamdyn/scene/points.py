@@ -40,8 +40,8 @@ class TipMass:
     axial_inertia : float
         Moment of inertia about the direction of the beam axis, through the centre of gravity [kg m2].
     offset_across : float
-        Distance of the centre of gravity from the beam axis, in the direction across of the section at the tip
-        [m]; a beam with it needs a stiffness against torsion.
+        Distance of the centre of gravity from the beam axis, in the direction across of the section at the
+        tip [m]; a beam with it needs a stiffness against torsion.
 
     Raises
     ------
@@ -75,7 +75,8 @@ class TipMass:
         float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
     ] = 0.0
     offset_across: Annotated[
-        float, Described("m", "e_2", "distance of its centre of gravity beside the axis, in the direction across")
+        float,
+        Described("m", "e_2", "distance of its centre of gravity beside the axis, in the direction across"),
     ] = field(default=0.0, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
@@ -106,7 +107,7 @@ class TipMass:
 
     @property
     def about_axis(self) -> TipMass:
-        """The body with its moments of inertia about the axis of the beam instead of its centre of gravity."""
+        """The body with its moments of inertia about the axis of the beam, not its centre of gravity."""
         if not self.offset_across:
             return self
         more = self.mass * self.offset_across**2

@@ -73,7 +73,7 @@ def _turned_values(
 
 @lru_cache(maxsize=64)
 def offset_components(beam: Beam, name: str) -> tuple[Profile, Profile] | None:
-    """Components of an offset of the sections in the directions e1, e2 [m]; None where it is 0 or not given."""
+    """Components of an offset of the sections along e1, e2 [m]; None where it is 0 or not given."""
     offset, twist = getattr(beam, name), beam.twist
     if offset is None or not any(any(row) for row in offset.coefficients):
         return None

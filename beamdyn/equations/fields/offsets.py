@@ -1,18 +1,18 @@
 """What offsets of the sections' centres add: coupling of torsion with bending, and loads.
 
-The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it, that
-of tension, about which the section bends, at t; both have components along e1 and e2.  A section that tilts by
-p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, to second order, by
+The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it,
+that of tension, about which the section bends, at t; both have components along e1 and e2.  A section that
+tilts by p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, to second order, by
 
     u - p.y - theta p.K y,    w + theta K y - theta^2 y/2 - p (p.y)/2,    K = (0, 1; -1, 0),
 
-u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps its
-length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
+u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps
+its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
 -(v' w'' - v'' w')/2, integrated from the root, as no bend in both directions is without that.
 
-In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r, with
-B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms are
-its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
+In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
+with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
+are its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
 inertia (`beamdyn.scene.sections`, `TipMass.about_axis`) and their terms; products of a tilt and a turn with
 them are left out.  In the inertia of tilting, the line of centres of tension is straight.  Derivation:
 docs/conventions.md and tests/invariants/test_offsets.py.
@@ -23,7 +23,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, combinations_with_replacement, product
+from itertools import chain, combinations, combinations_with_replacement, product
 from typing import NamedTuple
 
 import numpy as np
@@ -170,7 +170,9 @@ class Offsets:
     @cached_property
     def motions(self) -> list[Motion]:
         """All motions of the sections."""
-        moved = [Motion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction) for t in self.trials]
+        moved = [
+            Motion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction) for t in self.trials
+        ]
         tilts = [
             Motion(t.field.name, t.conditions, t.rotation, rotation=t.field.direction) for t in self.tilting
         ]
@@ -194,6 +196,15 @@ class Offsets:
             ("speed_squared", -P[:, 0], 1),
         ]
 
+    @cached_property
+    def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
+        """Acceleration (3, 4) of the centre of mass relative to the axis, per component of c and t."""
+        (B, P), none = self.frame, np.zeros((3, 2))
+        return [
+            ("acceleration", np.hstack([B[:, 1:], none])),
+            ("speed_squared", np.hstack([-P[:, 1:], none])),
+        ]
+
     # Moments of the mass and integrals ----------------------------------------------------------------
 
     @cached_property
@@ -211,7 +222,9 @@ class Offsets:
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
         of_tension = [0.0 if t is None else float(t.end_values()[1][-1]) for t in self.offsets[_T:]]
-        return tip, np.array([-tip.offset_across * np.sin(twist), tip.offset_across * np.cos(twist), *of_tension])
+        return tip, np.array(
+            [-tip.offset_across * np.sin(twist), tip.offset_across * np.cos(twist), *of_tension]
+        )
 
     @cached_property
     def _moments(self) -> list[list[Profile | None]]:
@@ -228,7 +241,16 @@ class Offsets:
                 total = moment.scaled(value) if total is None else total + moment.scaled(value)
         return total, float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
-    def _integrate(self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int) -> np.ndarray | None:
+    def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
+        """Sum of the moments outboard of each section, with coefficients as in `_weigh`; None if 0."""
+        of_sections, of_tip = self._weigh(coefficients, power)
+        if of_sections is None:
+            return ONE.scaled(of_tip) if of_tip else None
+        return of_sections.scaled(self.scene.beam.length).outboard_integral() + ONE.scaled(of_tip)
+
+    def _integrate(
+        self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int
+    ) -> np.ndarray | None:
         """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
         of_sections, of_tip = self._weigh(coefficients, power)
         if of_sections is None:
@@ -240,14 +262,17 @@ class Offsets:
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
     ) -> np.ndarray:
         """Integrate over x derivatives by x of two sets of functions."""
-        return self.spaces.product(weight, rows, columns, orders) * self.scene.beam.length ** (1 - sum(orders))
+        return self.spaces.product(weight, rows, columns, orders) * self.scene.beam.length ** (
+            1 - sum(orders)
+        )
 
     # Terms --------------------------------------------------------------------------------------------
 
     def terms(self) -> Iterator[Term]:
         """Yield the terms; those of one name and place are summed."""
         sums: dict[tuple[str, str, Quantity, int], np.ndarray] = {}
-        for part in (*self._moved(), *self._carried(), *self._drawn_in(), *self._sheared(), *self._turned()):
+        parts = self._moved, self._carried, self._drawn_in, self._sheared, self._turned, self._tightened
+        for part in chain.from_iterable(each() for each in parts):
             for place, matrix in part.placed():
                 sums[place] = matrix if place not in sums else sums[place] + matrix
         for (rows, columns, quantity, order), matrix in sums.items():
@@ -306,13 +331,23 @@ class Offsets:
         """Yield the work of the twisting moment as bending in both directions turns the sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self.accelerations:
-                of_sections, of_tip = self._weigh(vector @ self.turn.beside, power)
-                moment = ONE.scaled(of_tip)
-                if of_sections is not None:
-                    moment = moment + of_sections.scaled(self.scene.beam.length).outboard_integral()
-                if of_sections is not None or of_tip:
+                if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
                     names = pair.rows.field.name, pair.columns.field.name
                     yield _Part(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
+
+    def _tightened(self) -> Iterator[_Part]:
+        """Yield the work of the axial force by what lies beside the axis, on the slopes of the beam."""
+        ahead = self._tip[0].offset
+        for quantity, matrix in self._beside_axis:
+            if (force := self._outboard(matrix[0], 0)) is None:
+                continue
+            _, at_tip = self._weigh(matrix[0], 0)
+            for rows, columns in combinations_with_replacement(self.trials, 2):
+                if rows.field.direction == columns.field.direction:
+                    along = self._along(force, rows.conditions, columns.conditions, (1, 1))
+                    matrix = -along - ahead * at_tip * np.outer(rows.rotation, columns.rotation)
+                    mirrored = 0.0 if rows is columns else 1.0
+                    yield _Part(rows.field.name, columns.field.name, quantity, 0, matrix, mirrored)
 
     # Loads --------------------------------------------------------------------------------------------
 
@@ -343,13 +378,11 @@ class Offsets:
 
         The axial force acts at the centre of tension; what it does there stands apart.
         """
-        B, P = self.frame
         of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])
         for quantity, vector, power in self.accelerations:
             yield quantity, vector @ of_mass, power
-        turning: list[tuple[Quantity, np.ndarray]] = [("acceleration", B), ("speed_squared", -P)]
-        for quantity, matrix in turning:
-            yield quantity, np.array([*(motion.on_axis @ matrix)[1:], 0.0, 0.0]), 0
+        for quantity, matrix in self._beside_axis:
+            yield quantity, motion.on_axis @ matrix, 0
 
     def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
         """Integrate over x derivatives by x of functions."""

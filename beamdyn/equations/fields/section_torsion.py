@@ -13,9 +13,9 @@ rotation (propeller moment): with the components a1, a2 of the axis of rotation 
 omega^2/2 int [(a1^2 - a2^2) (R22 - R11) - 4 a1 a2 R12] theta^2 dx, and the load per length
 -omega^2 [a1 a2 (R22 - R11) + (a1^2 - a2^2) R12].
 
-The tension pulls fibres straight that the twist makes helices; those of a twisted beam are so at rest.  A body
-at the tip turns with it.  A root without warping holds theta', where a stiffness against warping is given.
-What couples torsion with bending is in `beamdyn.equations.fields.offsets`.
+The tension pulls fibres straight that the twist makes helices; those of a twisted beam are so at rest.  A
+body at the tip turns with it.  A root without warping holds theta', where a stiffness against warping is
+given.  What couples torsion with bending is in `beamdyn.equations.fields.offsets`.
 """
 
 from __future__ import annotations
@@ -78,15 +78,19 @@ def assemble_section_torsion(
 ) -> FieldEquations:
     """Assemble torsion of a beam with a torsional stiffness and two rotary inertias.
 
-    Offsets couple it with the partners, the fields that deflect the beam, and with a stretch of the conditions
-    given at the root.
+    Offsets couple it with the partners, the fields that deflect the beam, and with a stretch that has the
+    conditions given at the root.
     """
     beam = scene.modelled_beam
     conditions = _TURNED if beam.warping_stiffness is None else _WARPED
     space = spaces.functions(conditions)
     terms, loads = [*_terms(scene, space)], [*_loads(scene, space)]
     if beam.has_offsets:
-        along = [] if stretched is None else [Motion("stretch", stretched, spaces.functions(stretched).end(0), along=0)]
+        along = (
+            []
+            if stretched is None
+            else [Motion("stretch", stretched, spaces.functions(stretched).end(0), along=0)]
+        )
         turn = Motion(_NAME, conditions, space.end(0), rotation=2)
         trials = [Trial.of(partner, scene, spaces) for partner in partners]
         offsets = Offsets(scene, spaces, turn, trials, along)
@@ -121,7 +125,11 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
 
 def _loads(scene: Scene, space: Space) -> Iterator[Load]:
     """Yield the loads on torsion alone."""
-    beam, R, (a1, a2) = scene.modelled_beam, section_tensor(scene.modelled_beam, "rotary_inertia"), axis_in_section(scene)
+    beam, R, (a1, a2) = (
+        scene.modelled_beam,
+        section_tensor(scene.modelled_beam, "rotary_inertia"),
+        axis_in_section(scene),
+    )
     L, B = beam.length, centrifugal_inertia(_tip_body(scene), beam.tip_twist)
     broad = L * space.load(R[1, 1] + R[0, 0].scaled(-1.0)) + (B[0, 0] - B[1, 1]) * space.end(0)
     yield Load("twisting by rotation", _NAME, broad, "speed_squared", -a1 * a2)

@@ -1,0 +1,184 @@
+"""Offsets of sections: terms against point masses on a beam that is turned exactly; closed forms."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+import beamdyn as bd
+from beamdyn.equations.assembly import assemble_equations
+from beamdyn.equations.discretization import CLAMPED, FIXED
+from beamdyn.equations.fields.transverse import axis_in_section
+from beamdyn.equations.quadrature import ArcQuadrature, Cells
+
+BASIS, LENGTH = bd.Ritz(2), 2.0
+MASS, TWIST = Polynomial([3.0, -1.5]), Polynomial([0.4, -0.7])
+OFFSET = Polynomial([0.05, 0.12])  # beside the shear centre, at a scale of 1 [m]
+TIP = {"mass": 0.7, "offset": 0.3, "inertia": 1e-9, "axial_inertia": 2e-9}
+ARC = ArcQuadrature(Cells(np.array([0.0, 1.0]), 16))
+STEP = 2e-4  # of second differences, whose error is below 1e-7
+
+
+def scene_of(scale: float, of: str = "mass") -> bd.Scene:
+    """A blade with precone and tip body, whose offsets have a scale; its sections are slender."""
+    beam = bd.Beam.from_stiffness(
+        LENGTH,
+        MASS,
+        90.0,
+        second_bending_stiffness=200.0,
+        twist=TWIST,
+        torsion_stiffness=40.0,
+        rotary_inertia=1e-9,
+        second_rotary_inertia=1e-9,
+        tip=bd.TipMass(**TIP, offset_across=scale * 0.1 if of == "mass" else 0.0),
+        **{f"{of}_offset": scale * OFFSET},
+    )
+    mount = bd.Mount(1.0, math.pi, bending_angle=0.6, precone=0.25)
+    return bd.Scene(beam, mount, physics=bd.Physics(planes=2, torsion=True))
+
+
+@cache
+def assembled(scale: float, of: str = "mass"):
+    return assemble_equations(scene_of(scale, of), BASIS)
+
+
+# Point masses on a beam that is turned exactly --------------------------------------------------------
+
+
+@cache
+def samples():
+    """Gauss points and tip, and the functions of bending and of torsion there with their derivatives."""
+    xi, spaces = np.append(ARC.xi, 1.0), BASIS.spaces(scene_of(1.0).modelled_beam)
+    bending, twisting = spaces.functions(CLAMPED), spaces.functions(FIXED)
+    return xi, [bending.evaluate(xi, k) for k in range(3)], [twisting.evaluate(xi, k) for k in range(2)]
+
+
+def places(q: np.ndarray, scale: float, of: str) -> np.ndarray:
+    """Places (3, N + 1) along b1, e1, e2 of the masses at the Gauss points and of the body at the tip."""
+    (xi, bending, twisting), fields = samples(), assembled(scale, of).blocks
+    both = [q[fields[name]] for name in ("bending", "second bending")]
+    slope, curve = (np.array([part @ bending[order] for part in both]) / LENGTH**order for order in (1, 2))
+    theta, rate = (q[fields["torsion"]] @ twisting[order] / LENGTH**order for order in (0, 1))
+    # The tilt that does not turn about the tangent, which turns nevertheless as it changes.
+    cosine = np.sqrt(1 - (slope**2).sum(axis=0))
+    turning = (slope[0] * curve[1] - slope[1] * curve[0]) / (1 + cosine)
+    turn = -theta + LENGTH * ARC.integrate(turning[:-1])
+    tilt = _tilt(slope, cosine)
+    rotation = tilt @ _about_axis(turn)
+    # Curvature along the axes of the section: of the tilt, then turned back.
+    bent = _curvature_of_tilt(slope, curve, cosine)
+    bent = np.einsum("nji,nj->ni", _about_axis(turn), bent)
+    beta = TWIST(xi)
+    across = np.stack([np.zeros_like(beta), -np.sin(beta), np.cos(beta)], axis=1)
+    moved = scale * OFFSET(xi)[:, None] * across
+    of_mass, of_tension = (moved, 0 * moved) if of == "mass" else (0 * moved, moved)
+    along = 1 - np.cross(bent, of_tension)[:, 0] - rate**2 * (of_tension**2).sum(axis=1) / 2
+    tangent = rotation[:, :, 0] * along[:, None]
+    axis = LENGTH * ARC.integrate(tangent[:-1].T)
+    of_mass[-1] = np.array([TIP["offset"], 0.0, 0.0]) + (scale * 0.1 if of == "mass" else 0.0) * across[-1]
+    return axis + np.einsum("nij,nj->in", rotation, of_mass)
+
+
+def _tilt(slope: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """Rotations (N, 3, 3) that take b1 to the tangent by the shortest way (Rodrigues)."""
+    w = np.stack([np.zeros_like(cosine), -slope[1], slope[0]])
+    W = np.zeros((len(cosine), 3, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        W[:, j, i], W[:, i, j] = w[k], -w[k]
+    return np.eye(3) + W + W @ W / (1 + cosine)[:, None, None]
+
+
+def _about_axis(angle: np.ndarray) -> np.ndarray:
+    """Rotations (N, 3, 3) about b1."""
+    c, s, R = np.cos(angle), np.sin(angle), np.zeros((len(angle), 3, 3))
+    R[:, 0, 0], R[:, 1, 1], R[:, 2, 2], R[:, 1, 2], R[:, 2, 1] = 1.0, c, c, -s, s
+    return R
+
+
+def _curvature_of_tilt(slope: np.ndarray, curve: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """Curvature (N, 3) of the tilt in its own axes, without the turn about b1, by differences along x."""
+    h, found = 1e-5, np.zeros((len(cosine), 3))
+    after, before = (
+        _tilt(near, np.sqrt(1 - (near**2).sum(axis=0))) for near in (slope + h * curve, slope - h * curve)
+    )
+    spin = np.swapaxes(_tilt(slope, cosine), 1, 2) @ (after - before) / (2 * h)
+    found[:, 1], found[:, 2] = spin[:, 0, 2], spin[:, 1, 0]
+    return found
+
+
+@cache
+def by_differences(scale: float, of: str):
+    """Displacements to first (n, 3, N) and second order (n, n, 3, N), places and weights of the masses."""
+    n, at_rest = assembled(scale).size, places(np.zeros(assembled(scale).size), scale, of)
+    unit = STEP * np.eye(n)
+    first = np.array([(places(e, scale, of) - places(-e, scale, of)) / (2 * STEP) for e in unit])
+    second = np.zeros((n, n, *at_rest.shape))
+    for a in range(n):
+        for b in range(a + 1):
+            signs = [(i, j) for i in (1, -1) for j in (1, -1)]
+            values = [i * j * places(i * unit[a] + j * unit[b], scale, of) for i, j in signs]
+            second[a, b] = second[b, a] = sum(values) / (4 * STEP**2)
+    weights = np.append(MASS(ARC.xi) * ARC.weights * LENGTH, TIP["mass"])
+    return first, second, at_rest, weights
+
+
+@cache
+def work(scale: float, of: str) -> dict[tuple[str, int], np.ndarray]:
+    """Matrices of each quantity and order, from the work of the accelerations of all masses."""
+    first, second, r, mass = by_differences(scale, of)
+    a = np.array([math.sin(0.25), *axis_in_section(scene_of(scale))])
+    B, P = -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
+
+    def moving(matrix):
+        return np.einsum("ain,ij,bjn,n->ab", first, matrix, first, mass)
+
+    def carried(field):
+        return np.einsum("abin,in,n->ab", second, field, mass)
+
+    found = {("unity", 2): moving(np.eye(3)), ("speed", 1): 2 * moving(B)}
+    found["acceleration", 0] = moving(B) + carried(B @ r)
+    found["speed_squared", 0] = moving(-P) + carried(-P @ r)
+    for name, unit in zip(("root_axial", "root_transverse", "root_across"), np.eye(3), strict=True):
+        found[name, 0] = carried(np.repeat(unit[:, None], r.shape[1], axis=1))
+    return found
+
+
+OF_FORCES = [("root_axial", 0), ("root_transverse", 0), ("root_across", 0)]
+QUANTITIES = [("unity", 2), ("speed", 1), ("acceleration", 0), ("speed_squared", 0), *OF_FORCES]
+
+
+@pytest.mark.parametrize(
+    ("of", "quantity", "order"),
+    [*(("mass", *each) for each in QUANTITIES), *(("tension", *each) for each in OF_FORCES)],
+)
+def test_terms_are_the_work_of_point_masses(of, quantity, order):
+    """To first order in the offsets: the odd part, as all are at most of second order.
+
+    Forces alone act on centres of tension; the inertia of tilting takes these to be on a straight line.
+    """
+
+    def odd(matrices):
+        return (matrices(1.0) - matrices(-1.0)) / 2
+
+    def ours(scale):
+        return assembled(scale, of).matrices[order][quantity]
+
+    expected = odd(lambda scale: work(scale, of)[quantity, order])
+    scale = np.abs(work(1.0, of)[quantity, order]).max()
+    np.testing.assert_allclose(odd(ours), expected, rtol=0, atol=1e-6 * scale)  # of differences
+    assert np.abs(expected).max() > 1e-3 * scale
+
+
+@pytest.mark.parametrize(("quantity", "order"), [("unity", 2), ("speed_squared", 0)])
+def test_second_moments_are_about_the_axis(quantity, order):
+    """In torsion: the even part, but for that without offsets."""
+
+    def even(matrices):
+        return (matrices(1.0) + matrices(-1.0)) / 2 - matrices(0.0)
+
+    turn = assembled(1.0).blocks["torsion"]
+    ours = even(lambda scale: assembled(scale).matrices[order][quantity])[turn, turn]
+    expected = even(lambda scale: work(scale, "mass")[quantity, order])[turn, turn]
+    np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-6 * np.abs(expected).max())  # of differences
