@@ -14,17 +14,18 @@ In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
 are its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
 inertia (`beamdyn.scene.sections`, `TipMass.about_axis`) and their terms; products of a tilt and a turn with
-them are left out.  In the inertia of tilting, the line of centres of tension is straight.  Derivation:
-docs/conventions.md and tests/invariants/test_offsets.py.
+them are left out, as are Coriolis and Euler forces of a tilt, which moves the mass along the beam: these
+change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
+straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, reduce
 from itertools import chain, combinations, combinations_with_replacement, product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,8 +34,9 @@ from beamdyn.equations.fields.field import Load, Term
 from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
-from beamdyn.scene.beam import TipMass
-from beamdyn.scene.mount import exact_cos_sin
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import SteadyRotation
+from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import FRACTION, ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import offset_components
@@ -120,6 +122,32 @@ def _second_order(rows: Motion, columns: Motion) -> np.ndarray:
     return moved
 
 
+# Properties of the beam ---------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=64)
+def _components(beam: Beam) -> tuple[Profile | None, ...]:
+    """Components of c and t along the beam [m]; None where they vanish."""
+    found: list[Profile | None] = []
+    for name in ("mass_offset", "tension_offset"):
+        components = offset_components(beam, name) or (None, None)
+        found += [e if e is not None and any(map(any, e.coefficients)) else None for e in components]
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _moments(beam: Beam) -> tuple[list[Profile | None], list[Profile | None]]:
+    """Mass per length times each component of c and t, without x and with it [kg, kg m]."""
+    first = [e and beam.mass_per_length * e for e in _components(beam)]
+    return first, [m and (m * FRACTION).scaled(beam.length) for m in first]
+
+
+@lru_cache(maxsize=64)
+def _pulled(beam: Beam) -> list[list[Profile | None]]:
+    """Mass outboard, without x and with it, times each component of t [kg m, kg m2]."""
+    return [[t and outboard * t for t in _components(beam)[_T:]] for outboard in axial_tension(beam)]
+
+
 class _Part(NamedTuple):
     """A matrix over the coordinates of two motions, with its transpose times a sign where they are two."""
 
@@ -161,6 +189,7 @@ class Offsets:
     turn: Motion
     trials: Sequence[Trial]
     stretched: Sequence[Motion] = ()
+    _known: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, repr=False)
 
     @cached_property
     def tilting(self) -> list[Trial]:
@@ -197,6 +226,15 @@ class Offsets:
         ]
 
     @cached_property
+    def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
+        """The accelerations that vary the stiffness: along the beam alone if the root is never moved across."""
+        scene = self.scene
+        steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
+        if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
+            return [each for each in self.accelerations if each[0] in ("root_axial", "speed_squared")]
+        return self.accelerations
+
+    @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
         """Acceleration (3, 4) of the centre of mass relative to the axis, per component of c and t."""
         (B, P), none = self.frame, np.zeros((3, 2))
@@ -208,55 +246,45 @@ class Offsets:
     # Moments of the mass and integrals ----------------------------------------------------------------
 
     @cached_property
-    def offsets(self) -> list[Profile | None]:
-        """Components of c and t along the beam [m]; None where they vanish."""
-        beam, found = self.scene.modelled_beam, []
-        for name in ("mass_offset", "tension_offset"):
-            components = offset_components(beam, name) or ()
-            found += [e if any(map(any, e.coefficients)) else None for e in components] or [None, None]
-        return found
-
-    @cached_property
     def _tip(self) -> tuple[TipMass, np.ndarray]:
         """Tip body, and the components of c and t there (4,) [m]."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
-        of_tension = [0.0 if t is None else float(t.end_values()[1][-1]) for t in self.offsets[_T:]]
-        return tip, np.array(
-            [-tip.offset_across * np.sin(twist), tip.offset_across * np.cos(twist), *of_tension]
-        )
+        of_tension = [0.0 if t is None else float(t.end_values()[1][-1]) for t in _components(beam)[_T:]]
+        of_mass = tip.offset_across * np.array([-np.sin(twist), np.cos(twist)])
+        return tip, np.array([*of_mass, *of_tension])
 
-    @cached_property
-    def _moments(self) -> list[list[Profile | None]]:
-        """Mass per length times each component, without x and with it [kg, kg m]."""
-        beam = self.scene.modelled_beam
-        first = [e and beam.mass_per_length * e for e in self.offsets]
-        return [first, [m and (m * FRACTION).scaled(beam.length) for m in first]]
+    def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
+        """Sum moments of the tip body with coefficients of c and t (4,)."""
+        (tip, components), length = self._tip, self.scene.beam.length
+        return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
-    def _weigh(self, coefficients: np.ndarray, power: int) -> tuple[Profile | None, float]:
-        """Sum moments with coefficients of c and t (4,): of the sections, None if 0, and of the tip body."""
-        (tip, components), length, total = self._tip, self.scene.beam.length, None
-        for value, moment in zip(coefficients.tolist(), self._moments[power], strict=True):
+    def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
+        """Yield the moments of the sections, each with its coefficient, that are not 0."""
+        moments = _moments(self.scene.modelled_beam)[power]
+        for value, moment in zip(coefficients.tolist(), moments, strict=True):
             if value and moment is not None:
-                total = moment.scaled(value) if total is None else total + moment.scaled(value)
-        return total, float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
+                yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Sum of the moments outboard of each section, with coefficients as in `_weigh`; None if 0."""
-        of_sections, of_tip = self._weigh(coefficients, power)
-        if of_sections is None:
-            return ONE.scaled(of_tip) if of_tip else None
-        return of_sections.scaled(self.scene.beam.length).outboard_integral() + ONE.scaled(of_tip)
+        """Sum of the moments outboard of each section, with coefficients of c and t (4,); None if 0."""
+        of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
+        parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
+        outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
+        return reduce(Profile.__add__, outboard) if outboard else None
 
     def _integrate(
         self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int
     ) -> np.ndarray | None:
         """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
-        of_sections, of_tip = self._weigh(coefficients, power)
-        if of_sections is None:
-            return of_tip * np.outer(rows.at_tip, columns.at_tip) if of_tip else None
-        along = self._along(of_sections, rows.conditions, columns.conditions, (rows.order, columns.order))
-        return along + of_tip * np.outer(rows.at_tip, columns.at_tip)
+        orders = rows.order, columns.order
+        found = [
+            value * self._along(moment, rows.conditions, columns.conditions, orders)
+            for value, moment in self._of_sections(coefficients, power)
+        ]
+        if of_tip := self._of_tip(coefficients, power):
+            found.append(of_tip * np.outer(rows.at_tip, columns.at_tip))
+        return sum(found[1:], found[0]) if found else None
 
     def _along(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
@@ -287,7 +315,8 @@ class Offsets:
             (-P, 1.0, [("speed_squared", 0, 1.0)]),
         ]
         for rows, columns in combinations(self.motions, 2):
-            for matrix, mirrored, uses in kinds:
+            tilts = rows.order + columns.order
+            for matrix, mirrored, uses in kinds if not tilts else kinds[::2]:
                 moved = rows.on_axis @ matrix @ columns.beside + columns.on_axis @ matrix.T @ rows.beside
                 if (found := self._integrate(rows, columns, moved, 0)) is not None:
                     for quantity, order, factor in uses:
@@ -297,7 +326,7 @@ class Offsets:
         """Yield the work of the acceleration of the axis on what rotations move to second order."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
-            for quantity, vector, power in self.accelerations:
+            for quantity, vector, power in self._parametric:
                 moved = vector @ _second_order(rows, columns)
                 if (found := self._integrate(rows, columns, moved, power)) is not None:
                     mirrored = 0.0 if rows is columns else 1.0
@@ -305,32 +334,30 @@ class Offsets:
 
     def _drawn_in(self) -> Iterator[_Part]:
         """Yield the work of the axial force as bending and torsion draw in the line of centres of tension."""
-        for quantity, vector, power in self.accelerations:
-            outboard = axial_tension(self.scene.modelled_beam)[power]
+        for quantity, vector, power in self._parametric:
+            pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
                 i, tilts = trial.field.direction, trial.field.rotates
-                if (t := self.offsets[_T + 1 - i]) is not None:
-                    sign = 1.0 if tilts == (i == 0) else -1.0
+                if (moment := pulled[1 - i]) is not None:
+                    factor = float(vector[0] if tilts == (i == 0) else -vector[0])
                     orders = (0, 2) if tilts else (1, 1)
-                    weight = (outboard * t).scaled(sign * float(vector[0]))
-                    matrix = self._along(weight, self.turn.conditions, trial.conditions, orders)
-                    yield _Part(self.turn.field, trial.field.name, quantity, 0, matrix)
+                    matrix = self._along(moment, self.turn.conditions, trial.conditions, orders)
+                    yield _Part(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_Part]:
         """Yield the work of shear forces as bending moves the axis along its slope."""
-        for quantity, vector, power in self.accelerations:
-            outboard = axial_tension(self.scene.modelled_beam)[power]
+        for quantity, vector, power in self._parametric:
+            pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
-                force, t = float(vector[1 + rows.field.direction]), self.offsets[_T + columns.field.direction]
-                if force and t is not None:
-                    weight = (outboard * t).scaled(force)
-                    matrix = self._along(weight, rows.conditions, columns.conditions, (1, 2))
-                    yield _Part(rows.field.name, columns.field.name, quantity, 0, matrix)
+                force, moment = float(vector[1 + rows.field.direction]), pulled[columns.field.direction]
+                if force and moment is not None:
+                    matrix = self._along(moment, rows.conditions, columns.conditions, (1, 2))
+                    yield _Part(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_Part]:
         """Yield the work of the twisting moment as bending in both directions turns the sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
-            for quantity, vector, power in self.accelerations:
+            for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
                     names = pair.rows.field.name, pair.columns.field.name
                     yield _Part(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
@@ -338,10 +365,11 @@ class Offsets:
     def _tightened(self) -> Iterator[_Part]:
         """Yield the work of the axial force by what lies beside the axis, on the slopes of the beam."""
         ahead = self._tip[0].offset
+        parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:
-            if (force := self._outboard(matrix[0], 0)) is None:
+            if quantity not in parametric or (force := self._outboard(matrix[0], 0)) is None:
                 continue
-            _, at_tip = self._weigh(matrix[0], 0)
+            at_tip = self._of_tip(matrix[0], 0)
             for rows, columns in combinations_with_replacement(self.trials, 2):
                 if rows.field.direction == columns.field.direction:
                     along = self._along(force, rows.conditions, columns.conditions, (1, 1))
@@ -356,22 +384,20 @@ class Offsets:
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):
-                of_sections, of_tip = self._weigh(coefficients, power)
-                work = of_tip * motion.at_tip
-                if of_sections is not None:
-                    work = work + self._load(of_sections, motion.conditions, motion.order)
+                work = self._of_tip(coefficients, power) * motion.at_tip
+                for value, moment in self._of_sections(coefficients, power):
+                    work = work + value * self._load(moment, motion.conditions, motion.order)
                 place = motion.field, quantity
                 sums[place] = sums.get(place, 0.0) - work
         for quantity, vector, power in self.accelerations:
-            outboard = axial_tension(self.scene.modelled_beam)[power]
             for trial in self.tilting if vector[0] else ():
-                if (t := self.offsets[_T + trial.field.direction]) is not None:
-                    work = self._load((outboard * t).scaled(float(vector[0])), trial.conditions, 2)
+                if (moment := _pulled(self.scene.modelled_beam)[power][trial.field.direction]) is not None:
                     place = trial.field.name, quantity
+                    work = vector[0] * self._load(moment, trial.conditions, 2)
                     sums[place] = sums.get(place, 0.0) - work
-        for (field, quantity), vector in sums.items():
+        for (name, quantity), vector in sums.items():
             if vector.any():
-                yield Load(NAMES_OF_LOADS[quantity], field, vector, quantity)
+                yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: Motion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
         """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.

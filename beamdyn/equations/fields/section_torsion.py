@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -150,6 +151,7 @@ def _tip_body(scene: Scene) -> TipMass:
     return (scene.beam.tip or TipMass(0.0)).about_axis
 
 
+@lru_cache(maxsize=64)
 def _pulled_straight(beam: Beam) -> list[Profile]:
     """Tension per root acceleration and per squared speed times the squared radius of the pulled fibres.
 
