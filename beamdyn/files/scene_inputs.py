@@ -253,6 +253,14 @@ class StiffnessInput(_BeamInput):
     warping_stiffness: Annotated[
         Along | None, Varying("N m4", "E Cw", "stiffness against warping, which the root holds", above=0)
     ] = None
+    mass_offset: Annotated[
+        Along | None,
+        Varying("m", "c", "centre of mass beside the shear centre, in the direction across, for torsion"),
+    ] = None
+    tension_offset: Annotated[
+        Along | None,
+        Varying("m", "t", "centre of tension beside the shear centre, likewise; stiffnesses are about it"),
+    ] = None
 
     @cached_property
     def core(self) -> Beam:

@@ -104,7 +104,7 @@ class Beam(FieldsOnly, OneLine):
         given = (name for name in OPTIONAL_PROPERTIES if getattr(self, name) is not None)
         for name in (*_REQUIRED, *given):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
-            if name not in _OF_ANY_SIGN:
+            if name not in OF_ANY_SIGN:
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
@@ -342,7 +342,7 @@ class Beam(FieldsOnly, OneLine):
         length = size("length", length, "m")
         given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
         made: dict[str, Any] = {
-            name: (to_profile if name in _OF_ANY_SIGN else as_profile)(name, value, breakpoints)
+            name: (to_profile if name in OF_ANY_SIGN else as_profile)(name, value, breakpoints)
             for name, value in given.items()
         }
         beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
@@ -436,7 +436,7 @@ PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
 }
 
 OFFSETS = ("mass_offset", "tension_offset")  # from the shear centre
-_OF_ANY_SIGN = ("twist", *OFFSETS)
+OF_ANY_SIGN = ("twist", *OFFSETS)
 _REQUIRED = ("mass_per_length", "bending_stiffness")
 OPTIONAL_PROPERTIES = tuple(
     f.name for f in fields(Beam) if f.name in {**PROPERTY_UNITS, "twist": "rad"} and f.name not in _REQUIRED

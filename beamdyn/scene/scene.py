@@ -368,6 +368,8 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     unread |= {"twist"} if physics.planes == 1 or not beam.is_twisted else set()
     unread |= set() if physics.torsion else {"warping_stiffness", *OFFSETS}
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
+    if beam.tip is not None and beam.tip.offset_across and not physics.torsion:
+        given["tip"] = replace(beam.tip, offset_across=0.0)
     if _models_width(beam, physics):
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

@@ -227,7 +227,7 @@ class Offsets:
 
     @cached_property
     def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """The accelerations that vary the stiffness: along the beam alone if the root is never moved across."""
+        """The accelerations that change the stiffness: only along the beam if none is across it."""
         scene = self.scene
         steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
