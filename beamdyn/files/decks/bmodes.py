@@ -194,19 +194,33 @@ def _read_sections(
 def _from_shear_centre(
     text: DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Offsets from the shear centre in the direction across, and stiffness about the centre of tension."""
-    of_mass, of_shear, of_tension = offsets
-    beside, axial = of_tension - of_shear, columns.get("axial_stiffness", np.zeros_like(of_tension))
-    about = columns["second_bending_stiffness"] - axial * beside**2
-    if (bad := np.flatnonzero(about <= 0)).size:
-        k = bad[0]
-        least = f"axial_stff (tc_offst - sc_offst)^2 = {axial[k] * beside[k] ** 2:g} Nm^2 at this station"
-        found = f"{columns['second_bending_stiffness'][k]:g} Nm^2"
-        raise text.refusal(table.lines[k], f"expected edge_stff above {least}, found {found}")
+    """What `convert_offsets` gives; refused by line where no stiffness is left."""
+    edge = columns["second_bending_stiffness"]
+    axial = columns.get("axial_stiffness", np.zeros_like(edge))
+    converted = convert_offsets(edge, axial, *offsets)
+    if (bad := np.flatnonzero(converted["second_bending_stiffness"] <= 0)).size:
+        k, more = bad[0], axial * converted["tension_offset"] ** 2
+        least = f"axial_stff (tc_offst - sc_offst)^2 = {more[k]:g} Nm^2 at this station"
+        raise text.refusal(table.lines[k], f"expected edge_stff above {least}, found {edge[k]:g} Nm^2")
+    return converted
+
+
+def convert_offsets(
+    edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Offsets from the shear centre in the direction across, and the stiffness about the centre of tension.
+
+    Parameters
+    ----------
+    edge, axial : ndarray, shape (n,)
+        Stiffness against bending edgewise, about the shear centre [N m2], and along the beam [N].
+    mass, shear, tension : ndarray, shape (n,)
+        Centres of mass, shear and tension from the reference axis, along y [m].
+    """
     return {
-        "second_bending_stiffness": about,
-        "mass_offset": of_shear - of_mass,
-        "tension_offset": -beside,
+        "second_bending_stiffness": edge - axial * (tension - shear) ** 2,
+        "mass_offset": shear - mass,
+        "tension_offset": shear - tension,
     }
 
 
