@@ -64,7 +64,7 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
         return bd.Table(np.repeat(ends, 2)[1:-1].tolist(), np.repeat(in_the_middle, 2).tolist())
 
     given |= convert_offsets(data["edge_stiffness"], data["axial_stiffness"], *centres)
-    sections = {name: along(values) for name, values in given.items()}
+    sections: dict[str, Any] = {name: along(values) for name, values in given.items()}
     beam = bd.Beam.from_stiffness(data["length"], **sections, twist=plain.beam.twist)
     return bd.Scene(beam, plain.mount, physics=bd.Physics(planes=2, torsion=True))
 
@@ -99,8 +99,8 @@ def printed_by_bmodes() -> Iterator[Comparison]:
 def notes() -> Iterator[str]:
     """Notes on the table of BModes."""
     yield (
-        "(10) With torsion and offsets, by the sections in the middle of the 12 elements of BModes' own input "
-        "file, as it takes them.  Those of its stations have frequencies 1.6 to 4.7 % higher: so much are its "
-        "printed numbers off by their elements.  It has no rotary inertia of sections that bend, and takes the "
-        "centre of mass from the reference axis, but the centre of tension from the shear centre."
+        "(10) With torsion and offsets, by the sections in the middle of the 12 elements of BModes' own "
+        "input file, as it takes them.  Those of its stations have frequencies 1.6 to 4.7 % higher: so much "
+        "are its printed numbers off by their elements.  It has no rotary inertia of sections that bend, and "
+        "takes the centre of mass from the reference axis, that of tension from the shear centre."
     )

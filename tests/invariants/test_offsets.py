@@ -189,3 +189,71 @@ def test_second_moments_are_about_the_axis(quantity, order):
     ours = even(lambda scale: assembled(scale).matrices[order][quantity])[turn, turn]
     expected = even(lambda scale: work(scale, "mass")[quantity, order])[turn, turn]
     np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-6 * np.abs(expected).max())  # of differences
+
+
+# Uniform beams ----------------------------------------------------------------------------------------
+
+
+def uniform(radius_of_gyration=0.06, offset=0.02, **given):
+    """A beam of 1 m that bends out of the plane of rotation and twists; its sections are flat."""
+    torsion = {"torsion_stiffness": 4.0, "rotary_inertia": 1e-12, "mass_offset": offset}
+    inertia = 2.0 * radius_of_gyration**2
+    return bd.Beam.from_stiffness(1.0, 2.0, 30.0, second_rotary_inertia=inertia, **(torsion | given))
+
+
+def outward(beam, radius=0.3, planes=1):
+    mount = bd.Mount(radius, math.pi, math.pi / 2)
+    return bd.Scene(beam, mount, physics=bd.Physics(planes=planes, torsion=True))
+
+
+def by_collocation(speed, count, radius=0.3, points=36):
+    """Frequencies [Hz] by the differential equations of Houbolt and Brooks (1958), NACA Report 1346.
+
+    Without twist, with the centre of mass at e = 0.02 m and that of tension on the elastic axis, at Chebyshev
+    points: (EI w'')'' - (T w')' - omega^2 (m x e theta)' + m (w + e theta)'' = 0 and
+    -((GJ + T k^2) theta')' + omega^2 m (k^2 + e^2) theta + omega^2 m x e w' + m e w'' + m (k^2 + e^2) theta'' = 0,
+    the last two derivatives of each being by time.
+    """
+    EI, GJ, m, e, k2 = 30.0, 4.0, 2.0, 0.02, 0.06**2
+    D, x = _chebyshev(points)
+    n, r = points + 1, radius + x
+    T, T1 = speed**2 * m * ((radius + 1) ** 2 - r**2) / 2, -(speed**2) * m * r
+    one, D2 = np.eye(n), D @ D
+    K, M = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, 2 * n))
+    w, t = slice(0, n), slice(n, 2 * n)
+    K[w, w] = EI * D2 @ D2 - T[:, None] * D2 - T1[:, None] * D
+    K[w, t] = -(speed**2) * m * e * (one + r[:, None] * D)
+    K[t, w] = speed**2 * m * e * r[:, None] * D
+    K[t, t] = -(GJ + T * k2)[:, None] * D2 - (T1 * k2)[:, None] * D + speed**2 * m * (k2 + e**2) * one
+    M[w, w], M[w, t], M[t, w], M[t, t] = m * one, m * e * one, m * e * one, m * (k2 + e**2) * one
+    tip, root = 0, n - 1
+    at_tip = EI * (D2 @ D)[tip]  # shear force: with the inertia load of the offset mass
+    conditions = {root: (one[root], None), root - 1: (D[root], None), tip: (D2[tip], None)}
+    conditions[1] = (at_tip, -(speed**2) * m * e * r[tip] * one[tip])
+    for row, (of_w, of_t) in conditions.items():
+        K[row], M[row] = 0.0, 0.0
+        K[row, w] = of_w
+        if of_t is not None:
+            K[row, t] = of_t
+    for row, of_t in ((n + root, one[root]), (n + tip, D[tip])):
+        K[row], M[row] = 0.0, 0.0
+        K[row, t] = of_t
+    mu = np.linalg.eigvals(np.linalg.solve(K, M))
+    squares = np.sort(1 / mu[np.abs(mu) > 1e-9 * np.abs(mu).max()].real)
+    return np.sqrt(squares[squares > 0][:count]) / (2 * math.pi)
+
+
+def _chebyshev(n):
+    """Differentiation matrix and points on [0, 1], from the tip (Trefethen 2000)."""
+    x = np.cos(np.pi * np.arange(n + 1) / n)
+    c = np.array([2.0, *np.ones(n - 1), 2.0]) * (-1.0) ** np.arange(n + 1)
+    X = x[:, None] - x[None, :]
+    D = np.outer(c, 1 / c) / (X + np.eye(n + 1))
+    return 2 * (D - np.diag(D.sum(axis=1))), (x + 1) / 2
+
+
+@pytest.mark.parametrize("speed", [0.0, 30.0])
+def test_rotating_beam_by_the_equations_of_houbolt_and_brooks(speed):
+    found = bd.natural_modes(outward(uniform()), speed, 5).frequency
+    np.testing.assert_allclose(found, by_collocation(speed, 5), rtol=1e-8)  # of collocation
+    assert abs(found[1] / bd.natural_modes(outward(uniform(offset=0.0)), speed, 2).frequency[1] - 1) > 1e-3

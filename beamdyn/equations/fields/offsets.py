@@ -31,6 +31,7 @@ import numpy as np
 
 from beamdyn.equations.discretization import RootConditions, Spaces
 from beamdyn.equations.fields.field import Load, Term
+from beamdyn.equations.fields.offset_names import NAMES, NAMES_OF_LOADS
 from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
@@ -43,23 +44,6 @@ from beamdyn.scene.sections import offset_components
 
 _C, _T = 0, 2  # first components of c and of t, among those of both
 _TURN = 2  # number of the rotation by torsion, after the tilts towards e1 and e2
-
-NAMES: dict[tuple[Quantity, int], str] = {
-    ("unity", 2): "mass of offsets",
-    ("speed", 1): "Coriolis coupling of offsets",
-    ("acceleration", 0): "Euler coupling of offsets",
-    ("speed_squared", 0): "rotation of offsets",
-    ("root_axial", 0): "tension by root acceleration of offsets",
-    ("root_transverse", 0): "root acceleration of offsets",
-    ("root_across", 0): "root acceleration of offsets",
-}
-NAMES_OF_LOADS: dict[Quantity, str] = {
-    "acceleration": "angular acceleration on offsets",
-    "speed_squared": "rotation on offsets",
-    "root_axial": "axial root acceleration on offsets",
-    "root_transverse": "root acceleration on offsets",
-    "root_across": "root acceleration on offsets",
-}
 
 
 @dataclass(frozen=True)

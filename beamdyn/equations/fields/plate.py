@@ -47,6 +47,7 @@ from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spa
 from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
+from beamdyn.equations.fields.offset_names import EXPLANATIONS
 from beamdyn.equations.fields.section_torsion import assemble_section_torsion
 from beamdyn.equations.fields.stretch import STRETCHED, Stretch
 from beamdyn.equations.fields.transverse import TransverseField, axis_in_section
@@ -66,6 +67,7 @@ _IS_OBLIQUE = Condition(
     lambda s: min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
     "the strip stands along or across the plane of rotation",
 )
+_IS_TWISTED = Condition(lambda s: s.scene.beam.is_twisted, "the beam is not twisted")
 
 
 class Derivative(NamedTuple):
@@ -476,6 +478,10 @@ class Torsion(SectionField):
         "twisting by rotation": Explanation(
             "-ω² c s Qk", "rotation turns the strip into its plane", (why.TURNS, _IS_OBLIQUE)
         ),
+        "untwisting by tension": Explanation(
+            "ω² NB r² β' θ'", "tension pulls straight the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
+        ),
+        **EXPLANATIONS,
     }
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
