@@ -209,10 +209,9 @@ def outward(beam, radius=0.3, planes=1):
 def by_collocation(speed, count, radius=0.3, points=36):
     """Frequencies [Hz] by the differential equations of Houbolt and Brooks (1958), NACA Report 1346.
 
-    Without twist, with the centre of mass at e = 0.02 m and that of tension on the elastic axis, at Chebyshev
-    points: (EI w'')'' - (T w')' - omega^2 (m x e theta)' + m (w + e theta)'' = 0 and
-    -((GJ + T k^2) theta')' + omega^2 m (k^2 + e^2) theta + omega^2 m x e w' + m e w'' + m (k^2 + e^2) theta'' = 0,
-    the last two derivatives of each being by time.
+    Without twist, with the centre of mass at e = 0.02 m and that of tension on the elastic axis, at points of
+    Chebyshev and the angular frequency f: (EI w'')'' - (T w')' - omega^2 (m x e theta)' = f^2 m (w + e theta) and
+    -((GJ + T k^2) theta')' + omega^2 m ((k^2 + e^2) theta + x e w') = f^2 m (e w + (k^2 + e^2) theta).
     """
     EI, GJ, m, e, k2 = 30.0, 4.0, 2.0, 0.02, 0.06**2
     D, x = _chebyshev(points)
@@ -257,3 +256,107 @@ def test_rotating_beam_by_the_equations_of_houbolt_and_brooks(speed):
     found = bd.natural_modes(outward(uniform()), speed, 5).frequency
     np.testing.assert_allclose(found, by_collocation(speed, 5), rtol=1e-8)  # of collocation
     assert abs(found[1] / bd.natural_modes(outward(uniform(offset=0.0)), speed, 2).frequency[1] - 1) > 1e-3
+
+
+def test_offsets_of_zero_change_no_bit():
+    plain, zero = (outward(uniform(offset=given), planes=1) for given in (None, 0.0))
+    found, expected = (bd.natural_modes(scene, 30.0, 4) for scene in (zero, plain))
+    assert found.frequency.tolist() == expected.frequency.tolist() and not zero.beam.has_offsets
+
+
+def test_what_torsion_leaves_out_is_the_beam_without_offsets():
+    """Without torsion the offsets are not in the model: bit by bit, and they are said to be left out."""
+    torsion = {"second_bending_stiffness": 70.0, "twist": 0.3}
+    beside, on_axis = (uniform(offset=given, tension_offset=given, **torsion) for given in (0.05, 0.0))
+    scenes = [
+        bd.Scene(beam, bd.Mount(0.3, math.pi), physics=bd.Physics(planes=2)) for beam in (beside, on_axis)
+    ]
+    found, expected = (bd.natural_modes(scene, 30.0, 3) for scene in scenes)
+    assert found.frequency.tolist() == expected.frequency.tolist()
+    change = found.left_out_effects.changes["offsets of sections"]
+    coupled = bd.Scene(beside, bd.Mount(0.3, math.pi), physics=bd.Physics(planes=2, torsion=True))
+    with_them = bd.natural_modes(coupled, 30.0, 4).frequency
+    nearest = np.abs(with_them[:, None] / found.frequency - 1 - change).min(axis=0)
+    np.testing.assert_allclose(nearest, 0.0, atol=1e-7)  # of one step of inverse iteration
+    assert np.abs(change).max() > 1e-3
+    assert "offsets of sections" not in bd.natural_modes(coupled, 30.0, 3).left_out_effects.not_modelled
+    assert "offsets of sections" in expected.left_out_effects.not_modelled  # none are known
+
+
+@pytest.mark.parametrize(
+    ("physics", "precone", "elements", "error"),
+    [({}, 0.0, 40, 2e-7), ({"shear": True}, 0.0, 40, 5e-7), ({"stretch": True}, 0.1, 8, 1e-4)],
+)
+def test_two_discretizations(physics, precone, elements, error):
+    beam = bd.Beam.from_stiffness(
+        1.0, 2.0, 30.0, 1e6, second_bending_stiffness=70.0, twist=Polynomial([0.3, -0.5]),
+        shear_stiffness=1e4, torsion_stiffness=9.0, rotary_inertia=1e-4, second_rotary_inertia=4e-3,
+        mass_offset=Polynomial([0.0, 0.05]), tension_offset=0.01,
+        tip=bd.TipMass(0.3, 0.02, 1e-4, 1e-4, 1e-4, offset_across=0.04),
+    )  # fmt: skip
+    mount = bd.Mount(0.3, math.pi, 1.2, precone=precone)
+    scene = bd.Scene(beam, mount, physics=bd.Physics(planes=2, torsion=True, **physics))
+    choices = bd.Ritz(14), bd.Fem(elements)
+    ritz, fem = (bd.natural_modes(scene, 20.0, 5, each).frequency for each in choices)
+    np.testing.assert_allclose(fem, ritz, rtol=error)  # of elements, extrapolated
+
+
+def test_moments_are_about_the_centre_of_tension():
+    """Of a stiff beam: the moment in the plane of centrifugal forces beside the axis, and of the tension."""
+    m, L, r, speed, c, t, body, ahead, across = 3.0, 2.0, 1.0, 5.0, 0.05, 0.02, 0.5, 0.1, 0.03
+    beam = bd.Beam.from_stiffness(
+        L, m, 1e8, second_bending_stiffness=1e8, torsion_stiffness=1e8, rotary_inertia=1e-9,
+        second_rotary_inertia=1e-9, mass_offset=c, tension_offset=t,
+        tip=bd.TipMass(body, ahead, offset_across=across),
+    )  # fmt: skip
+    loads = bd.static_loads(outward(beam, r, planes=2), [speed], at=[0.0, 1.0])
+    expected = []
+    for x in (0.0, 1.0):
+        force = m * ((r + L) ** 2 - (r + x) ** 2) / 2 + body * (r + L + ahead)
+        expected.append(speed**2 * (force * t - (r + x) * (m * c * (L - x) + body * across)))
+    np.testing.assert_allclose(loads.moment[0, :, 1], expected, rtol=1e-6)  # it bends by as much
+    np.testing.assert_allclose(loads.moment[0, :, 0], 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"mass_offset": 0.01}, r"mass_offset = 0.01 m at x/L = 0.000: .*needs torsion_stiffness"),
+        (
+            {"tension_offset": bd.Table((0.0, 0.4, 1.0), (0.0, 0.0, 0.02))},
+            r"tension_offset = 0.01 m at x/L = 0.700",
+        ),
+        (
+            {"tip": bd.TipMass(1.0, offset_across=-0.1)},
+            r"tip.offset_across = -0.1 m: .*needs torsion_stiffness",
+        ),
+        ({"mass_offset": math.nan}, r"mass_offset"),
+    ],
+)
+def test_offsets_without_stiffness_against_torsion_are_refused(given, said):
+    with pytest.raises(ValueError, match=said):
+        bd.Beam.from_stiffness(1.0, 2.0, 30.0, **given)
+
+
+def test_offsets_in_a_scene_file(tmp_path):
+    (tmp_path / "blade.toml").write_text(
+        """
+        physics = { torsion = true }
+        mount = { radius = "0.3 m", setting_angle = "180 deg", bending_angle = "90 deg" }
+        [beam]
+        length = "1 m"
+        bending_stiffness = "30 N m2"
+        torsion_stiffness = "4 N m2"
+        rotary_inertia = "1e-12 kg m"
+        second_rotary_inertia = "0.0072 kg m"
+        stations = [
+          ["x/L", "mass_per_length [kg/m]", "mass_offset [mm]"],
+          [0, 2, 20],
+          [1, 2, 20],
+        ]
+        """
+    )
+    scene = bd.load_scene(tmp_path / "blade.toml")
+    np.testing.assert_allclose(
+        bd.natural_modes(scene, 30.0, 3).frequency, by_collocation(30.0, 3), rtol=1e-8
+    )  # of collocation

@@ -1,4 +1,4 @@
-"""Names of the terms and loads that offsets of sections add, by the quantity that multiplies them, and why."""
+"""Names of the terms and loads that offsets of sections add, by the quantity that multiplies them."""
 
 from __future__ import annotations
 
