@@ -210,7 +210,8 @@ def by_collocation(speed, count, radius=0.3, points=36):
     """Frequencies [Hz] by the differential equations of Houbolt and Brooks (1958), NACA Report 1346.
 
     Without twist, with the centre of mass at e = 0.02 m and that of tension on the elastic axis, at points of
-    Chebyshev and the angular frequency f: (EI w'')'' - (T w')' - omega^2 (m x e theta)' = f^2 m (w + e theta) and
+    Chebyshev and the angular frequency f:
+    (EI w'')'' - (T w')' - omega^2 (m x e theta)' = f^2 m (w + e theta) and
     -((GJ + T k^2) theta')' + omega^2 m ((k^2 + e^2) theta + x e w') = f^2 m (e w + (k^2 + e^2) theta).
     """
     EI, GJ, m, e, k2 = 30.0, 4.0, 2.0, 0.02, 0.06**2
@@ -314,7 +315,7 @@ def test_moments_are_about_the_centre_of_tension():
     for x in (0.0, 1.0):
         force = m * ((r + L) ** 2 - (r + x) ** 2) / 2 + body * (r + L + ahead)
         expected.append(speed**2 * (force * t - (r + x) * (m * c * (L - x) + body * across)))
-    np.testing.assert_allclose(loads.moment[0, :, 1], expected, rtol=1e-6)  # it bends by as much
+    np.testing.assert_allclose(loads.moment[0, :, 1], expected, rtol=1e-5)  # it bends by as much
     np.testing.assert_allclose(loads.moment[0, :, 0], 0.0, atol=1e-6)
 
 

@@ -25,13 +25,14 @@ NAMES_OF_LOADS: dict[Quantity, str] = {
     "root_across": "root acceleration on offsets",
 }
 _BESIDE = Condition(lambda s: s.scene.beam.has_offsets, "the centres of mass and tension are on the axis")
-_ACROSS = Condition(lambda s: why.LOADED.is_met(s) or bool(s.scene.gravity), "nothing moves the root across")
+_ROTATES_ALONG = Condition(
+    lambda s: bool(s.scene.mount.precone) or s.scene.physics.stretch,
+    "no precone, and stretch is not modelled",
+)
 EXPLANATIONS: Mapping[str, Explanation] = {
     "mass of offsets": Explanation("m c (w'' + θ'')", "the centre of mass lies beside the axis", (_BESIDE,)),
     "Coriolis coupling of offsets": Explanation(
-        "2 ω sin(η) m c (w' + θ')",
-        "the precone has rotation about the beam",
-        (_BESIDE, why.TURNS, why.PRECONED),
+        "2 ω sin(η) m c (w' + θ')", "masses move beside the axis", (_BESIDE, why.TURNS, _ROTATES_ALONG)
     ),
     "Euler coupling of offsets": Explanation(
         "ω' x m c (u'^2 + θ^2)", "the speed varies", (_BESIDE, why.ACCELERATES)
@@ -43,7 +44,7 @@ EXPLANATIONS: Mapping[str, Explanation] = {
         "-aO1 (NA t w'' + m c w') θ", why.say_tension, (_BESIDE, why.TENSIONED)
     ),
     "root acceleration of offsets": Explanation(
-        "m c (aO2 + aO3) (u'^2 + θ^2)", why.say_static_load, (_BESIDE, _ACROSS)
+        "m c (aO2 + aO3) (u'^2 + θ^2)", why.say_static_load, (_BESIDE, why.LOADED)
     ),
     "angular acceleration on offsets": Explanation(
         "ω' m (c + x c θ)", "the speed varies", (_BESIDE, why.ACCELERATES)
@@ -55,6 +56,6 @@ EXPLANATIONS: Mapping[str, Explanation] = {
         "-aO1 (m c u' + NA t u'')", why.say_tension, (_BESIDE, why.TENSIONED)
     ),
     "root acceleration on offsets": Explanation(
-        "-(aO2 + aO3) m c θ", why.say_static_load, (_BESIDE, _ACROSS)
+        "-(aO2 + aO3) m c θ", why.say_static_load, (_BESIDE, why.LOADED)
     ),
 }

@@ -63,11 +63,11 @@ _SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all term
 _ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # of the derivatives along and across
 _ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
 
+_IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")
 _IS_OBLIQUE = Condition(
-    lambda s: min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
+    lambda s: _IS_TWISTED.is_met(s) or min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
     "the strip stands along or across the plane of rotation",
 )
-_IS_TWISTED = Condition(lambda s: s.scene.beam.is_twisted, "the beam is not twisted")
 
 
 class Derivative(NamedTuple):
