@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import OFFSETS, Beam, TipMass
 from beamdyn.scene.profile import Profile, combine
 
 # Orders of the derivatives of a deflection whose products a property of the sections multiplies.
@@ -72,15 +72,20 @@ def _turned_values(
 
 
 @lru_cache(maxsize=64)
-def offset_components(beam: Beam, name: str) -> tuple[Profile, Profile] | None:
-    """Components of an offset of the sections along e1, e2 [m]; None where it is 0 or not given."""
-    offset, twist = getattr(beam, name), beam.twist
-    if offset is None or not any(any(row) for row in offset.coefficients):
-        return None
-    if twist is None:
-        return offset.scaled(0.0), offset
-    first, second = combine(lambda e, beta: np.stack([-e * np.sin(beta), e * np.cos(beta)]), offset, twist)
-    return first, second
+def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
+    """Components along e1, e2 of the offset of the centre of mass, then of tension [m]; None for 0."""
+    offsets = (getattr(beam, name) for name in OFFSETS)
+    given = [offset if offset is not None and offset.series.any() else None for offset in offsets]
+    if beam.twist is None:
+        return tuple(component for offset in given for component in (None, offset))
+    there = [offset for offset in given if offset is not None]
+
+    def turned(twist: np.ndarray, *offsets: np.ndarray) -> np.ndarray:
+        c, s = np.cos(twist), np.sin(twist)
+        return np.stack([part for offset in offsets for part in (-s * offset, c * offset)])
+
+    found = iter(combine(turned, beam.twist, *there) if there else ())
+    return tuple(next(found) if offset is not None else None for offset in given for _ in range(2))
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:

@@ -109,27 +109,18 @@ def _second_order(rows: Motion, columns: Motion) -> np.ndarray:
 # Properties of the beam ---------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=64)
-def _components(beam: Beam) -> tuple[Profile | None, ...]:
-    """Components of c and t along the beam [m]; None where they vanish."""
-    found: list[Profile | None] = []
-    for name in ("mass_offset", "tension_offset"):
-        components = offset_components(beam, name) or (None, None)
-        found += [e if e is not None and any(map(any, e.coefficients)) else None for e in components]
-    return tuple(found)
-
-
-@lru_cache(maxsize=64)
-def _moments(beam: Beam) -> tuple[list[Profile | None], list[Profile | None]]:
-    """Mass per length times each component of c and t, without x and with it [kg, kg m]."""
-    first = [e and beam.mass_per_length * e for e in _components(beam)]
-    return first, [m and (m * FRACTION).scaled(beam.length) for m in first]
+@lru_cache(maxsize=256)
+def _moment(beam: Beam, component: int, power: int) -> Profile | None:
+    """Mass per length times a component of c or t and a power of x [kg, kg m]; None for 0."""
+    offset = offset_components(beam)[component]
+    first = offset and beam.mass_per_length * offset
+    return first and (first * FRACTION).scaled(beam.length) if power else first
 
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
     """Mass outboard, without x and with it, times each component of t [kg m, kg m2]."""
-    return [[t and outboard * t for t in _components(beam)[_T:]] for outboard in axial_tension(beam)]
+    return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
 class _Part(NamedTuple):
@@ -234,20 +225,24 @@ class Offsets:
         """Tip body, and the components of c and t there (4,) [m]."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
-        of_tension = [0.0 if t is None else float(t.end_values()[1][-1]) for t in _components(beam)[_T:]]
+        of_tension = [
+            0.0 if t is None else float(t.end_values()[1][-1]) for t in offset_components(beam)[_T:]
+        ]
         of_mass = tip.offset_across * np.array([-np.sin(twist), np.cos(twist)])
         return tip, np.array([*of_mass, *of_tension])
 
     def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
         """Sum moments of the tip body with coefficients of c and t (4,)."""
         (tip, components), length = self._tip, self.scene.beam.length
+        if not tip.mass:
+            return 0.0
         return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
     def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
         """Yield the moments of the sections, each with its coefficient, that are not 0."""
-        moments = _moments(self.scene.modelled_beam)[power]
-        for value, moment in zip(coefficients.tolist(), moments, strict=True):
-            if value and moment is not None:
+        beam = self.scene.modelled_beam
+        for component, value in enumerate(coefficients.tolist()):
+            if value and (moment := _moment(beam, component, power)) is not None:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
@@ -298,11 +293,16 @@ class Offsets:
             (B, -1.0, [("speed", 1, 2.0), ("acceleration", 0, 1.0)]),
             (-P, 1.0, [("speed_squared", 0, 1.0)]),
         ]
-        for rows, columns in combinations(self.motions, 2):
-            tilts = rows.order + columns.order
-            for matrix, mirrored, uses in kinds if not tilts else kinds[::2]:
-                moved = rows.on_axis @ matrix @ columns.beside + columns.on_axis @ matrix.T @ rows.beside
-                if (found := self._integrate(rows, columns, moved, 0)) is not None:
+        on_axis = np.array([motion.on_axis for motion in self.motions])
+        beside = np.array([motion.beside for motion in self.motions])
+        for matrix, mirrored, uses in kinds:
+            one_way = np.einsum("ai,ij,bjc->abc", on_axis, matrix, beside)
+            moved = one_way + mirrored * one_way.swapaxes(0, 1)
+            for a, b in zip(*np.nonzero(np.triu(moved.any(axis=2), 1)), strict=True):
+                rows, columns = self.motions[a], self.motions[b]
+                if mirrored < 0 and rows.order + columns.order:  # of a tilt
+                    continue
+                if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
                     for quantity, order, factor in uses:
                         yield _Part(rows.field, columns.field, quantity, order, factor * found, mirrored)
 
@@ -368,6 +368,8 @@ class Offsets:
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):
+                if not coefficients.any():
+                    continue
                 work = self._of_tip(coefficients, power) * motion.at_tip
                 for value, moment in self._of_sections(coefficients, power):
                     work = work + value * self._load(moment, motion.conditions, motion.order)

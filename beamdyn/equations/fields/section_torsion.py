@@ -103,9 +103,9 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
     """Yield the terms of torsion alone."""
     beam, L, tip = scene.modelled_beam, scene.beam.length, _tip_body(scene)
     (a1, a2), (cosine, _) = axis_in_section(scene), exact_cos_sin(scene.mount.precone)
-    turn, R = np.outer(space.end(0), space.end(0)), section_tensor(beam, "rotary_inertia")
+    turn, (polar, broad, oblique) = np.outer(space.end(0), space.end(0)), _inertias(beam)
     assert beam.torsion_stiffness is not None, "a scene with torsion has its properties"
-    yield Term("mass of torsion", _NAME, _NAME, 2, L * space.gram(R[0, 0] + R[1, 1], 0))
+    yield Term("mass of torsion", _NAME, _NAME, 2, L * space.gram(polar, 0))
     yield Term("mass of the tip body in torsion", _NAME, _NAME, 2, tip.axial_inertia * turn)
     stiffness = space.gram(beam.torsion_stiffness, 1) / L
     if beam.warping_stiffness is not None:
@@ -114,11 +114,10 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
     by_root, by_speed = (space.gram(pulled, 1) / L for pulled in _pulled_straight(beam))
     yield _term("centrifugal stiffening of torsion", by_speed, "speed_squared", cosine**2)
     yield _term("tension by root acceleration of torsion", by_root, "root_axial", -1.0)
-    broad = L * space.gram(R[1, 1] + R[0, 0].scaled(-1.0), 0)
-    yield _term("spin of sections of torsion", broad, "speed_squared", a1**2 - a2**2)
-    if (0, 1) in R and a1 * a2:
-        oblique = L * space.gram(R[0, 1], 0)
-        yield _term("spin of sections of torsion", oblique, "speed_squared", -4 * a1 * a2)
+    yield _term("spin of sections of torsion", L * space.gram(broad, 0), "speed_squared", a1**2 - a2**2)
+    if oblique is not None and a1 * a2:
+        turned = L * space.gram(oblique, 0)
+        yield _term("spin of sections of torsion", turned, "speed_squared", -4 * a1 * a2)
     B = centrifugal_inertia(tip, beam.tip_twist)
     factor = (B[0, 0] - B[1, 1]) * (a1**2 - a2**2) + 4 * B[0, 1] * a1 * a2
     yield _term("spin of the tip body in torsion", turn, "speed_squared", float(factor))
@@ -126,18 +125,18 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
 
 def _loads(scene: Scene, space: Space) -> Iterator[Load]:
     """Yield the loads on torsion alone."""
-    beam, R, (a1, a2) = (
+    beam, (_, broad, oblique), (a1, a2) = (
         scene.modelled_beam,
-        section_tensor(scene.modelled_beam, "rotary_inertia"),
+        _inertias(scene.modelled_beam),
         axis_in_section(scene),
     )
     L, B = beam.length, centrifugal_inertia(_tip_body(scene), beam.tip_twist)
-    broad = L * space.load(R[1, 1] + R[0, 0].scaled(-1.0)) + (B[0, 0] - B[1, 1]) * space.end(0)
-    yield Load("twisting by rotation", _NAME, broad, "speed_squared", -a1 * a2)
+    turned = L * space.load(broad) + (B[0, 0] - B[1, 1]) * space.end(0)
+    yield Load("twisting by rotation", _NAME, turned, "speed_squared", -a1 * a2)
     if beam.twist is not None:
-        oblique = L * space.load(R[0, 1]) if (0, 1) in R else 0.0
-        oblique = oblique - B[0, 1] * space.end(0)
-        yield Load("twisting by rotation", _NAME, oblique, "speed_squared", a2**2 - a1**2)
+        turned = -B[0, 1] * space.end(0)
+        turned = turned if oblique is None else turned + L * space.load(oblique)
+        yield Load("twisting by rotation", _NAME, turned, "speed_squared", a2**2 - a1**2)
         by_root, by_speed = (
             space.load(pulled * beam.twist.derivative(), 1) / L for pulled in _pulled_straight(beam)
         )
@@ -149,6 +148,13 @@ def _loads(scene: Scene, space: Space) -> Iterator[Load]:
 def _tip_body(scene: Scene) -> TipMass:
     """The body at the tip, with moments of inertia about the axis of the beam."""
     return (scene.beam.tip or TipMass(0.0)).about_axis
+
+
+@lru_cache(maxsize=64)
+def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
+    """R11 + R22, R22 - R11, and R12 if it is not 0."""
+    R = section_tensor(beam, "rotary_inertia")
+    return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
 
 @lru_cache(maxsize=64)
