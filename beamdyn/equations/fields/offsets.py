@@ -268,10 +268,12 @@ class Offsets:
     def _along(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
     ) -> np.ndarray:
-        """Integrate over x derivatives by x of two sets of functions."""
-        return self.spaces.product(weight, rows, columns, orders) * self.scene.beam.length ** (
-            1 - sum(orders)
-        )
+        """Integrate over x derivatives by x of two sets of functions; each integral is computed once."""
+        key = weight, rows, columns, orders
+        if key not in self._known:
+            scale = self.scene.beam.length ** (1 - sum(orders))
+            self._known[key] = self.spaces.product(weight, rows, columns, orders) * scale
+        return self._known[key]
 
     # Terms --------------------------------------------------------------------------------------------
 

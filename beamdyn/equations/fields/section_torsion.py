@@ -34,7 +34,7 @@ from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import exact_cos_sin
-from beamdyn.scene.profile import Profile, combine
+from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
@@ -165,10 +165,9 @@ def _pulled_straight(beam: Beam) -> list[Profile]:
     """
     R1, R2 = beam.rotary_inertia, beam.second_rotary_inertia
     assert R1 is not None and R2 is not None, "a scene with torsion has its properties"
-    (radius,) = combine(lambda inertia, mass: (inertia / mass)[None], R1 + R2, beam.mass_per_length)
-    if beam.tension_offset is not None:
-        radius = radius + beam.tension_offset * beam.tension_offset
-    return [tension * radius for tension in axial_tension(beam)]
+    t = ONE.scaled(0.0) if beam.tension_offset is None else beam.tension_offset
+    given = R1 + R2, beam.mass_per_length, t, *axial_tension(beam)
+    return combine(lambda R, m, t, *pulls: (R / m + t**2) * np.stack(pulls), *given)
 
 
 def _term(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0) -> Term:
