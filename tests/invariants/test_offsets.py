@@ -361,3 +361,28 @@ def test_offsets_in_a_scene_file(tmp_path):
     np.testing.assert_allclose(
         bd.natural_modes(scene, 30.0, 3).frequency, by_collocation(30.0, 3), rtol=1e-8
     )  # of collocation
+
+
+def test_critical_speeds_with_offsets_are_sought():
+    """Inward: the tension that buckles the beam acts beside the axis, and twists it as well."""
+    beside, on_axis = (
+        bd.Scene(
+            uniform(offset=c, tension_offset=c),
+            bd.Mount(3.0, 0.0, math.pi / 2),
+            physics=bd.Physics(torsion=True),
+        )
+        for c in (0.05, 0.0)
+    )
+    point = bd.critical_point(beside)
+    assert point.speed < 0.999 * bd.critical_speed(on_axis)
+    assert abs(bd.natural_modes(beside, point.speed * (1 - 1e-6), 1).frequency[0]) < 2e-2
+
+
+def test_a_mass_beside_the_axis_diverges_outward():
+    """Where a tilt twists the beam, by centrifugal forces, more than it is held; on the axis it is not."""
+    assert bd.critical_speed(outward(uniform(offset=0.0))) == math.inf
+    far = outward(uniform(offset=0.1))
+    found = bd.critical_speed(far)
+    assert bd.critical_speed(far, bd.Fem(40)) == pytest.approx(found, rel=1e-5)  # of elements
+    below = bd.natural_modes(far, found * (1 - 1e-6), 1)
+    assert below.frequency[0] < 2e-2 and bd.natural_modes(far, 0.5 * found, 1).frequency[0] > 1.0
