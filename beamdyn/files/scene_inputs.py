@@ -350,6 +350,11 @@ def _own(section: type[Section]) -> list[str]:
     return [name for name in section.model_fields if name not in _BeamInput.model_fields]
 
 
+def _needed(section: type[Section]) -> str:
+    """The keys of its own that a kind of beam needs, in words; others are optional."""
+    return " and ".join(name for name in _own(section) if section.model_fields[name].is_required())
+
+
 def _kind_of_beam(given: Any) -> str:
     keys = given.keys() if isinstance(given, dict) else set()
     return "<stiffness>" if keys & set(_own(StiffnessInput)) else "<rectangular>"
@@ -361,7 +366,7 @@ def _one_kind_of_beam(given: Any) -> Any:
     if section and stiffness:
         raise ValueError(
             f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
-            f"either by {', '.join(_own(RectangularInput))} or by {', '.join(_own(StiffnessInput))}"
+            f"either by {_needed(RectangularInput)} or by {_needed(StiffnessInput)}, with what goes with them"
         )
     return given
 

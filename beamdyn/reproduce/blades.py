@@ -93,7 +93,7 @@ def printed_by_bmodes() -> Iterator[Comparison]:
     for _, entry in _compare_blades("frequency_printed_by_bmodes"):
         what, decimals = f"{entry.where}, mode {entry.mode}", len(entry.printed.partition(".")[2])
         numbers = float(entry.printed), entry.ours, entry.error, decimals
-        yield Comparison(what, "BModes 3", *numbers, "without rotary inertia (10)")
+        yield Comparison(what, "BModes 3", *numbers, "no rotary inertia (10)")
 
 
 def notes() -> Iterator[str]:
