@@ -56,8 +56,13 @@ class Effect:
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
-        """Whether the model of a scene lacks the effect: the twist only of a beam that has one."""
-        return not self.is_in(scene) and (self is not TWIST or scene.beam.is_twisted)
+        """Whether the model of a scene lacks the effect: twist and offsets only of a beam that has them."""
+        has = {
+            TWIST: scene.beam.is_twisted,
+            OFFSETS: scene.beam.has_offsets,
+            _IN_LINE: not scene.beam.has_offsets,
+        }
+        return not self.is_in(scene) and has.get(self, True)
 
     @property
     def bends_in_space(self) -> bool:
@@ -145,11 +150,14 @@ TORSION = Effect(
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )
-EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, STRETCH, LARGE_DEFLECTION, TORSION
-NEVER_MODELLED = (
-    Effect("offsets of sections", "their centres of gravity, tension and shear are on one straight line"),
-    Effect("contact", "nothing touches the beam"),
+_OFFSETS, _LINE = (
+    "offsets of sections",
+    "their centres of gravity, tension and shear are on one straight line",
 )
+OFFSETS = Effect(_OFFSETS, _LINE, "torsion", needs=("torsion_stiffness",))  # given, but without torsion
+_IN_LINE = Effect(_OFFSETS, _LINE)  # none are given
+EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, STRETCH, LARGE_DEFLECTION, TORSION, OFFSETS
+NEVER_MODELLED = _IN_LINE, Effect("contact", "nothing touches the beam")
 NAMED = {effect.name: effect for effect in EFFECTS}
 
 

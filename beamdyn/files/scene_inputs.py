@@ -263,6 +263,14 @@ class StiffnessInput(_BeamInput):
     warping_stiffness: Annotated[
         Along | None, Varying("N m4", "E Cw", "stiffness against warping, which the root holds", above=0)
     ] = None
+    mass_offset: Annotated[
+        Along | None,
+        Varying("m", "c", "centre of mass beside the shear centre, in the direction across, for torsion"),
+    ] = None
+    tension_offset: Annotated[
+        Along | None,
+        Varying("m", "t", "centre of tension beside the shear centre, likewise; stiffnesses are about it"),
+    ] = None
 
     @cached_property
     def core(self) -> Beam:
@@ -352,6 +360,11 @@ def _own(section: type[Section]) -> list[str]:
     return [name for name in section.model_fields if name not in _BeamInput.model_fields]
 
 
+def _needed(section: type[Section]) -> str:
+    """The keys of its own that a kind of beam needs, in words; others are optional."""
+    return " and ".join(name for name in _own(section) if section.model_fields[name].is_required())
+
+
 def _kind_of_beam(given: Any) -> str:
     keys = given.keys() if isinstance(given, dict) else set()
     return "<stiffness>" if keys & set(_own(StiffnessInput)) else "<rectangular>"
@@ -363,7 +376,7 @@ def _one_kind_of_beam(given: Any) -> Any:
     if section and stiffness:
         raise ValueError(
             f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
-            f"either by {', '.join(_own(RectangularInput))} or by {', '.join(_own(StiffnessInput))}"
+            f"either by {_needed(RectangularInput)} or by {_needed(StiffnessInput)}, with what goes with them"
         )
     return given
 

@@ -42,7 +42,8 @@ _OF_TAPERED = "loads along the span are known with it where the width is constan
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
 
 _FIELD_OF_DIRECTION = "bending", "second bending"
-_WITHOUT_RESULTANT = "torsion", "camber"  # fields that move no section as a whole along or across the beam
+# Fields that move no centre of mass along or across the beam, where it is on the axis.
+_WITHOUT_RESULTANT = "torsion", "camber"
 _DAMPING = {field.damping_name for field in FIELDS}
 
 
@@ -159,7 +160,8 @@ def span_rows(
     without = "" if scene.physics.stretch else "axial_stiffness"
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
     stretched = Stretch().complete(scene.undamped)  # its equation has the axial force
-    modelled = (f for f in FIELDS if f.is_modelled(stretched) and f.name not in _WITHOUT_RESULTANT)
+    unmoved = () if beam.has_offsets else _WITHOUT_RESULTANT
+    modelled = (f for f in FIELDS if f.is_modelled(stretched) and f.name not in unmoved)
     assembled = {f.name: f.assemble(stretched, spaces) for f in modelled}
     directions = _FIELD_OF_DIRECTION[: equations.planes]
     moves = [(field, False) for field in (Stretch.name, *directions)]  # along the beam, and across it

@@ -127,7 +127,12 @@ class Buckling:
 
 
 def decide_buckling(scene: Scene) -> Buckling:
-    """Decide whether bending has a critical speed, by the arguments in the docstring of this module."""
+    """Decide whether bending has a critical speed, by the arguments in the docstring of this module.
+
+    They do not hold where offsets of sections couple it with torsion.
+    """
+    if scene.physics.torsion and scene.beam.has_offsets:
+        return Buckling(None, "no argument covers sections with offsets")
     if (turning := _least_turning(scene)) < 0:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
@@ -317,5 +322,6 @@ def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
     """A property of the sections in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        values[:, i, j] = profile(xi)
+        if max(i, j) < planes:  # torsion in one plane has both rotary inertias
+            values[:, i, j] = profile(xi)
     return values

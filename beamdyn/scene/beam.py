@@ -52,7 +52,8 @@ class Beam(FieldsOnly, OneLine):
     shear_stiffness, second_shear_stiffness : Profile, optional
         Shear stiffness kappa G A [N] over x/L, for bending in either direction of the section.
     rotary_inertia, second_rotary_inertia : Profile, optional
-        Rotary inertia of the section per length, rho I [kg m] over x/L, for bending in either direction.
+        Rotary inertia of the section per length, rho I [kg m] over x/L, for bending in either direction,
+        about the centre of mass.
     point_masses : sequence of PointMass
         Point masses along the beam; those at one place add up.
     point_springs : sequence of PointSpring
@@ -67,6 +68,9 @@ class Beam(FieldsOnly, OneLine):
         Angles by which the axis of the unloaded beam leaves its direction at the root [rad] over x/L, x along
         the axis: it points along (cos a cos b, cos a sin b, sin a), in the axes along the beam at its root,
         in the direction of bending and across, with the sweep a and the prebend b.
+    mass_offset, tension_offset : Profile, optional
+        Distance of the sections' centre of mass, and of their centre of tension, from their shear centre in
+        the direction across [m], of either sign, over x/L.  The shear centres are the axis of the beam.
 
     References
     ----------
@@ -100,13 +104,15 @@ class Beam(FieldsOnly, OneLine):
     warping_stiffness: Profile | None = field(default=None, metadata=ADDED_LATER)
     sweep: Profile | None = field(default=None, metadata=ADDED_LATER)
     prebend: Profile | None = field(default=None, metadata=ADDED_LATER)
+    mass_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
+    tension_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
         given = (name for name in OPTIONAL_PROPERTIES if getattr(self, name) is not None)
         for name in (*_REQUIRED, *given):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
-            if name not in ANGLE_UNITS:
+            if name not in OF_ANY_SIGN:
                 check_positive(name, getattr(self, name))
         if self.twist is not None and self.second_bending_stiffness is None:
             bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
@@ -126,6 +132,7 @@ class Beam(FieldsOnly, OneLine):
             )
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
+        self._check_offsets()
         if self.tip is not None and self.length + self.tip.offset < 0:
             bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
@@ -135,6 +142,30 @@ class Beam(FieldsOnly, OneLine):
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             if not all(_alike(getattr(self, name), made) for name, made in self.section.properties.items()):
                 set_fields(self, section=None)  # a property was replaced
+        if self.has_offsets:  # a rectangle has its centres in one point
+            set_fields(self, section=None)
+
+    def _check_offsets(self) -> None:
+        """Refuse offsets of a beam that lacks the stiffness against the torsion that they cause."""
+        if self.torsion_stiffness is not None:
+            return
+        bound = "forces beside the shear centre twist the beam, which needs {other}"
+        said: dict[str, Any] = {"other": "torsion_stiffness"}
+        for name in OFFSETS:
+            if (given := getattr(self, name)) is not None and (place := _first_place(given)) is not None:
+                value, where = float(given(np.array(place))), f" at x/L = {place:.3f}"
+                raise InvalidValue(name, value, bound, GIVE_OR_COMPUTE, "m", where=where, **said)
+        if self.tip is not None and self.tip.offset_across:
+            raise InvalidValue(
+                "tip.offset_across", self.tip.offset_across, bound, GIVE_OR_COMPUTE, "m", **said
+            )
+
+    @cached_property
+    def has_offsets(self) -> bool:
+        """Whether a centre of mass or of tension lies beside the axis, of the sections or of the tip body."""
+        given = (getattr(self, name) for name in OFFSETS)
+        beside = any(each is not None and _first_place(each) is not None for each in given)
+        return beside or bool(self.tip and self.tip.offset_across)
 
     def with_section(self, section: Rectangle) -> Beam:
         """The beam with another rectangular section, and the properties that follow from it."""
@@ -247,6 +278,8 @@ class Beam(FieldsOnly, OneLine):
         warping_stiffness: Property | None = None,
         sweep: Property | None = None,
         prebend: Property | None = None,
+        mass_offset: Property | None = None,
+        tension_offset: Property | None = None,
     ) -> Beam:
         """Build a beam of any section from its stiffness and mass.
 
@@ -274,7 +307,8 @@ class Beam(FieldsOnly, OneLine):
         shear_stiffness, second_shear_stiffness : float, Polynomial, Table or callable, optional
             kappa G A [N] for bending in either direction; without the second it is as the first.
         rotary_inertia, second_rotary_inertia : float, Polynomial, Table or callable, optional
-            rho I [kg m], rotary inertia of the section per length for bending in either direction.
+            rho I [kg m], rotary inertia of the section per length for bending in either direction, about the
+            centre of mass.
         point_masses : sequence of PointMass
             Point masses along the beam; those at one place add up.
         point_springs : sequence of PointSpring
@@ -286,6 +320,10 @@ class Beam(FieldsOnly, OneLine):
         sweep, prebend : float, Polynomial, Table or callable, optional
             Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
             length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
+        mass_offset, tension_offset : float, Polynomial, Table or callable, optional
+            Distance of the centre of mass, and of that of tension, from the shear centre in the direction
+            across [m], of either sign; 0 without it.  Torsion reads them, and they need its stiffness.
+            Bending stiffnesses are about the centre of tension.
 
         Returns
         -------
@@ -319,11 +357,13 @@ class Beam(FieldsOnly, OneLine):
             "warping_stiffness": warping_stiffness,
             "sweep": sweep,
             "prebend": prebend,
+            "mass_offset": mass_offset,
+            "tension_offset": tension_offset,
         }
         length = size("length", length, "m")
         given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
         made: dict[str, Any] = {
-            name: (to_profile if name in ANGLE_UNITS else as_profile)(name, value, breakpoints)
+            name: (to_profile if name in OF_ANY_SIGN else as_profile)(name, value, breakpoints)
             for name, value in given.items()
         }
         beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
@@ -418,15 +458,27 @@ PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "second_rotary_inertia": "kg m",
     "torsion_stiffness": "N m2",
     "warping_stiffness": "N m4",
+    "mass_offset": "m",
+    "tension_offset": "m",
     "outer_fibre": "m",
 }
 
 ANGLE_UNITS = {"twist": "rad", "sweep": "rad", "prebend": "rad"}  # of what may have any sign
-
+OFFSETS = ("mass_offset", "tension_offset")  # from the shear centre
+OF_ANY_SIGN = (*ANGLE_UNITS, *OFFSETS)
 _REQUIRED = ("mass_per_length", "bending_stiffness")
 OPTIONAL_PROPERTIES = tuple(
     f.name for f in fields(Beam) if f.name in PROPERTY_UNITS | ANGLE_UNITS and f.name not in _REQUIRED
 )
+
+
+def _first_place(profile: Profile) -> float | None:
+    """The first place x/L of the ends and middles of segments at which a property is not 0; None if none."""
+    ends = np.array(profile.breakpoints)
+    left, right = profile.end_values()
+    at = np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel()
+    values = np.column_stack([left, profile((ends[:-1] + ends[1:]) / 2), right]).ravel()
+    return float(at[np.flatnonzero(values)[0]]) if values.any() else None
 
 
 _MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}

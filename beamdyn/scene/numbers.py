@@ -17,7 +17,7 @@ from typing import Any, get_type_hints
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.inputs.described import description, kinds_of
 from beamdyn.common.inputs.paths import part_at, with_parts
-from beamdyn.scene.beam import ANGLE_UNITS, PROPERTY_UNITS, Beam, TipMass
+from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Motion
 from beamdyn.scene.mount import Mount
@@ -38,7 +38,7 @@ _SIDE_POWERS = {
     | dict.fromkeys((*_LINEAR, *_OF_SECOND), 1)
     | dict.fromkeys(_OF_FIRST, 3),
     "width": {"warping_stiffness": 3}
-    | dict.fromkeys((*_LINEAR, *_OF_FIRST), 1)
+    | dict.fromkeys((*_LINEAR, *_OF_FIRST, *OFFSETS), 1)
     | dict.fromkeys(_OF_SECOND, 3),
 }
 
@@ -220,7 +220,7 @@ def _beam_with(beam: Beam, values: Mapping[str, float]) -> Beam:
 
 
 def _as_property(name: str, value: float) -> float | Profile:
-    if name in ANGLE_UNITS:
+    if name in OF_ANY_SIGN:
         return to_profile(name, value)
     return as_profile(name, value) if name in PROPERTY_UNITS else value
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Final, Literal, get_args
 
 from beamdyn.common.inputs.checks import amount, one_of, positive, real, refuse, set_fields
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.snapshots import ADDED_LATER
 
 Direction = Literal["bending", "across"]
 ALONG_BENDING: Final = "bending"
@@ -37,7 +38,10 @@ class TipMass:
         Moment of inertia about the direction in which the beam bends [kg m2]; `inertia` if not given,
         as for a body slender along the beam.
     axial_inertia : float
-        Moment of inertia about the beam axis [kg m2].
+        Moment of inertia about the direction of the beam axis, through the centre of gravity [kg m2].
+    offset_across : float
+        Distance of the centre of gravity from the beam axis, in the direction across of the section at the
+        tip [m]; a beam with it needs a stiffness against torsion.
 
     Raises
     ------
@@ -70,10 +74,15 @@ class TipMass:
     axial_inertia: Annotated[
         float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)
     ] = 0.0
+    offset_across: Annotated[
+        float,
+        Described("m", "e_2", "distance of its centre of gravity beside the axis, in the direction across"),
+    ] = field(default=0.0, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         mass, offset = amount("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
         set_fields(self, mass=mass, offset=offset)
+        set_fields(self, offset_across=real("tip.offset_across", self.offset_across, "m"))
         required = ("inertia", "axial_inertia")
         given = () if self.transverse_inertia is None else ("transverse_inertia",)
         for name in (*required, *given):
@@ -95,6 +104,15 @@ class TipMass:
     def inertia_about_bending_direction(self) -> float:
         """Moment of inertia about the direction of bending [kg m2]: `transverse_inertia` or its default."""
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
+
+    @property
+    def about_axis(self) -> TipMass:
+        """The body with its moments of inertia about the axis of the beam, not its centre of gravity."""
+        if not self.offset_across:
+            return self
+        more = self.mass * self.offset_across**2
+        across = self.inertia_about_bending_direction + more
+        return replace(self, transverse_inertia=across, axial_inertia=self.axial_inertia + more)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negat
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.common.words import Named, Setting, Words
-from beamdyn.scene.beam import Beam
+from beamdyn.scene.beam import OFFSETS, Beam
 from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import Mount, aligned_cos_sin
@@ -184,9 +184,9 @@ class Scene(OneLine):
     def straightened(self) -> Scene:
         """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
 
-        Torsion of a twisted beam, which large deflection alone has, is left out.
+        Torsion of a twisted strip, which large deflection alone has, is left out.
         """
-        torsion = self.physics.torsion and not self.beam.is_twisted
+        torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
         straight = replace(self.physics, large_deflection=False, branch="straight", torsion=torsion)
         if self.beam.is_curved:
             return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)
@@ -239,6 +239,10 @@ def _check_large_deflection(scene: Scene) -> None:
         bound = "with physics.large_deflection there is none: the tip also moves along the beam"
         remedy = "give damping.ratios, or leave large_deflection out"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
+    if scene.physics.torsion and scene.beam.has_offsets:
+        bound = "with large_deflection and torsion the centres of the sections are on the axis of the beam"
+        remedy = "leave the offsets, torsion or large_deflection out"
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
     if scene.bends_in_space:
         for name, spring in zip(("", "second_"), scene.mount.root_stiffnesses, strict=True):
             if spring < math.inf:
@@ -341,7 +345,7 @@ _JUMP = 1e-9  # of the width: a smaller one is rounding
 
 
 def _check_width(beam: Beam, physics: Physics) -> None:
-    """Refuse camber of sections that are not rectangular, and of twisted ones; torsion of these, too."""
+    """Refuse camber of sections that are not rectangular, and of a twisted strip; its torsion, too."""
     if not (physics.camber or physics.torsion):
         return
     section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
@@ -350,8 +354,8 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
         remedy = Words(RECTANGULAR, given, " makes one of steel")
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
-    if beam.is_twisted and not physics.large_deflection:
-        bound, remedy = "camber and torsion of a twisted beam are not modelled", "leave one of the two out"
+    if beam.is_twisted and section is not None and not physics.large_deflection:
+        bound, remedy = "camber and torsion of a twisted strip are not modelled", "leave one of the two out"
         raise InvalidValue("twist", beam.tip_twist, bound, remedy, "rad")
     if section is None or not physics.camber:
         return
@@ -407,8 +411,10 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
     unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
     unread |= {"twist"} if physics.planes == 1 or not beam.is_twisted else set()
-    unread |= set() if physics.torsion else {"warping_stiffness"}
+    unread |= set() if physics.torsion else {"warping_stiffness", *OFFSETS}
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
+    if beam.tip is not None and beam.tip.offset_across and not physics.torsion:
+        given["tip"] = replace(beam.tip, offset_across=0.0)
     if _models_width(beam, physics):
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.beam import OFFSETS, Beam, TipMass
 from beamdyn.scene.profile import Profile, combine
 
 # Orders of the derivatives of a deflection whose products a property of the sections multiplies.
@@ -26,6 +26,8 @@ Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; th
 @lru_cache(maxsize=256)
 def section_tensor(beam: Beam, name: str) -> Tensor:
     """Tensor of a property of the sections, such as "bending_stiffness", in the directions e1, e2.
+
+    That of the rotary inertia is about the axis, not the centre of mass, where the two differ.
 
     Parameters
     ----------
@@ -43,6 +45,8 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}
+    if name == "rotary_inertia" and second is not None and beam.mass_offset is not None:
+        second = second + beam.mass_per_length * beam.mass_offset * beam.mass_offset
     if second is None:
         return {(0, 0): first}
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
@@ -65,6 +69,23 @@ def _turned_values(
     """Entries 11, 12 and 22 of the tensor."""
     c, s = np.cos(twist), np.sin(twist)
     return np.stack([first * c**2 + second * s**2, excess * (c * s), first * s**2 + second * c**2])
+
+
+@lru_cache(maxsize=64)
+def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
+    """Components along e1, e2 of the offset of the centre of mass, then of tension [m]; None for 0."""
+    offsets = (getattr(beam, name) for name in OFFSETS)
+    given = [offset if offset is not None and offset.series.any() else None for offset in offsets]
+    if beam.twist is None:
+        return tuple(component for offset in given for component in (None, offset))
+    there = [offset for offset in given if offset is not None]
+
+    def turned(twist: np.ndarray, *offsets: np.ndarray) -> np.ndarray:
+        c, s = np.cos(twist), np.sin(twist)
+        return np.stack([part for offset in offsets for part in (-s * offset, c * offset)])
+
+    found = iter(combine(turned, beam.twist, *there) if there else ())
+    return tuple(next(found) if offset is not None else None for offset in given for _ in range(2))
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:

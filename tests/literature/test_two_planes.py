@@ -148,9 +148,8 @@ def test_a_blade_without_its_twist() -> None:
 
 
 def test_what_bmodes_prints_of_its_own_blade() -> None:
-    """Below ours in each mode, by 1.6 to 5.8 %: it also has torsion, inertia and offsets of the sections."""
+    """Within 0.3 % in each mode, with all of its deck: tests/literature/test_bmodes.py traces the rest."""
     found = [*printed_by_bmodes()]
-    above = [c.ours / float(np.mean(c.published)) - 1 for c in found]
+    apart = [c.ours / float(np.mean(c.published)) - 1 for c in found]
     assert len(found) == 5
-    assert min(above) == pytest.approx(0.016, abs=5e-4)
-    assert max(above) == pytest.approx(0.058, abs=5e-4)
+    np.testing.assert_allclose(apart, 0.0, atol=3e-3)

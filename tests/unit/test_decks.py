@@ -99,12 +99,52 @@ def test_a_bad_main_file_is_refused_by_line(folder, changes, said):
 def test_bmodes_main_file(folder):
     deck = bd.read_deck(folder / "main.bmi")
     check_blade(deck.scene.beam)
-    assert deck.scene.beam.tip == bd.TipMass(20.0, 0.3, 3.0, 4.0, 2.0)
+    assert deck.scene.beam.tip == bd.TipMass(20.0, 0.3, 3.0, 4.0, 2.0, offset_across=-0.05)
     assert deck.scene.motion == bd.SteadyRotation(9 * math.pi / 30)
     inertia = values(deck.scene.beam.second_rotary_inertia)
     np.testing.assert_allclose(inertia, 0.4 * np.array(written.MASS), rtol=1e-12)
-    said = {entry.name: entry.values for entry in deck.ignored}
-    assert said == {"cm_loc": "0.05 m", "tor_stff": "20000 to 4e+08 Nm^2", "cg_offst": "0.1 m"}
+    assert not deck.ignored and deck.scene.physics == bd.Physics(planes=2, torsion=True)
+    np.testing.assert_allclose(values(deck.scene.beam.torsion_stiffness), 0.1 * np.array(written.FLAP))
+    np.testing.assert_allclose(values(deck.scene.beam.mass_offset), -0.1)  # towards the trailing edge
+    assert deck.scene.beam.tension_offset is None  # 0 throughout
+
+
+def with_offsets(rows):
+    """Section properties with other offsets, from the reference axis, of cg, sc and tc at each station."""
+    head, note = written.bmodes_sections().split("\n\n**")
+    lines = head.split("\n")
+    lines[5:] = [
+        " ".join([*line.split()[:-3], *row.split()]) for line, row in zip(lines[5:], rows, strict=True)
+    ]
+    return "\n".join([*lines, "", f"**{note}"])
+
+
+def test_offsets_of_bmodes_are_from_the_shear_centre(folder):
+    (folder / "sections.dat").write_text(with_offsets(["0.1 0.03 -0.02"] * 5))
+    beam = bd.read_deck(folder / "main.bmi").scene.beam
+    np.testing.assert_allclose(values(beam.mass_offset), -0.07, rtol=1e-12)  # but for rounding
+    np.testing.assert_allclose(values(beam.tension_offset), 0.05, rtol=1e-12)
+    assert beam.tip.offset_across == pytest.approx(0.03 - 0.05, rel=1e-12)
+    about = np.array(written.EDGE) - 1e7 * np.array(written.MASS) * 0.05**2
+    np.testing.assert_allclose(values(beam.second_bending_stiffness), about, rtol=1e-12)
+
+
+def test_a_centre_of_tension_too_far_off_is_refused_by_station(folder):
+    """The stiffness of such a section is not positive definite."""
+    (folder / "sections.dat").write_text(with_offsets(["0 0 0"] * 3 + ["0 0 0.5", "0 0 0"]))
+    said = r"line 9: expected edge_stff above axial_stff \(tc_offst - sc_offst\)\^2 = 1\.5e\+08 Nm\^2"
+    with pytest.raises(bd.ConfigError, match=said):
+        bd.read_deck(folder / "main.bmi")
+
+
+def test_offsets_without_torsion_are_named(folder):
+    text = with_offsets(["0.1 0 0"] * 5).split("\n")
+    cells = text[7].split()
+    text[7] = " ".join([*cells[:8], "0.0", *cells[9:]])  # tor_stff
+    (folder / "sections.dat").write_text("\n".join(text))
+    deck = bd.read_deck(folder / "main.bmi")
+    assert deck.scene.physics == bd.Physics(planes=2) and not deck.scene.beam.has_offsets
+    assert {entry.name for entry in deck.ignored} == {"tor_stff", "cg_offst", "cm_loc"}
 
 
 def test_multipliers_of_bmodes(folder):
@@ -122,7 +162,7 @@ def test_a_tip_body_that_cannot_be_is_named(folder):
     """As in the second test of BModes itself: 10, 1.75 and 2.5 kg m2."""
     (folder / "main.bmi").write_text(written.bmodes_main(ixx_tip=10.0, iyy_tip=1.75, izz_tip=2.5))
     deck = bd.read_deck(folder / "main.bmi")
-    assert deck.scene.beam.tip == bd.TipMass(20.0, 0.3)
+    assert deck.scene.beam.tip == bd.TipMass(20.0, 0.3, offset_across=-0.05)
     assert "no rigid body has such moments" in " ".join(entry.sentence() for entry in deck.ignored)
 
 

@@ -90,7 +90,7 @@ def test_camber_of_a_twisted_strip_is_bounded_and_keeps_the_tolerance_from_being
     (warning,) = modes.warnings
     assert "it is estimated as if no section cambered, which is the most" in warning
     (reason,) = (effect.reason for effect in bd.terms(modes.scene).left_out if effect.name == CAMBER)
-    assert reason.endswith("camber and torsion of a twisted beam are not modelled")  # and no option is named
+    assert reason.endswith("camber and torsion of a twisted strip are not modelled")  # and no option is named
 
 
 def test_the_answer_is_that_of_the_physics_given() -> None:

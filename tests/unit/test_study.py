@@ -106,7 +106,8 @@ def test_every_name_replaces_what_it_names():
     blade = bd.Beam.from_stiffness(
         1.0, 2.0, 30.0, 1e6, 0.01, second_bending_stiffness=40.0, shear_stiffness=1e5,
         second_shear_stiffness=2e5, rotary_inertia=1e-3, second_rotary_inertia=2e-3, twist=0.1,
-        torsion_stiffness=20.0, warping_stiffness=0.1, tip=bd.TipMass(0.1, 0.0, 0.01, 0.01, 0.01),
+        torsion_stiffness=20.0, warping_stiffness=0.1, mass_offset=0.01, tension_offset=0.02,
+        tip=bd.TipMass(0.1, 0.0, 0.01, 0.01, 0.01),
     )  # fmt: skip
     plate = bd.Beam.rectangular(**BEAM, poissons_ratio=0.3)
     mount = bd.Mount(0.1, np.pi)

@@ -42,6 +42,16 @@ def turned_up(bending: float, planes: int = 2, **physics: bool) -> bd.Scene:
 HINGED_IN_ONE = replace(in_two_planes(), mount=bd.Mount(0.2, 0.3, 0.4, second_root_stiffness=0.0))
 EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
+BLADE_BESIDE = bd.Scene(
+    bd.Beam.from_stiffness(
+        1.0, 2.0, 30.0, 1e5, second_bending_stiffness=70.0, twist=0.2, torsion_stiffness=9.0,
+        rotary_inertia=1e-4, second_rotary_inertia=4e-3, mass_offset=0.03, tension_offset=0.01,
+        tip=bd.TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5),
+    ),
+    bd.Mount(0.3, math.pi, math.pi / 2),
+    physics=bd.Physics(planes=2, torsion=True),
+)  # fmt: skip
+PRECONED = bd.Mount(0.3, math.pi, 1.0, precone=0.3)
 SCENES = {
     "harvester": HARVESTER,
     "rolling": ROLLING,
@@ -67,6 +77,12 @@ SCENES = {
     "precone, spin-up": replace(
         turned_up(0.4, stretch=True, rotary_inertia=True), motion=BLADE_SPIN_UP.motion
     ),
+    "offsets": replace(BLADE_BESIDE, motion=bd.SteadyRotation(3.0)),
+    "offsets, all": replace(BLADE_BESIDE, motion=BLADE_SPIN_UP.motion, mount=PRECONED, gravity=9.81),
+    "offsets, one plane": replace(
+        BLADE_BESIDE, physics=bd.Physics(torsion=True), mount=bd.Mount(0.3, math.pi, 1.0)
+    ),
+    "offsets, stretch": replace(BLADE_BESIDE, physics=bd.Physics(planes=2, torsion=True, stretch=True)),
     "on a spring": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.1)),
     "on a hinge": replace(HARVESTER, mount=bd.Mount(0.2, root_stiffness=0.0)),
     "the other plane on a spring": replace(HARVESTER, mount=bd.Mount(0.2, second_root_stiffness=0.1)),
@@ -84,8 +100,9 @@ def test_reasons_agree_with_what_is_assembled(name: str) -> None:
 
 def test_every_term_of_the_equations_has_a_meaning() -> None:
     complete = reduce(lambda scene, field: field.complete(scene), FIELDS, SCENES["all"])
-    equations = assemble_equations(complete, bd.Ritz(3))
-    assert {term.name for term in (*equations.terms, *equations.loads)} == set(EXPLANATIONS)
+    both = [assemble_equations(scene, bd.Ritz(3)) for scene in (complete, SCENES["offsets, all"])]
+    names = {term.name for each in both for term in (*each.terms, *each.loads)}
+    assert names == set(EXPLANATIONS)
 
 
 @pytest.mark.parametrize(

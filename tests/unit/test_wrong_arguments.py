@@ -42,7 +42,8 @@ CALLS = {
         | {"shear_stiffness": 1e5, "second_shear_stiffness": 1e5}
         | {"rotary_inertia": 5e-11, "second_rotary_inertia": 1e-7, "point_masses": ()}
         | {"point_springs": (), "torsion_stiffness": 0.1, "warping_stiffness": 1e-9}
-        | {"sweep": 0.1, "prebend": None},
+        | {"sweep": 0.1, "prebend": None}
+        | {"mass_offset": 1e-3, "tension_offset": -1e-3},
     ),
     "PointMass": (bd.PointMass, {"position": 0.02, "mass": 1e-3}),
     "PointSpring": (bd.PointSpring, {"position": 0.02, "stiffness": 1.0, "direction": "bending"}),
@@ -52,7 +53,9 @@ CALLS = {
     ),
     "TipMass": (
         bd.TipMass,
-        dict.fromkeys(("mass", "offset", "inertia", "transverse_inertia", "axial_inertia"), 1e-9),
+        dict.fromkeys(
+            ("mass", "offset", "inertia", "transverse_inertia", "axial_inertia", "offset_across"), 1e-9
+        ),
     ),
     "Mount": (
         bd.Mount,

@@ -47,8 +47,10 @@ from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spa
 from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_and_shear import Bending
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
+from beamdyn.equations.fields.offset_names import EXPLANATIONS
 from beamdyn.equations.fields.section_torsion import assemble_section_torsion
-from beamdyn.equations.fields.transverse import axis_in_section
+from beamdyn.equations.fields.stretch import STRETCHED, Stretch
+from beamdyn.equations.fields.transverse import TransverseField, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
@@ -61,8 +63,9 @@ _SOME_RATIO = 0.3  # Poisson's ratio where none is given, for a list of all term
 _ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # of the derivatives along and across
 _ZERO = 1e-12  # of averages over the width, relative to the largest: symmetry makes smaller ones 0
 
+_IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")
 _IS_OBLIQUE = Condition(
-    lambda s: min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
+    lambda s: _IS_TWISTED.is_met(s) or min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
     "the strip stands along or across the plane of rotation",
 )
 
@@ -458,6 +461,7 @@ class Torsion(SectionField):
     """Torsion of a strip: the deflections that are odd across its width."""
 
     name = "torsion"
+    partners: ClassVar[tuple[TransverseField, ...]] = Stretch.partners
     requires: ClassVar[Mapping[str, object]] = {"torsion": True}
     damping_name = "damping of torsion"
     first = 1
@@ -474,12 +478,18 @@ class Torsion(SectionField):
         "twisting by rotation": Explanation(
             "-ω² c s Qk", "rotation turns the strip into its plane", (why.TURNS, _IS_OBLIQUE)
         ),
+        "untwisting by tension": Explanation(
+            "ω² NB r² β' θ'", "tension pulls straight the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
+        ),
+        **EXPLANATIONS,
     }
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble torsion of a strip; of another section by its constants."""
         if scene.beam.section is None:
-            return assemble_section_torsion(scene, spaces)
+            deflecting = [field for field in self.partners if field.is_modelled(scene)]
+            stretched = STRETCHED if Stretch().is_modelled(scene) else None
+            return assemble_section_torsion(scene, spaces, deflecting, stretched)
         return super().assemble(scene, spaces)
 
     def warping(self, section: Rectangle) -> Profile:

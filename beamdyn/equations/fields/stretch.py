@@ -19,7 +19,7 @@ from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 
-_CONDITIONS = FIXED._replace(stiffness="axial_stiffness")
+STRETCHED = FIXED._replace(stiffness="axial_stiffness")  # at the root
 
 
 class Stretch(Field):
@@ -66,7 +66,7 @@ class Stretch(Field):
 
         They have the mass M11 (15), the axial stiffness KS (16), its softening by spin, the loads (20), (21).
         """
-        s, beam, space = self.name, scene.beam, spaces.functions(_CONDITIONS)
+        s, beam, space = self.name, scene.beam, spaces.functions(STRETCHED)
         tip = beam.tip or TipMass(0.0)
         assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
         end, (cosine, _) = space.end(0), exact_cos_sin(scene.mount.precone)
@@ -91,8 +91,8 @@ class Stretch(Field):
 def _coupling(trial: Trial) -> list[Term]:
     """Coupling, by the mass M12 (15), with a deflection in the plane, or by precone any."""
     b, s, beam, i = trial.field.name, Stretch.name, trial.beam, trial.field.direction
-    by_beam = product_by_mass(beam, trial.spaces, _CONDITIONS, trial.conditions)
-    M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(_CONDITIONS).end(0), trial.centre)
+    by_beam = product_by_mass(beam, trial.spaces, STRETCHED, trial.conditions)
+    M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(STRETCHED).end(0), trial.centre)
     (d, n), (cosine, sine) = plane_components(trial.scene), exact_cos_sin(trial.scene.mount.precone)
     c, pressed = cosine * d[i], sine * cosine * n[i]
     return [

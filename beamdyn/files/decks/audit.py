@@ -122,6 +122,7 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
     """The tip body for bending in the plane."""
+    tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip
     return replace(tip, inertia=tip.inertia_about_bending_direction, transverse_inertia=tip.inertia)

@@ -2,7 +2,13 @@
 
 Positive twist and pitch turn the section about -z (z from root to tip), x being downwind and y to the
 trailing edge, as in ElastoDyn: BModes turns the angles and the offsets along y round when it passes to the
-axes of a helicopter blade (y to the leading edge, nose-up positive), which it computes in.
+axes of a helicopter blade (y to the leading edge, nose-up positive), which it computes in.  An offset along y
+is thus minus one in the direction across here.
+
+Offsets in its files are from the reference axis; moments of inertia are about the centre of mass, as the
+programs write them that make such files.  Here the axis of a blade is the line of shear centres, to which
+offsets are converted.  Its bending stiffnesses are about the shear centre, as it computes with them:
+beside a centre of tension at a distance e from it they have E A e^2 more than about that.
 """
 
 from __future__ import annotations
@@ -46,14 +52,17 @@ COLUMNS = (
     DeckColumn("sc_offst", "m", required=True),
     DeckColumn("tc_offst", "m", required=True),
 )
-_LINE = "the axes of mass, shear and tension are one straight line"
-_REASONS = {"tor_stff": "no torsion is modelled", "cg_offst": _LINE, "sc_offst": _LINE, "tc_offst": _LINE}
+_OFFSETS = ("cg_offst", "sc_offst", "tc_offst")
+_NO_TORSION = "they act in torsion, which needs tor_stff, flp_iner and edge_iner above 0"
+_REASONS: dict[str, str] = dict.fromkeys(_OFFSETS, _NO_TORSION)
 _USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
+_USED = (*_USED, "tor_stff", "axial_stff", "span_loc")
 # By the name that Beam.from_stiffness has: column and multiplier.
 _PROPERTIES = {
     "mass_per_length": ("mass_den", "sec_mass_mult"),
     "bending_stiffness": ("flp_stff", "flp_stff_mult"),
     "second_bending_stiffness": ("edge_stff", "edge_stff_mult"),
+    "torsion_stiffness": ("tor_stff", "tor_stff_mult"),
     "axial_stiffness": ("axial_stff", "axial_stff_mult"),
     "rotary_inertia": ("flp_iner", "flp_iner_mult"),
     "second_rotary_inertia": ("edge_iner", "lag_iner_mult"),
@@ -62,8 +71,9 @@ _TIP = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_t
 _NEEDED = ("beam_type", "radius", "hub_rad", "precone", "bl_thp", "hub_conn", *_TIP, "sec_props_file")
 _NEEDED = (*_NEEDED, *(multiplier for _, multiplier in _PROPERTIES.values()))
 _MAIN_NAMES = {plain_name(name): name for name in _NEEDED}
+_OF_OFFSETS = tuple(plain_name(f"{name}_mult") for name in _OFFSETS)
 # Version 3 has the axial offset, and other names than version 1 for the speed.
-_MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult")
+_MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult", *_OF_OFFSETS)
 
 
 def read_main_file(text: DataText) -> Blade:
@@ -86,10 +96,13 @@ def read_main_file(text: DataText) -> Blade:
         key = plain_name(multiplier)
         check(key, values[key] > 0, "above 0")
     multipliers = {name: values[plain_name(name)] for _, name in _PROPERTIES.values()}
+    multipliers |= {
+        f"{name}_mult": values.get(key, 1.0) for name, key in zip(_OFFSETS, _OF_OFFSETS, strict=True)
+    }
     sections = read_data(named_file(text, found["secpropsfile"]))
     hub_radius = values["hubrad"]
-    blade = read_section_file(sections, values["radius"] - hub_radius, hub_radius, multipliers)
-    tip, left_out = _tip_body(values)
+    blade, axis = _read_sections(sections, values["radius"] - hub_radius, hub_radius, multipliers)
+    tip, left_out = _tip_body(values, axis)
     # Speed of rotation [rpm].
     speed = values.get("rotrpm", values.get("romg", 0.0))
     return replace(
@@ -105,14 +118,20 @@ def read_main_file(text: DataText) -> Blade:
     )
 
 
-def _tip_body(values: dict[str, float]) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:
+def _tip_body(
+    values: dict[str, float], axis: float | None
+) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:
     """Arguments of `TipMass`, and what is not in them.
 
     BModes takes the moments of inertia about the centre of gravity, x for lag, y for flap, z for torsion.
     """
     flap, lag, torsion = (values[f"i{2 * axis}tip"] for axis in "yxz")
     tip = {"mass": values["tipmass"], "offset": values.get("cmaxial", 0.0)}
-    left_out = ignore("cm_loc", values["cmloc"], "m", "the tip body is centred on the axis of the blade")
+    left_out: tuple[IgnoredProperty, ...] = ()
+    if axis is not None:  # the shear centre at the tip along y, where torsion is known
+        tip["offset_across"] = axis - values["cmloc"] if tip["mass"] else 0.0
+    else:
+        left_out += ignore("cm_loc", values["cmloc"], "m", _NO_TORSION)
     reason = "the axes of the tip body are those of its section"
     left_out += ignore(
         "ixy_tip, izx_tip, iyz_tip", [values[f"{i}tip"] for i in ("ixy", "izx", "iyz")], "kg-m^2", reason
@@ -144,11 +163,22 @@ def read_section_file(
     ConfigError
         If something is missing or not as expected.
     """
+    return _read_sections(text, length, hub_radius, multipliers or {})[0]
+
+
+def _read_sections(
+    text: DataText, length: float, hub_radius: float, multipliers: dict[str, float]
+) -> tuple[Blade, float | None]:
+    """The blade, and the shear centre at its tip along y [m]; None without torsion."""
     found = named_values(text, {"nsecs"})
     check_all_there(text, found, {"nsecs": "n_secs"})
     table = read_stations(text, _columns(text), found["nsecs"])
-    columns, left_out = _properties(table, multipliers or {})
-    return Blade(
+    columns, left_out = _properties(table, multipliers)
+    has_torsion = {"torsion_stiffness", "rotary_inertia"} <= columns.keys()
+    offsets = {name: multipliers.get(f"{name}_mult", 1.0) * table.columns[name] for name in _OFFSETS}
+    if has_torsion:
+        columns |= _from_shear_centre(text, table, columns, *offsets.values())
+    blade = Blade(
         kind="BModes section properties",
         title=text.lines[0].strip(),
         sources=(text.path,),
@@ -156,8 +186,42 @@ def read_section_file(
         hub_radius=hub_radius,
         stations=table.columns[_columns(text)[0].name],
         columns=columns,
-        ignored=(*left_out, *ignore_columns(table, (*_USED, "span_loc", "axial_stff"), _REASONS)),
+        ignored=(*left_out, *ignore_columns(table, (*_USED, *_OFFSETS * has_torsion), _REASONS)),
     )
+    return blade, float(offsets["sc_offst"][-1]) if has_torsion else None
+
+
+def _from_shear_centre(
+    text: DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
+) -> dict[str, np.ndarray]:
+    """What `convert_offsets` gives; refused by line where no stiffness is left."""
+    edge = columns["second_bending_stiffness"]
+    axial = columns.get("axial_stiffness", np.zeros_like(edge))
+    converted = convert_offsets(edge, axial, *offsets)
+    if (bad := np.flatnonzero(converted["second_bending_stiffness"] <= 0)).size:
+        k, more = bad[0], axial * converted["tension_offset"] ** 2
+        least = f"axial_stff (tc_offst - sc_offst)^2 = {more[k]:g} Nm^2 at this station"
+        raise text.refusal(table.lines[k], f"expected edge_stff above {least}, found {edge[k]:g} Nm^2")
+    return converted
+
+
+def convert_offsets(
+    edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Offsets from the shear centre in the direction across, and the stiffness about the centre of tension.
+
+    Parameters
+    ----------
+    edge, axial : ndarray, shape (n,)
+        Stiffness against bending edgewise, about the shear centre [N m2], and along the beam [N].
+    mass, shear, tension : ndarray, shape (n,)
+        Centres of mass, shear and tension from the reference axis, along y [m].
+    """
+    return {
+        "second_bending_stiffness": edge - axial * (tension - shear) ** 2,
+        "mass_offset": shear - mass,
+        "tension_offset": shear - tension,
+    }
 
 
 def _columns(text: DataText) -> tuple[DeckColumn, ...]:
@@ -175,7 +239,8 @@ def _properties(
         for name, (column, multiplier) in _PROPERTIES.items()
     }
     left_out: tuple[IgnoredProperty, ...] = ()
-    for names in (("axial_stiffness",), ("rotary_inertia", "second_rotary_inertia")):
+    alone = ("torsion_stiffness",), ("axial_stiffness",), ("rotary_inertia", "second_rotary_inertia")
+    for names in alone:
         if min(given[name].min() for name in names) <= 0:
             for name in names:
                 column = _PROPERTIES[name][0]

@@ -111,7 +111,9 @@ class Deck(Result):
         comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
         if self.blade.pitch:
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
-        if "rotary_inertia" in self.blade.columns:
+        if self.scene.physics.torsion:
+            comments["beam"] += ["offsets are from the shear centre, on the axis of the beam"]
+        elif "rotary_inertia" in self.blade.columns:
             comments["physics"] = ["rotary_inertia = true adds that of the sections"]
         return text_of(self.tables, comments)
 

@@ -59,14 +59,14 @@ _UNREAD = "ElastoDyn does not use it either"
 _REASONS = {
     "PitchAxis": "of aerodynamics",
     "AeroCent": "of aerodynamics",
-    "GJStff": f"no torsion is modelled; {_UNREAD}",
+    "GJStff": f"torsion_stiffness in [beam], with both rotary inertias, has it in torsion; {_UNREAD}",
     "EAStff": f"the blade is rigid along its axis; {_UNREAD}",
     "Alpha": f"no coupling of flap and torsion is modelled; {_UNREAD}",
     "PrecrvRef": f"the axis of the blade is straight; {_UNREAD}",
     "PreswpRef": f"the axis of the blade is straight; {_UNREAD}",
-    **{name: f"sections have no rotary inertia here; {_UNREAD}" for name in ("FlpIner", "EdgIner")},
+    **{name: f"rotary_inertia in [beam] has it; {_UNREAD}" for name in ("FlpIner", "EdgIner")},
     **{
-        name: f"the axes of mass and of stiffness are one straight line; {_UNREAD}"
+        name: f"mass_offset and tension_offset in [beam] have such, from the shear centre; {_UNREAD}"
         for name in ("FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
     },
 }

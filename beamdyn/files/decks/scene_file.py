@@ -7,7 +7,7 @@ from typing import Any
 
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.files.decks.blade import Blade
-from beamdyn.scene.beam import PROPERTY_UNITS
+from beamdyn.scene.beam import OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS
 from beamdyn.scene.points import TipMass
 
 _UNITS = {"twist": "deg"} | PROPERTY_UNITS
@@ -41,13 +41,20 @@ def tables_of(blade: Blade) -> dict[str, Any]:
         tables["motion"] = {"kind": "steady", "speed": f"{_number(blade.speed)} rpm"}
     if "second_bending_stiffness" in blade.columns:
         tables["physics"] = {"planes": 2}
+    if any(_names(blade, OFFSETS)) or blade.tip.get("offset_across"):
+        tables["physics"]["torsion"] = True
     return tables
+
+
+def _names(blade: Blade, among: Iterable[str]) -> list[str]:
+    """Those of some properties that the blade has; of an offset or a twist, if it is not zero throughout."""
+    given = (name for name in among if name in blade.columns)
+    return [name for name in given if name not in OF_ANY_SIGN or blade.columns[name].any()]
 
 
 def _rows(blade: Blade) -> list[list[Any]]:
     """Heads and rows of the stations."""
-    # A twist that is zero throughout says nothing.
-    names = [n for n in _UNITS if n in blade.columns and (n != "twist" or blade.columns[n].any())]
+    names = _names(blade, _UNITS)
     heads = ["x/L", *(f"{name} [{_UNITS[name]}]" for name in names)]
     columns = [blade.stations, *(blade.columns[name] for name in names)]
     return [heads, *([float(_number(value)) for value in row] for row in zip(*columns, strict=True))]
@@ -102,7 +109,8 @@ def _assignment(key: str, value: Any) -> Iterator[str]:
             yield f"  [{' '.join(padded).rstrip().rstrip(',')}],"
         yield "]"
     else:
-        yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value}"
+        plain = f"{value}".lower() if isinstance(value, bool) else value
+        yield f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {plain}"
 
 
 def _cell(value: float) -> str:

@@ -17,7 +17,7 @@ from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.modes.repeated import JudgedByRepeating
-from beamdyn.scene.beam import ANGLE_UNITS, PROPERTY_UNITS, Beam
+from beamdyn.scene.beam import ANGLE_UNITS, OFFSETS, PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
 from beamdyn.scene.profile import mean
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
@@ -31,6 +31,8 @@ _STEP = 0.01  # step, as a share of a value or of the size of its kind
 _FURTHER = 2  # times as many modes, among which those of another scene are sought
 _SAME = 0.2  # relative distance up to which an answer may be the same one
 _NEAR = 0.8  # similarity of a mistyped name: all begin alike
+_ACROSS = "beam.tip.offset_across"
+_OF_OFFSETS = tuple(f"beam.{name}" for name in OFFSETS)
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,8 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
         return False
     if table == "damping" or key in ("damping_ratio", "precone"):
         return value != 0
+    if path == _ACROSS:
+        return scene.beam.tip is not None and scene.modelled_beam.torsion_stiffness is not None
     if key.startswith("tip."):
         return scene.beam.tip is not None
     if path.endswith("].position"):
@@ -150,12 +154,14 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
         return SceneNumber(path, unit, value, _STEP)
     if path.endswith("].position"):
         return SceneNumber(path, unit, value, _room_of(beam, path), 0.0)
-    if path.startswith(("mount.", "beam.tip.", "beam.point_")):
+    if path.startswith(("mount.", "beam.tip.", "beam.point_")) or path in _OF_OFFSETS:
         mass, bending = mean(beam.mass_per_length) * beam.length, mean(beam.bending_stiffness)
         sizes = {"m": beam.length, "kg": mass, "kg m2": mass * beam.length**2}
         sizes |= {"N m/rad": bending / beam.length, "N/m": bending / beam.length**3}
         step = _STEP * max(abs(value), sizes[unit])
-    return SceneNumber(path, unit, value, step, -math.inf if path == "beam.tip.offset" else 0.0)
+    return SceneNumber(
+        path, unit, value, step, -math.inf if path in ("beam.tip.offset", _ACROSS, *_OF_OFFSETS) else 0.0
+    )
 
 
 def _room_of(beam: Beam, path: str) -> float:

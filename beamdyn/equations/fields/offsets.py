@@ -1,0 +1,403 @@
+"""What offsets of the sections' centres add: coupling of torsion with bending, and loads.
+
+The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it,
+that of tension, about which the section bends, at t; both have components along e1 and e2.  A section that
+tilts by p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, to second order, by
+
+    u - p.y - theta p.K y,    w + theta K y - theta^2 y/2 - p (p.y)/2,    K = (0, 1; -1, 0),
+
+u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps
+its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
+-(v' w'' - v'' w')/2, integrated from the root, as no bend in both directions is without that.
+
+In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
+with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
+are its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
+inertia (`beamdyn.scene.sections`, `TipMass.about_axis`) and their terms; products of a tilt and a turn with
+them are left out, as are Coriolis and Euler forces of a tilt, which moves the mass along the beam: these
+change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
+straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, reduce
+from itertools import chain, combinations, combinations_with_replacement, product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beamdyn.equations.discretization import RootConditions, Spaces
+from beamdyn.equations.fields.field import Load, Term
+from beamdyn.equations.fields.offset_names import NAMES, NAMES_OF_LOADS
+from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
+from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.root_motion import Quantity
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import SteadyRotation
+from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
+from beamdyn.scene.profile import FRACTION, ONE, Profile
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.sections import offset_components
+
+_C, _T = 0, 2  # first components of c and of t, among those of both
+_TURN = 2  # number of the rotation by torsion, after the tilts towards e1 and e2
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A displacement of the axis, or a rotation of the sections, by a field.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field.
+    conditions : RootConditions
+        Conditions of its functions at the root.
+    at_tip : ndarray, shape (n,)
+        Its value at the tip body's place on the axis, per coordinate.
+    along : int or None
+        Direction of the displacement: 0, 1, 2 for b1, e1, e2; None for a rotation.
+    rotation : int or None
+        0, 1 for a tilt towards e1, e2, and 2 for a turn by torsion; None for a displacement.
+    """
+
+    field: str
+    conditions: RootConditions
+    at_tip: np.ndarray
+    along: int | None = None
+    rotation: int | None = None
+
+    @property
+    def order(self) -> int:
+        """Order of the derivative of the functions by x: 1 for a tilt."""
+        return int(self.rotation in (0, 1))
+
+    @cached_property
+    def on_axis(self) -> np.ndarray:
+        """Displacement of the axis along b1, e1, e2: shape (3,)."""
+        return np.zeros(3) if self.along is None else np.eye(3)[self.along]
+
+    @cached_property
+    def beside(self) -> np.ndarray:
+        """Displacement of the centre of mass beyond that, per component of c and t: shape (3, 4)."""
+        moved = np.zeros((3, 4))
+        if self.rotation == _TURN:  # K c
+            moved[1, _C + 1], moved[2, _C] = 1.0, -1.0
+        elif self.rotation is not None:
+            moved[0, _C + self.rotation], moved[0, _T + self.rotation] = -1.0, 1.0
+        return moved
+
+
+def _second_order(rows: Motion, columns: Motion) -> np.ndarray:
+    """Second derivative of the displacement of the centre of mass by two rotations: shape (3, 4)."""
+    i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
+    assert i is not None and j is not None, "both are rotations"
+    if i == j == _TURN:
+        moved[1, _C] = moved[2, _C + 1] = -1.0
+    elif _TURN in (i, j):  # -K c along the beam
+        tilt = min(i, j)
+        moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
+    else:
+        moved[1 + i, _C + j] -= 0.5
+        moved[1 + j, _C + i] -= 0.5
+    return moved
+
+
+# Properties of the beam ---------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=256)
+def _moment(beam: Beam, component: int, power: int) -> Profile | None:
+    """Mass per length times a component of c or t and a power of x [kg, kg m]; None for 0."""
+    offset = offset_components(beam)[component]
+    first = offset and beam.mass_per_length * offset
+    return first and (first * FRACTION).scaled(beam.length) if power else first
+
+
+@lru_cache(maxsize=64)
+def _pulled(beam: Beam) -> list[list[Profile | None]]:
+    """Mass outboard, without x and with it, times each component of t [kg m, kg m2]."""
+    return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
+
+
+class _Part(NamedTuple):
+    """A matrix over the coordinates of two motions, with its transpose times a sign where they are two."""
+
+    rows: str
+    columns: str
+    quantity: Quantity
+    order: int
+    matrix: np.ndarray
+    mirrored: float = 1.0
+
+    def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
+        """Yield the matrix, and that of the columns' equations, each with its place."""
+        yield (self.rows, self.columns, self.quantity, self.order), self.matrix
+        if self.mirrored:
+            place = self.columns, self.rows, self.quantity, self.order
+            yield place, self.mirrored * self.matrix.T
+
+
+@dataclass(frozen=True)
+class Offsets:
+    """The terms of offsets of a scene over function spaces.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    spaces : Spaces
+        Function spaces on the beam.
+    turn : Motion
+        The turn by torsion.
+    trials : sequence of Trial
+        Fields that deflect the beam.
+    stretched : sequence of Motion
+        Displacement along the beam, where stretch is modelled.
+    """
+
+    scene: Scene
+    spaces: Spaces
+    turn: Motion
+    trials: Sequence[Trial]
+    stretched: Sequence[Motion] = ()
+    _known: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def tilting(self) -> list[Trial]:
+        """The fields that tilt the sections."""
+        return [trial for trial in self.trials if trial.field.rotates]
+
+    @cached_property
+    def motions(self) -> list[Motion]:
+        """All motions of the sections."""
+        moved = [
+            Motion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction) for t in self.trials
+        ]
+        tilts = [
+            Motion(t.field.name, t.conditions, t.rotation, rotation=t.field.direction) for t in self.tilting
+        ]
+        return [*self.stretched, *moved, *tilts, self.turn]
+
+    @cached_property
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """B and P, along b1, e1, e2."""
+        a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
+        return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
+
+    @cached_property
+    def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
+        """Acceleration of the axis by each quantity: a vector, times x to a power, 0 or 1."""
+        (B, P), (along, first, second) = self.frame, np.eye(3)
+        return [
+            ("root_axial", along, 0),
+            ("root_transverse", first, 0),
+            ("root_across", second, 0),
+            ("acceleration", B[:, 0], 1),
+            ("speed_squared", -P[:, 0], 1),
+        ]
+
+    @cached_property
+    def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
+        """The accelerations that change the stiffness: only along the beam if none is across it."""
+        scene = self.scene
+        steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
+        if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
+            return [each for each in self.accelerations if each[0] in ("root_axial", "speed_squared")]
+        return self.accelerations
+
+    @cached_property
+    def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
+        """Acceleration (3, 4) of the centre of mass relative to the axis, per component of c and t."""
+        (B, P), none = self.frame, np.zeros((3, 2))
+        return [
+            ("acceleration", np.hstack([B[:, 1:], none])),
+            ("speed_squared", np.hstack([-P[:, 1:], none])),
+        ]
+
+    # Moments of the mass and integrals ----------------------------------------------------------------
+
+    @cached_property
+    def _tip(self) -> tuple[TipMass, np.ndarray]:
+        """Tip body, and the components of c and t there (4,) [m]."""
+        beam = self.scene.modelled_beam
+        tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
+        of_tension = [
+            0.0 if t is None else float(t.end_values()[1][-1]) for t in offset_components(beam)[_T:]
+        ]
+        of_mass = tip.offset_across * np.array([-np.sin(twist), np.cos(twist)])
+        return tip, np.array([*of_mass, *of_tension])
+
+    def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
+        """Sum moments of the tip body with coefficients of c and t (4,)."""
+        (tip, components), length = self._tip, self.scene.beam.length
+        if not tip.mass:
+            return 0.0
+        return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
+
+    def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
+        """Yield the moments of the sections, each with its coefficient, that are not 0."""
+        beam = self.scene.modelled_beam
+        for component, value in enumerate(coefficients.tolist()):
+            if value and (moment := _moment(beam, component, power)) is not None:
+                yield value, moment
+
+    def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
+        """Sum of the moments outboard of each section, with coefficients of c and t (4,); None if 0."""
+        of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
+        parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
+        outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
+        return reduce(Profile.__add__, outboard) if outboard else None
+
+    def _integrate(
+        self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int
+    ) -> np.ndarray | None:
+        """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
+        orders = rows.order, columns.order
+        found = [
+            value * self._along(moment, rows.conditions, columns.conditions, orders)
+            for value, moment in self._of_sections(coefficients, power)
+        ]
+        if of_tip := self._of_tip(coefficients, power):
+            found.append(of_tip * np.outer(rows.at_tip, columns.at_tip))
+        return sum(found[1:], found[0]) if found else None
+
+    def _along(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
+    ) -> np.ndarray:
+        """Integrate over x derivatives by x of two sets of functions; each integral is computed once."""
+        key = weight, rows, columns, orders
+        if key not in self._known:
+            scale = self.scene.beam.length ** (1 - sum(orders))
+            self._known[key] = self.spaces.product(weight, rows, columns, orders) * scale
+        return self._known[key]
+
+    # Terms --------------------------------------------------------------------------------------------
+
+    def terms(self) -> Iterator[Term]:
+        """Yield the terms; those of one name and place are summed."""
+        sums: dict[tuple[str, str, Quantity, int], np.ndarray] = {}
+        parts = self._moved, self._carried, self._drawn_in, self._sheared, self._turned, self._tightened
+        for part in chain.from_iterable(each() for each in parts):
+            for place, matrix in part.placed():
+                sums[place] = matrix if place not in sums else sums[place] + matrix
+        for (rows, columns, quantity, order), matrix in sums.items():
+            yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
+
+    def _moved(self) -> Iterator[_Part]:
+        """Yield the work of the acceleration of what two motions move, each to first order."""
+        B, P = self.frame
+        kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
+            (np.eye(3), 1.0, [("unity", 2, 1.0)]),
+            (B, -1.0, [("speed", 1, 2.0), ("acceleration", 0, 1.0)]),
+            (-P, 1.0, [("speed_squared", 0, 1.0)]),
+        ]
+        on_axis = np.array([motion.on_axis for motion in self.motions])
+        beside = np.array([motion.beside for motion in self.motions])
+        for matrix, mirrored, uses in kinds:
+            one_way = np.einsum("ai,ij,bjc->abc", on_axis, matrix, beside)
+            moved = one_way + mirrored * one_way.swapaxes(0, 1)
+            for a, b in zip(*np.nonzero(np.triu(moved.any(axis=2), 1)), strict=True):
+                rows, columns = self.motions[a], self.motions[b]
+                if mirrored < 0 and rows.order + columns.order:  # of a tilt
+                    continue
+                if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
+                    for quantity, order, factor in uses:
+                        yield _Part(rows.field, columns.field, quantity, order, factor * found, mirrored)
+
+    def _carried(self) -> Iterator[_Part]:
+        """Yield the work of the acceleration of the axis on what rotations move to second order."""
+        rotations = [motion for motion in self.motions if motion.rotation is not None]
+        for rows, columns in combinations_with_replacement(rotations, 2):
+            for quantity, vector, power in self._parametric:
+                moved = vector @ _second_order(rows, columns)
+                if (found := self._integrate(rows, columns, moved, power)) is not None:
+                    mirrored = 0.0 if rows is columns else 1.0
+                    yield _Part(rows.field, columns.field, quantity, 0, found, mirrored)
+
+    def _drawn_in(self) -> Iterator[_Part]:
+        """Yield the work of the axial force as bending and torsion draw in the line of centres of tension."""
+        for quantity, vector, power in self._parametric:
+            pulled = _pulled(self.scene.modelled_beam)[power]
+            for trial in self.trials if vector[0] else ():
+                i, tilts = trial.field.direction, trial.field.rotates
+                if (moment := pulled[1 - i]) is not None:
+                    factor = float(vector[0] if tilts == (i == 0) else -vector[0])
+                    orders = (0, 2) if tilts else (1, 1)
+                    matrix = self._along(moment, self.turn.conditions, trial.conditions, orders)
+                    yield _Part(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
+
+    def _sheared(self) -> Iterator[_Part]:
+        """Yield the work of shear forces as bending moves the axis along its slope."""
+        for quantity, vector, power in self._parametric:
+            pulled = _pulled(self.scene.modelled_beam)[power]
+            for rows, columns in product(self.tilting, repeat=2):
+                force, moment = float(vector[1 + rows.field.direction]), pulled[columns.field.direction]
+                if force and moment is not None:
+                    matrix = self._along(moment, rows.conditions, columns.conditions, (1, 2))
+                    yield _Part(rows.field.name, columns.field.name, quantity, 0, force * matrix)
+
+    def _turned(self) -> Iterator[_Part]:
+        """Yield the work of the twisting moment as bending in both directions turns the sections."""
+        for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
+            for quantity, vector, power in self._parametric:
+                if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
+                    names = pair.rows.field.name, pair.columns.field.name
+                    yield _Part(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
+
+    def _tightened(self) -> Iterator[_Part]:
+        """Yield the work of the axial force by what lies beside the axis, on the slopes of the beam."""
+        ahead = self._tip[0].offset
+        parametric = [quantity for quantity, _, _ in self._parametric]
+        for quantity, matrix in self._beside_axis:
+            if quantity not in parametric or (force := self._outboard(matrix[0], 0)) is None:
+                continue
+            at_tip = self._of_tip(matrix[0], 0)
+            for rows, columns in combinations_with_replacement(self.trials, 2):
+                if rows.field.direction == columns.field.direction:
+                    along = self._along(force, rows.conditions, columns.conditions, (1, 1))
+                    matrix = -along - ahead * at_tip * np.outer(rows.rotation, columns.rotation)
+                    mirrored = 0.0 if rows is columns else 1.0
+                    yield _Part(rows.field.name, columns.field.name, quantity, 0, matrix, mirrored)
+
+    # Loads --------------------------------------------------------------------------------------------
+
+    def loads(self) -> Iterator[Load]:
+        """Yield the loads by the accelerations of the axis and of what lies beside it."""
+        sums: dict[tuple[str, Quantity], np.ndarray] = {}
+        for motion in self.motions:
+            for quantity, coefficients, power in self._accelerated(motion):
+                if not coefficients.any():
+                    continue
+                work = self._of_tip(coefficients, power) * motion.at_tip
+                for value, moment in self._of_sections(coefficients, power):
+                    work = work + value * self._load(moment, motion.conditions, motion.order)
+                place = motion.field, quantity
+                sums[place] = sums.get(place, 0.0) - work
+        for quantity, vector, power in self.accelerations:
+            for trial in self.tilting if vector[0] else ():
+                if (moment := _pulled(self.scene.modelled_beam)[power][trial.field.direction]) is not None:
+                    place = trial.field.name, quantity
+                    work = vector[0] * self._load(moment, trial.conditions, 2)
+                    sums[place] = sums.get(place, 0.0) - work
+        for (name, quantity), vector in sums.items():
+            if vector.any():
+                yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
+
+    def _accelerated(self, motion: Motion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
+        """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.
+
+        The axial force acts at the centre of tension; what it does there stands apart.
+        """
+        of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])
+        for quantity, vector, power in self.accelerations:
+            yield quantity, vector @ of_mass, power
+        for quantity, matrix in self._beside_axis:
+            yield quantity, motion.on_axis @ matrix, 0
+
+    def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
+        """Integrate over x derivatives by x of functions."""
+        return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)
