@@ -12,14 +12,13 @@ from cyclopts import Parameter
 import beamdyn as bd
 from beamdyn.analyses.analysis import READ_SECOND, WRITTEN, Answer, AsText, analysis
 from beamdyn.analyses.options import Text, none_given
-from beamdyn.analyses.values import parse_amounts, parse_quantity, parse_speeds
-from beamdyn.common.edge.varied_inputs import find_input, numbers
+from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, parse_speeds
 from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.varied_inputs import find_input, numbers
 from beamdyn.common.results.files import write_text
 from beamdyn.files.measurements import half_unit
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scene_text import with_numbers_in_text
-from beamdyn.common.edge.outputs import NO_FILES, Outputs
 
 if TYPE_CHECKING:
     from beamdyn.beside_data.frequency_comparison import FrequencyComparison
@@ -52,7 +51,7 @@ Uncertainty = Annotated[
 
 @analysis(
     'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
-    "beamdyn compare examples/swept_tip_blade.toml examples/epps_chandra_0deg.csv",
+    "beamdyn compare examples/epps_chandra.toml examples/epps_chandra.csv",
     screen="Compare",
 )
 def compare(
@@ -63,8 +62,9 @@ def compare(
     speeds: AtSpeeds,
     uncertainty: Uncertainty = None,
 ) -> FrequencyComparison:
-    """Measured natural frequencies beside those of the scene: what agrees, and what would explain the rest."""
-    return bd.compare(scene, _data(data, measured, speeds, uncertainty))
+    """Measured natural frequencies beside those of the scene: what agrees, and what explains the rest."""
+    given = _data(data, measured, speeds, uncertainty)
+    return bd.compare(in_unit_of(scene, f"0 {given.speed_unit}"), given)
 
 
 @analysis(
@@ -84,7 +84,6 @@ def identify(
     seed: int = 0,
     write: Annotated[Path | None, WRITTEN] = None,
     file: Path | None = None,
-    outputs: Outputs = NO_FILES,
 ) -> Answer:
     """Numbers of the scene found from measured natural frequencies, with their intervals.
 
@@ -101,19 +100,19 @@ def identify(
         Write the scene with the numbers found into this file, with where they come from.
     """
     given = _data(data, measured, speeds, uncertainty)
-    found = bd.identify(scene, given, parse_free(free), starts, seed)
+    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
     if write is not None and file is not None:
-        _write(found, file, write, given.source, outputs.force)
+        _write(found, file, write, given.source)
     return Answer(found, _untold(found))
 
 
 def _untold(found: Identification) -> str:
     """Why the data do not tell numbers; empty if they tell all."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
-    return lost and f"the data do not tell {' and '.join(lost)}: see what would help" or ""
+    return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
 
 
-def _write(found: Identification, scene: Path, to: Path, source: str, force: bool) -> None:
+def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
     values = dict(zip(found.names, found.value.tolist(), strict=True))
     ranges = ", ".join(found.says(k) for k in range(len(values)))
     head = [
@@ -122,7 +121,7 @@ def _write(found: Identification, scene: Path, to: Path, source: str, force: boo
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
     assert found.scene_found is not None  # refused where a number is not told
-    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head), force)
+    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 
 
 # Values of options --------------------------------------------------------------------------------
@@ -145,7 +144,7 @@ def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
         raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")
     halves = [half_unit(cell) * value / float(cell) for cell, value in zip(written, values, strict=True)]
     at = (0.0,) if speeds is None else speeds
-    return bd.MeasuredFrequencies(values, at, rounding=[halves], source="measured")
+    return bd.MeasuredFrequencies(values, at, rounding=[halves])
 
 
 def _with_uncertainty(data: bd.MeasuredFrequencies, text: str) -> bd.MeasuredFrequencies:

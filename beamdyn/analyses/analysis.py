@@ -247,7 +247,9 @@ class Analysis:
         values = {name: value for name, value in given.items() if name != "physics"}
         values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
         own = {"outputs": outputs, "file": file}
-        values |= {name: own[name] for name in own.keys() & inspect.signature(self.function).parameters.keys()}
+        values |= {
+            name: own[name] for name in own.keys() & inspect.signature(self.function).parameters.keys()
+        }
         made = self.function(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 

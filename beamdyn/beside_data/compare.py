@@ -99,7 +99,10 @@ def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
     """Refuse shapes at points that the beam does not have."""
     if data.positions is None:
         return
-    length, beyond = scene.beam.length, (data.positions < 0) | (data.positions > scene.beam.length * (1 + 1e-9))
+    length, beyond = (
+        scene.beam.length,
+        (data.positions < 0) | (data.positions > scene.beam.length * (1 + 1e-9)),
+    )
     if beyond.any():
         bound = f"positions of shapes run from 0 to the length of the beam, {length:g} m"
         raise InvalidValue("positions", float(data.positions[beyond][0]), bound, "measure from the root", "m")

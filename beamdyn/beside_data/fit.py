@@ -7,7 +7,7 @@ difference of the matrices of two scenes close by: eigenvalues are not differenc
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -33,7 +33,6 @@ from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
 _STEP = 1e-4  # of a variable of size 1, to either side
 _HZ = 1 / (2 * np.pi)
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
-_CONVERGED = 1e-12  # relative change of variables, and of the sum of squares
 _TRIED = 4  # places tried for each start
 _PAIRINGS = 3  # times that pairs are chosen anew in a fit
 
@@ -52,12 +51,15 @@ class Fitting:
         The p numbers.
     weight : ndarray, shape (S, m)
         Weights [Hz] by which residuals are divided.
+    tolerance : float
+        Relative change of variables and of the sum of squares at which a fit ends.
     """
 
     scene: Scene
     data: MeasuredFrequencies
     numbers: tuple[FreeNumber, ...]
     weight: np.ndarray
+    tolerance: float = 1e-12
     solved: list[int] = field(default_factory=lambda: [0])  # number of solves so far
 
     @cached_property
@@ -95,7 +97,7 @@ class Fitting:
     @property
     def flat(self) -> float:
         """Slope of the sum of squares that counts as none: as of relative deviations, in the weights'."""
-        return _CONVERGED * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
+        return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
@@ -178,7 +180,9 @@ class FittedModes:
         for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
             step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)
             low, high = max(self.x[k] - step, least), min(self.x[k] + step, most)
-            scenes = (self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x)) for at in (low, high))
+            scenes = (
+                self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x)) for at in (low, high)
+            )
             pencils = [Model(scene, self.model.discretization).equations.steady() for scene in scenes]
             changes.append(PencilChange.of(pencils, np.array([-1.0, 1.0]) / (high - low)))
         return changes
@@ -209,7 +213,7 @@ class Fitted:
 
 
 @one_blas_thread()
-def fit_from(fitting: Fitting, x: Sequence[float], most: int) -> Fitted:
+def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
     """Fit from variables (p,), with at most so many solves; pairs follow the fit.
 
     Parameters
@@ -240,8 +244,8 @@ def fit_from(fitting: Fitting, x: Sequence[float], most: int) -> Fitted:
             found,
             lambda x, pairs=pairs: at(x).derivative(pairs),
             bounds=fitting.limits,
-            xtol=_CONVERGED,
-            ftol=_CONVERGED,
+            xtol=fitting.tolerance,
+            ftol=fitting.tolerance,
             gtol=fitting.flat,
             max_nfev=end - fitting.solved[0],
         )
@@ -286,9 +290,13 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
     """Variables (p,) at which to begin, the nearest to the data first."""
     numbers = fitting.numbers
-    shares = LatinHypercube(len(numbers), rng=seed).random(_TRIED * starts if len(numbers) > 1 else starts - 1)
+    shares = LatinHypercube(len(numbers), rng=seed).random(
+        _TRIED * starts if len(numbers) > 1 else starts - 1
+    )
     tried = [np.array([n.first for n in numbers])]
-    tried += [np.array([n.place(share) for n, share in zip(numbers, each, strict=True)]) for each in shares.tolist()]
+    tried += [
+        np.array([n.place(share) for n, share in zip(numbers, each, strict=True)]) for each in shares.tolist()
+    ]
     ranks = [_unfitted(fitting.at(x)).rank for x in tried]
     return [tried[k] for k in sorted(range(len(tried)), key=ranks.__getitem__)[:starts]]
 

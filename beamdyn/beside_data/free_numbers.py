@@ -10,8 +10,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.scene.numbers import check_path, number_at, with_numbers
 from beamdyn.scene.profile import mean
@@ -22,7 +20,8 @@ Bounds = tuple[float, float]
 
 SPRINGS = ("mount.root_stiffness", "mount.second_root_stiffness")
 _STEP = 0.01  # of `SceneNumber.step` in the size of a number
-_RIGID = 1e-6  # compliance up to which a root counts as clamped
+_RIGID = 1e-6  # least compliance
+_CLAMPED = 1e-5  # compliance up to which a root counts as clamped
 _FIRST = 0.1  # variable at which a fit begins where the scene's root is clamped, or it has no such body
 _SOFTEST = 1e3
 _TIMES = 10.0  # a number is sought from a tenth to ten times its value
@@ -65,7 +64,7 @@ class FreeNumber:
     def value(self, x: float) -> float:
         """The value [unit] of a variable; inf for a compliance at which a root counts as clamped."""
         if self.is_compliance:
-            return math.inf if x <= _RIGID * (1 + 1e-9) else self.scale / x
+            return math.inf if x <= _CLAMPED else self.scale / x
         return self.scale * x
 
     def number(self, x: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -12,10 +12,11 @@ from beamdyn.beside_data.explanations import Explanation, say_value
 from beamdyn.common.plots.plots import mark_points, plot_locus
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.digits import percent
-from beamdyn.common.results.one_line import counted, number, warned
+from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import Speeds, joined
-from beamdyn.common.words import Words
+from beamdyn.common.words import Setting, Words
+from beamdyn.modes.kinds import TORSION
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.scene.scene import Scene
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
+_DIGITS = 6  # of frequencies in sentences
 _PLACES = 61  # speeds at which a picture draws the model
 _ONE_SPEED = 0.1  # share of the first angular frequency up to which a picture of one speed goes
 
@@ -83,7 +85,10 @@ class FrequencyComparison(Result):
     scene: Scene = field(repr=False)
     source: str = field(default="", repr=False)
 
-    field_units = {"rad/s": "speed", "Hz": "measured computed allowance error model_error"}
+    field_units: ClassVar[dict[str, str]] = {
+        "rad/s": "speed",
+        "Hz": "measured computed allowance error model_error",
+    }
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
@@ -110,7 +115,7 @@ class FrequencyComparison(Result):
         return set(self.verdict) == {AGREES}
 
     def sentences(self) -> tuple[str, ...]:
-        """What the comparison says in words: the worst deviation of each verdict, and what would explain it."""
+        """What the comparison says in words: the worst deviations, and what would explain them."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
@@ -121,39 +126,50 @@ class FrequencyComparison(Result):
             if (verdicts == verdict).any():
                 worst = int(np.where(verdicts == verdict, off, -1.0).argmax())
                 others = int((verdicts == verdict).sum()) - 1
-                more = f"; so {'is' if others == 1 else 'are'} {counted(others, 'other')}, by less" if others else ""
+                more = (
+                    f"; so {'is' if others == 1 else 'are'} {counted(others, 'other')}, by less"
+                    if others
+                    else ""
+                )
                 yield Words(self._say(worst, words), more, ".")
         for k in np.flatnonzero(verdicts == ALONE):
-            at = Speeds(self.speed[k])
-            yield Words(f"{self.label[k]}, {number(self.measured[k], 'Hz')} at ", at, ": the model has no such mode.")
+            yield self._alone(int(k))
         if self.unmeasured:
             yield Words("Without a measured value: ", joined(", ", self.unmeasured), ".")
         yield from self._explained()
 
+    def _alone(self, k: int) -> Words:
+        """One value without a mode in words, with what may have it."""
+        setting = Setting("physics", torsion=True)
+        advice = (
+            [": its torsion is left out; give ", setting, "."] if TORSION in self.label[k].lower() else ["."]
+        )
+        start = f"{self.label[k]}, {self.measured[k]:.{_DIGITS}g} Hz at "
+        return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice)
+
     def _say(self, k: int, words: str) -> Words:
         """One deviation in words."""
-        deviation, computed = float(self.deviation[k]), number(self.computed[k], "Hz")
+        deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
         side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'}" if deviation else "the same"
         left_out, own = (float(each[k] / self.computed[k]) for each in (self.model_error, self.allowance))
         of_data = f" and the data's uncertainty ({percent(own)})" if own else ""
         said = words.format(left_out=percent(left_out)) + of_data * (words == _WORDS[OUTSIDE])
         start = f"{self.label[k]} at "
         return Words(
-            start, Speeds(self.speed[k]), f": {number(self.measured[k], 'Hz')} is {side} of {computed}, {said}"
+            start,
+            Speeds(self.speed[k]),
+            f": {self.measured[k]:.{_DIGITS}g} Hz is {side} of {computed}, {said}",
         )
 
     def _explained(self) -> Iterator[str]:
         good = [each for each in self.explanations if each.explains]
         if good:
-            each = joined(" or ", [Words(each.name, " = ", say_value(each.value, each.unit)) for each in good])
-            yield Words("It would be explained by one number alone: ", each, ".")
+            each = [Words(f"{e.name} = ", say_value(e.value, e.unit), f" (leaves {e.left})") for e in good]
+            yield Words("One number alone would explain it: ", joined(" or ", each), ".")
         elif self.explanations:
             best = self.explanations[0]
-            value = say_value(best.value, best.unit)
-            left = percent(best.remaining)
-            yield Words(
-                f"No number alone explains it: the nearest is {best.name} = ", value, f", which leaves {left}."
-            )
+            value, left = say_value(best.value, best.unit), f", which leaves {best.left}."
+            yield Words(f"No number alone explains it: the nearest is {best.name} = ", value, left)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the scene over speed, and the measured ones as points."""

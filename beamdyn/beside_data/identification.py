@@ -51,7 +51,7 @@ class Identification(Result):
     scatter : float
         Root mean square deviation over the measured frequency, for the degrees of freedom that remain.
     outliers : tuple of str
-        Values that lie further off than chance explains in one of a hundred such sets of data; none is left out.
+        Values that lie further off than in one of a hundred such sets of data by chance; none is left out.
     solves : int
         Number of solved eigenproblems: of one scene at all speeds each.
     warnings : tuple of str
@@ -103,7 +103,9 @@ class Identification(Result):
             If the data do not tell all of them.
         """
         if np.isnan(self.value).any():
-            lost = ", ".join(name for name, value in zip(self.names, self.value, strict=True) if np.isnan(value))
+            lost = ", ".join(
+                name for name, value in zip(self.names, self.value, strict=True) if np.isnan(value)
+            )
             raise NoModelAnswer(f"the data do not tell {lost}: keep one of them fixed, or measure more")
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
 
@@ -130,7 +132,9 @@ class Identification(Result):
     def says(self, k: int) -> Words:
         """Number k with its interval, in words."""
         ends = (say_value(each, self.units[k]) for each in (self.low[k], self.high[k]))
-        return Words(f"{self.names[k]} = ", say_value(self.value[k], self.units[k]), " (", joined(" to ", ends), ")")
+        return Words(
+            f"{self.names[k]} = ", say_value(self.value[k], self.units[k]), " (", joined(" to ", ends), ")"
+        )
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the scene that was found over speed, and the measured ones as points."""

@@ -155,7 +155,9 @@ class _Told:
         half = quantile * np.sqrt(np.diag(self._information.covariance))
         low, high = self._fitting.limits
         ends = np.clip([middle - half, middle + half], low, high).T
-        each = [sorted(n.value(x) for x in pair) for n, pair in zip(self._numbers, ends.tolist(), strict=True)]
+        each = [
+            sorted(n.value(x) for x in pair) for n, pair in zip(self._numbers, ends.tolist(), strict=True)
+        ]
         sure = self._information.told & np.isfinite(half)
         return np.where(sure[:, None], np.array(each), np.nan)
 
@@ -165,7 +167,9 @@ class _Told:
         C = self._information.covariance
         sizes = np.sqrt(np.diag(C))
         x = self.fit.modes.x
-        slope = np.array([-n.scale / v**2 if n.is_compliance else n.scale for n, v in zip(self._numbers, x, strict=True)])
+        slope = np.array(
+            [-n.scale / v**2 if n.is_compliance else n.scale for n, v in zip(self._numbers, x, strict=True)]
+        )
         sure = self._information.told & np.isfinite(self._values) & np.isfinite(self._deviation)
         both = np.outer(sure, sure)
         return np.where(both, C * np.outer(slope, slope), np.nan), C / np.outer(sizes, sizes)
@@ -202,17 +206,23 @@ class _Told:
         data = self._fitting.data
         for k in np.flatnonzero(size > limit):
             name, value = data.labels[columns[k]], number(self._measured[k], "Hz")
-            yield Words(f"{name} at ", Speeds(data.speeds[rows[k]]), f", {value}, by {size[k]:.1f} uncertainties")
+            yield Words(
+                f"{name} at ", Speeds(data.speeds[rows[k]]), f", {value}, by {size[k]:.1f} uncertainties"
+            )
 
     def _warnings(self) -> Iterator[str]:
         if self._is_poor:
-            said = f"the deviations are {self._poorness:.2g} times the uncertainties of the data: the model does not fit them"
-            yield Statement(f"{said}, and the intervals do not say by how much that changes the numbers", kind=LIMITS)
+            said = f"the deviations are {self._poorness:.2g} times the uncertainties of the data: the model does not fit"
+            yield Statement(
+                f"{said}, and the intervals do not say by how much that changes the numbers", kind=LIMITS
+            )
         if not self.known and self._freedom <= 0:
             said = "there are as many unknowns as data: no interval follows; give uncertainties or more data"
             yield Statement(said, kind=INPUT)
         for number_, x, low, high in zip(self._numbers, self.fit.modes.x, *self._fitting.limits, strict=True):
-            if not low * (1 + 1e-6) + 1e-9 < x < high * (1 - 1e-6) and not (number_.is_compliance and x <= 2 * low):
+            if not low * (1 + 1e-6) + 1e-9 < x < high * (1 - 1e-6) and not (
+                number_.is_compliance and x <= 2 * low
+            ):
                 said = f"{number_.path} is at a bound of its range: give wider bounds, or free another number"
                 yield Statement(said, kind=LIMITS)
 

@@ -3,7 +3,7 @@
 The distance of two frequencies is that of their logarithms, over half of the way from the computed mode to
 its nearest neighbour: a mode far from all others may be far off, and is still the one.  Where shapes are
 given, the distance grows with what their modal assurance criterion lacks of 1.  All pairs at a speed are
-chosen together, by least total distance; a frequency stays without a mode rather than take one that is too far.
+chosen together, by least total distance; a frequency stays without a mode where all are too far.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _half_ways(log: np.ndarray) -> np.ndarray:
 
 
 def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Modal assurance criterion (m, n) of shapes (m, P) and (n, P) at the same points (Allemang 2003, eq. 1)."""
+    """Modal assurance criterion (m, n) of shapes (m, P), (n, P) at the same points (Allemang 2003, eq. 1)."""
     products = np.abs(measured @ computed.conj().T) ** 2
     sizes = (np.abs(measured) ** 2).sum(axis=1)[:, None] * (np.abs(computed) ** 2).sum(axis=1)
     return products / np.where(sizes == 0, 1.0, sizes)

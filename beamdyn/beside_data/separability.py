@@ -1,4 +1,4 @@
-"""What data tell of numbers together: covariance, numbers that cannot be told apart, and what would tell them.
+"""What data tell of numbers together: covariance, numbers that are not told apart, and what would tell them.
 
 With J the derivatives of residuals over their uncertainties by the variables of size 1, J = U S V^T, a change
 of size 1/s along a column of V changes the data by one uncertainty.  Bounds of the numbers count as if 1/s
@@ -63,7 +63,10 @@ class Information:
     def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Directions (p,) that are not told, and which of the variables (p,) each leaves untold."""
         _, s, V = self._parts
-        each = [(v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST)) for v, size in zip(V.T, s, strict=True)]
+        each = [
+            (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))
+            for v, size in zip(V.T, s, strict=True)
+        ]
         return [(v, named) for v, named in each if named.any()]
 
     @property
@@ -102,9 +105,7 @@ class NotSeparable:
     measurements: tuple[str, ...]
 
 
-def not_separable(
-    modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]]
-) -> tuple[NotSeparable, ...]:
+def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]]) -> tuple[NotSeparable, ...]:
     """Name the numbers of each direction, and the measurements that change along it."""
     paths = np.array([number.path for number in modes.fitting.numbers])
     return tuple(

@@ -1,4 +1,4 @@
-"""Files of measured natural frequencies: tables with units as CSV, and the lists of modes that ANSYS writes."""
+"""Files of measured natural frequencies: tables with units as CSV, and lists of modes that ANSYS writes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
 def read_measurements(
     path: str | PathLike[str], speeds: Sequence[float] | np.ndarray | None = None
 ) -> MeasuredFrequencies:
-    """Read natural frequencies from a file of a laboratory or of another program.
+    r"""Read natural frequencies from a file of a laboratory or of another program.
 
     A CSV file has a line of heads with units, such as "speed [rpm], frequency 1 [Hz], frequency 2 [Hz],
     uncertainty [Hz]", then a line a speed; a cell may be empty where a frequency was not found.  Heads may
@@ -64,22 +64,21 @@ def read_measurements(
     >>> from pathlib import Path
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder) / "measured.csv"
-    ...     _ = file.write_text("speed [rpm], frequency 1 [Hz]\\n0, 65.2\\n500, 61.7\\n")
+    ...     _ = file.write_text("speed [rpm], frequency 1 [Hz]\n0, 65.2\n500, 61.7\n")
     ...     bd.read_measurements(file).frequency[:, 0]
     array([65.2, 61.7])
     """
     text = read_data(path)
     given = None if speeds is None else real_array("speeds", speeds)
     head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
-    rows, written, labels, own = _from_list(text, head) if head else _from_csv(text)
+    rows, written, labels, own, unit = _from_list(text, head) if head else _from_csv(text)
     at = _speeds(text, own.get(_SPEED), given, len(rows))
     spread = own.get(_OF_ALL, np.full(rows.shape, np.nan))
-    return MeasuredFrequencies(
-        rows, at, spread, _half_digits(written, rows), labels, source=text.path.name
-    )
+    halves = _half_digits(written, rows)
+    return MeasuredFrequencies(rows, at, spread, halves, labels, source=text.path.name, speed_unit=unit)
 
 
-_Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndarray]]
+_Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndarray], str]
 
 
 def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, count: int) -> np.ndarray:
@@ -153,9 +152,12 @@ def _of_frequency(table: CsvTable) -> Iterator[CsvColumn]:
 
 
 def _as_rows(table: CsvTable) -> _Read:
-    """Frequencies, their cells, labels, and what stands beside them: a row a speed."""
+    """Frequencies, their cells, labels, and what stands beside them, a row a speed; the unit of speeds."""
     columns, named = [*_of_frequency(table)], table.named()
-    rows, written = np.array([c.values for c in columns]).T, [[*row] for row in zip(*(c.written for c in columns), strict=True)]
+    rows, written = (
+        np.array([c.values for c in columns]).T,
+        [[*row] for row in zip(*(c.written for c in columns), strict=True)],
+    )
     spread, own = np.full(rows.shape, np.nan), {}
     for k, column in enumerate(columns):
         of_one = named.get(f"{_OF_ALL} {column.name.rpartition(' ')[2]}", named.get(_OF_ALL))
@@ -167,7 +169,8 @@ def _as_rows(table: CsvTable) -> _Read:
         rows, written, spread = rows.T, [[row[0] for row in written]], spread.T
     if _SPEED in named:
         own[_SPEED] = np.array(named[_SPEED].values)
-    return rows, written, labels, own | {_OF_ALL: spread}
+    unit = named[_SPEED].unit if _SPEED in named else ""
+    return rows, written, labels, own | {_OF_ALL: spread}, unit
 
 
 # Lists of modes of ANSYS --------------------------------------------------------------------------
@@ -194,4 +197,4 @@ def _from_list(text: DataText, head: int) -> _Read:
     for i, modes in enumerate(steps.values()):
         rows[i, : len(modes)] = [value for value, _ in modes]
         written[i][: len(modes)] = [cell for _, cell in modes]
-    return rows, written, tuple(f"set {k}" for k in range(1, width + 1)), {}
+    return rows, written, tuple(f"set {k}" for k in range(1, width + 1)), {}, ""

@@ -34,7 +34,9 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
     for path, value in values.items():
         table, _, key = path.rpartition(".")
         if "[" in path or ".scale." in path:
-            said = f"{path}: no line of the file holds this number alone; write it by hand, {value:.{_DIGITS}g}"
+            said = (
+                f"{path}: no line of the file holds this number alone; write it by hand, {value:.{_DIGITS}g}"
+            )
             raise ConfigError("scene", [said], [path])
         _put(lines, table, key, f"{key} = {_written(path, value)}")
     comments = [f"# {''.join(c if c.isprintable() else ' ' for c in said)}" for said in head]

@@ -36,6 +36,8 @@ class MeasuredFrequencies(ReadOnlyArrays):
         Deflection of each mode at the positions, at any scale.
     source : str
         Where the values come from, such as the name of a file.
+    speed_unit : str
+        Unit in which the speeds were written, such as "rpm"; empty if none was.
 
     Raises
     ------
@@ -56,6 +58,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
     positions: Any = None
     shapes: Any = None
     source: str = ""
+    speed_unit: str = ""
 
     def __post_init__(self) -> None:
         speeds, frequency = real_array("speeds", self.speeds), _table("frequency", self.frequency)

@@ -8,6 +8,7 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.beside_data.explanations import say_value
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
@@ -18,8 +19,6 @@ from beamdyn.common.results.pictures import figure_of
 if TYPE_CHECKING:
     from beamdyn.beside_data.frequency_comparison import FrequencyComparison
     from beamdyn.beside_data.identification import Identification
-
-_DIGITS = 6
 
 
 def comparison_columns(result: FrequencyComparison) -> Columns:
@@ -56,14 +55,12 @@ def comparison_tables(result: FrequencyComparison) -> Group:
     columns = comparison_columns(result)
     parts = [table_of(columns, result.display_units, keys=2)]
     if result.explanations:
-        from beamdyn.beside_data.explanations import say_value
-
         rows = [
             (
                 each.name,
                 in_files(say_value(each.given, each.unit)),
                 in_files(say_value(each.value, each.unit)),
-                percent(each.remaining),
+                each.left,
                 "explains all" if each.explains else "does not",
             )
             for each in result.explanations
@@ -81,7 +78,6 @@ def comparison_csv(result: FrequencyComparison) -> Columns:
 
 def identification_tables(result: Identification) -> Group:
     """The numbers with their intervals, what is not told, and the data beside the scene found."""
-    from beamdyn.beside_data.explanations import say_value
 
     def said(value: float, unit: str) -> str:
         return "not told" if np.isnan(value) else in_files(say_value(value, unit))
