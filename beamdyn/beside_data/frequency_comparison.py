@@ -141,9 +141,8 @@ class FrequencyComparison(Result):
     def _alone(self, k: int) -> Words:
         """One value without a mode in words, with what may have it."""
         setting = Setting("physics", torsion=True)
-        advice = (
-            [": its torsion is left out; give ", setting, "."] if TORSION in self.label[k].lower() else ["."]
-        )
+        twists = TORSION in self.label[k].lower()
+        advice = ["; with ", setting, " it may have one."] if twists else ["."]
         start = f"{self.label[k]}, {self.measured[k]:.{_DIGITS}g} Hz at "
         return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice)
 

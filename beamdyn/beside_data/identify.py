@@ -212,7 +212,7 @@ class _Told:
 
     def _warnings(self) -> Iterator[str]:
         if self._is_poor:
-            said = f"the deviations are {self._poorness:.2g} times the uncertainties of the data: the model does not fit"
+            said = f"deviations are {self._poorness:.2g} times the uncertainties of the data: it does not fit"
             yield Statement(
                 f"{said}, and the intervals do not say by how much that changes the numbers", kind=LIMITS
             )

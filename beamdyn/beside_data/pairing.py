@@ -1,7 +1,7 @@
 """Which computed mode a measured frequency belongs to.
 
 The distance of two frequencies is that of their logarithms, over half of the way from the computed mode to
-its nearest neighbour: a mode far from all others may be far off, and is still the one.  Where shapes are
+its neighbour on that side: a mode far from all others may be far off, and is still the one.  Where shapes are
 given, the distance grows with what their modal assurance criterion lacks of 1.  All pairs at a speed are
 chosen together, by least total distance; a frequency stays without a mode where all are too far.
 """
@@ -16,6 +16,8 @@ from beamdyn.common.assignment import assign
 from beamdyn.modes.kinds import BENDING, TORSION
 
 _TOO_FAR = 1.5  # half ways from a mode to its neighbour; one mode may be off by more than its half way
+_BELOW = 2.0  # way from the lowest mode down, and from the highest up, where none is: a factor of seven
+_CROSSING = 1e-2  # least half way: modes that cross are told by their shapes alone
 _OF_SHAPE = 3.0  # what a shape that is orthogonal adds to a distance
 NO_MODE = -1
 
@@ -36,8 +38,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
     known, there = np.flatnonzero(np.isfinite(measured)), np.flatnonzero(np.nan_to_num(computed) > 0)
     if not known.size:
         return found
-    log = np.log(computed[there])
-    cost = np.abs(np.log(measured[known])[:, None] - log) / _half_ways(log)
+    cost = _distances(measured[known], computed[there])
     if likeness is not None:
         cost = cost + _OF_SHAPE * (1 - likeness[np.ix_(known, there)])
     alone = np.where(np.eye(len(known), dtype=bool), _TOO_FAR, 1e6)  # each may stay alone
@@ -47,14 +48,15 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
     return found
 
 
-def _half_ways(log: np.ndarray) -> np.ndarray:
-    """Half of the distance of each mode to its nearest neighbour; that of the lowest to the one above."""
-    order = np.argsort(log)
-    gaps = np.diff(log[order], prepend=-np.inf, append=np.inf)
-    near = np.minimum(gaps[:-1], gaps[1:])
-    half = np.empty(len(log))
-    half[order] = np.where(np.isfinite(near), near, np.inf) / 2
-    return np.maximum(half, 1e-3)  # modes that cross are told by their shapes alone
+def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
+    """Distances (m, n) of frequencies in half ways from a mode to its neighbour on that side."""
+    log, order = np.log(computed), np.argsort(computed)
+    apart = np.log(measured)[:, None] - log
+    gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)
+    half = np.maximum(gaps / 2, _CROSSING)
+    below, above = np.empty_like(log), np.empty_like(log)
+    below[order], above[order] = half[:-1], half[1:]
+    return np.abs(apart) / np.where(apart < 0, below, above)
 
 
 def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:

@@ -27,7 +27,8 @@ _BOUND = 0.1  # least singular value: bounds are about ten sizes apart
 _TOLD = 0.05  # least relative change of a measurement by a whole change along a direction that tells it
 _STEP = 1e-3
 _BODY = 0.2  # mass of a known body over that of the beam
-_FASTER = 2.0  # times the largest speed; at least half of the first angular frequency at rest
+_FASTER = 2.0  # times the largest speed
+_FAST = np.pi / 2  # speed over the first frequency [Hz] at rest: a quarter of it in radians
 _PLACES = np.linspace(0.0, 1.0, 201)
 
 
@@ -133,7 +134,7 @@ def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
             _loaded(scene, _BODY * _mass(fitting.scene))
         ),
         f"the frequency of mode {fitting.modes} at rest": _frequency(scene, mode=fitting.modes),
-        "the first frequency at a higher speed": _frequency(scene, max(_FASTER * speed, np.pi * first)),
+        "the first frequency at a higher speed": _frequency(scene, max(_FASTER * speed, _FAST * first)),
     }
 
 
