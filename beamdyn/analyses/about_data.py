@@ -51,7 +51,7 @@ Uncertainty = Annotated[
 
 @analysis(
     'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
-    "beamdyn compare examples/epps_chandra.toml examples/epps_chandra.csv",
+    "beamdyn compare examples/epps.toml examples/epps.csv",
     screen="Compare",
 )
 def compare(
@@ -68,8 +68,8 @@ def compare(
 
 
 @analysis(
-    'beamdyn identify examples/tyre_harvester.toml --free "mount.root_stiffness" --measured "62.1, 389 Hz"',
-    'beamdyn identify examples/tyre_harvester.toml --free "thickness=0.1:0.3 mm" --measured "62.1, 389 Hz"',
+    'beamdyn identify examples/tyre_harvester.toml --free length --measured "62 Hz"',
+    "beamdyn identify examples/epps.toml examples/epps.csv --free length",
     screen="Identify",
 )
 def identify(
@@ -168,7 +168,7 @@ def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
         If a name is not known, or bounds are not two values with a unit.
     """
     found: dict[str, tuple[float, float] | None] = {}
-    known = numbers(describe(SceneInput))
+    known = [*{entry.path: entry for entry in numbers(describe(SceneInput))}.values()]
     for part in filter(None, (each.strip() for each in text.split(","))):
         words = f'--free = "{part}"'
         key, _, bounds = (each.strip() for each in part.partition("="))

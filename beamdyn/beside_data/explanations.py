@@ -114,7 +114,9 @@ def _numbers(scene: Scene) -> list[FreeNumber]:
             (free,) = free_numbers(scene, {path: None})
         except InvalidValue:  # none of this scene
             continue
-        found.append(replace(free, bounds=_physical(scene, free)))
+        low, high = _physical(scene, free)
+        if low < high:  # a radius of 0 is the axis itself
+            found.append(replace(free, bounds=(low, high)))
     return found
 
 

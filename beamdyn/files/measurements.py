@@ -30,7 +30,7 @@ _SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
 def read_measurements(
     path: str | PathLike[str], speeds: Sequence[float] | np.ndarray | None = None
 ) -> MeasuredFrequencies:
-    r"""Read natural frequencies from a file of a laboratory or of another program.
+    """Read natural frequencies from a file of a laboratory or of another program.
 
     A CSV file has a line of heads with units, such as "speed [rpm], frequency 1 [Hz], frequency 2 [Hz],
     uncertainty [Hz]", then a line a speed; a cell may be empty where a frequency was not found.  Heads may
@@ -60,13 +60,9 @@ def read_measurements(
 
     Examples
     --------
-    >>> from tempfile import TemporaryDirectory
-    >>> from pathlib import Path
-    >>> with TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "measured.csv"
-    ...     _ = file.write_text("speed [rpm], frequency 1 [Hz]\n0, 65.2\n500, 61.7\n")
-    ...     bd.read_measurements(file).frequency[:, 0]
-    array([65.2, 61.7])
+    >>> data = bd.read_measurements("examples/lee_yoo_table_2.csv")
+    >>> data.frequency[:, 0]
+    array([65.23 , 61.963, 50.907])
     """
     text = read_data(path)
     given = None if speeds is None else real_array("speeds", speeds)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, set_fields
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, kind, real_array, set_fields, several
 from beamdyn.common.results.read_only import ReadOnlyArrays
 
 Numbers = float | Sequence[float] | Sequence[Sequence[float]] | np.ndarray
@@ -70,8 +70,12 @@ class MeasuredFrequencies(ReadOnlyArrays):
         spread = {name: _spread(name, getattr(self, name), frequency) for name in ("uncertainty", "rounding")}
         _refuse_below("frequency", frequency, frequency <= 0, "above 0")
         _refuse_below("uncertainty", spread["uncertainty"], spread["uncertainty"] <= 0, "above 0")
-        _refuse_below("rounding", spread["rounding"], spread["rounding"] < 0, "0 or more")
-        names = tuple(self.labels) or tuple(f"frequency {k}" for k in range(1, frequency.shape[1] + 1))
+        _refuse_below("rounding", spread["rounding"], ~(spread["rounding"] >= 0), "0 or more")
+        for name in ("source", "speed_unit"):
+            kind(name, getattr(self, name), str)
+        names = several("labels", self.labels, str, "give names in a list") or tuple(
+            f"frequency {k}" for k in range(1, frequency.shape[1] + 1)
+        )
         if len(names) != frequency.shape[1]:
             bound = f"there are {len(names)} for {frequency.shape[1]} columns of frequencies"
             raise InvalidValue("labels", names, bound, "give one a column")

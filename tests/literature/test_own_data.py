@@ -27,11 +27,11 @@ def test_tables_of_the_inward_beam_have_the_verdicts_of_reproduce():
 
 
 def test_the_measured_blade_is_paired_with_its_flap_and_torsional_modes():
-    data = bd.read_measurements(EXAMPLES / "epps_chandra.csv")
+    data = bd.read_measurements(EXAMPLES / "epps.csv")
     paper = published.load("epps_chandra_1996")
     for row, found in zip(paper["measured"], data.frequency, strict=True):
         np.testing.assert_array_equal(found[:3], [float(text) for text in row["frequency"]])
-    scene = bd.load_scene(EXAMPLES / "epps_chandra.toml")
+    scene = bd.load_scene(EXAMPLES / "epps.toml")
     found = beside(scene, data)
     flaps = [1, 2, 3, 1, 2, 3, 1, 2, 3, 4, 0, 5]
     assert found.mode.tolist() == flaps

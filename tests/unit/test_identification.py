@@ -39,7 +39,9 @@ def test_intervals_cover_the_numbers_behind_noisy_data():
 def test_intervals_shrink_with_the_uncertainty():
     true = {"beam.thickness": 0.00019}
     wide, narrow = (
-        bd.identify(OUTWARD, replace(measured(true), uncertainty=np.full((5, 3), u)), {"beam.thickness": None})
+        bd.identify(
+            OUTWARD, replace(measured(true), uncertainty=np.full((5, 3), u)), {"beam.thickness": None}
+        )
         for u in (1.0, 0.1)
     )
     np.testing.assert_allclose(  # linear about the same point

@@ -27,7 +27,9 @@ def read(tmp_path):
 
 
 def test_frequencies_over_speed_with_units_and_empty_cells(read):
-    data = read("speed [rpm]; flap 1 [Hz]; torsion 1 [kHz]; uncertainty [Hz]\n0; 62.1; ; 0.5\n600; 58; 0.66; 0.5\n")
+    data = read(
+        "speed [rpm]; flap 1 [Hz]; torsion 1 [kHz]; uncertainty [Hz]\n0; 62.1; ; 0.5\n600; 58; 0.66; 0.5\n"
+    )
     np.testing.assert_allclose(data.speeds, [0, 20 * np.pi], rtol=1e-15)  # one product
     np.testing.assert_array_equal(data.frequency, [[62.1, np.nan], [58.0, 660.0]])
     assert data.labels == ("flap 1", "torsion 1")
