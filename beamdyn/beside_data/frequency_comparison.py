@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from beamdyn.common.plots.plots import mark_points, plot_locus
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds, joined
 from beamdyn.common.words import Setting, Words
 from beamdyn.modes.kinds import TORSION
@@ -113,6 +113,11 @@ class FrequencyComparison(Result):
     def agrees(self) -> bool:
         """Whether all values agree within their own uncertainty, half of their last digit and our error."""
         return set(self.verdict) == {AGREES}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
+        more = {"deviation": self.deviation, "verdict": self.verdict, "sentences": self.sentences()}
+        return super().to_dict() | {name: plain(value) for name, value in more.items()}
 
     def sentences(self) -> tuple[str, ...]:
         """What the comparison says in words: the worst deviations, and what would explain them."""

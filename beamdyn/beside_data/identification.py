@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from beamdyn.beside_data.separability import NotSeparable
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import joined
 from beamdyn.common.words import Words
 from beamdyn.scene.numbers import with_numbers
@@ -108,6 +108,10 @@ class Identification(Result):
             )
             raise NoModelAnswer(f"the data do not tell {lost}: keep one of them fixed, or measure more")
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with sentences."""
+        return super().to_dict() | {"sentences": plain(self.sentences())}
 
     def sentences(self) -> tuple[str, ...]:
         """What was found in words: numbers that are not told, the residual, and values that lie far off."""
