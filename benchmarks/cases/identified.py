@@ -17,7 +17,7 @@ MASS = 7850.0 * 0.05 * 0.01 * 0.0002  # of the strip [kg]
 
 
 def unknowns(seed: int) -> dict[str, float]:
-    """A spring of 0.3 to 30 EI/L, a thickness within 30 %, and a body at the tip up to the mass of the beam."""
+    """A spring of 0.3 to 30 EI/L, a thickness within 30 %, and a body at the tip up to the beam's mass."""
     random = np.random.default_rng(seed)
     return {
         "mount.root_stiffness": STIFFNESS * float(np.exp(random.uniform(np.log(0.3), np.log(30.0)))),

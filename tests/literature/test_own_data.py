@@ -1,4 +1,4 @@
-"""Published frequencies as CSV files beside their scenes: the verdicts of `reproduce`, and the right pairs."""
+"""Published frequencies in CSV files beside their scenes: verdicts as of `reproduce`, and the right pairs."""
 
 from __future__ import annotations
 

@@ -86,5 +86,5 @@ def test_modes_without_a_value_and_values_without_a_mode_are_named():
 
 
 def test_another_kind_of_data_is_refused():
-    with pytest.raises(ValueError, match="read a file by bd.read_measurements"):
+    with pytest.raises(ValueError, match=r"read a file by bd.read_measurements"):
         bd.compare(SCENE, [62.1])  # type: ignore[arg-type]
