@@ -18,6 +18,7 @@ SHOWN_BY.update(
     for module, rooms in {
         "common.edge.spread_tables": ("common",),
         "files.decks.deck_tables": ("files",),
+        "analyses.results.of_data": ("beside_data",),
         "analyses.results.of_linear_models": ("linear",),
         "analyses.results.of_loads": ("loads",),
         "analyses.results.of_modes": ("equations", "modes", "scene"),
@@ -31,6 +32,12 @@ SHOWN_BY.update(
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
+    from beamdyn.beside_data.compare import compare
+    from beamdyn.beside_data.explanations import Explanation
+    from beamdyn.beside_data.frequency_comparison import FrequencyComparison
+    from beamdyn.beside_data.identification import Identification
+    from beamdyn.beside_data.identify import identify
+    from beamdyn.beside_data.separability import NotSeparable
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.inputs.designs import VariedInput
     from beamdyn.common.parallel.tasks import StudyInterrupted
@@ -50,6 +57,7 @@ if TYPE_CHECKING:
     from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, PropertyStep, ShapeCheck
     from beamdyn.files.decks.blade import IgnoredProperty
     from beamdyn.files.decks.deck import Deck, read_deck
+    from beamdyn.files.measurements import read_measurements
     from beamdyn.files.scenes import load_scene
     from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
     from beamdyn.linear.inputs_outputs import (
@@ -72,6 +80,7 @@ if TYPE_CHECKING:
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads
+    from beamdyn.measured.frequencies import MeasuredFrequencies
     from beamdyn.modes.backbone import Backbone, backbone
     from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.modes.critical import CriticalPoint, critical_point, critical_speed

@@ -37,13 +37,14 @@ Physics = Annotated[
 
 
 class Mark(Enum):
-    """What an option is for: it names a file to write, or chooses what a picture shows."""
+    """What an option is for: it names a file to write, a second file to read, or what a picture shows."""
 
     WRITTEN = auto()
     DRAWN = auto()
+    READ_SECOND = auto()
 
 
-WRITTEN, DRAWN = Mark
+WRITTEN, DRAWN, READ_SECOND = Mark
 
 
 def _option(name: str) -> str:
@@ -118,7 +119,7 @@ class Analysis:
     function : callable
         ``function(scene, **options)``: its result, or an `Answer`. Its name is that of the command, its
         docstring what it asks; the annotations of its keyword arguments describe the options. It is given
-        `outputs` only if it names them.
+        `outputs`, and the `file` of the scene, only if it names them.
     examples : tuple of str
         Commands that can be typed as they stand.
     about_scene : str
@@ -150,6 +151,7 @@ class Analysis:
         names = vars(inspect.getmodule(self.function))
         found = {p.name: p.replace(annotation=eval(p.annotation, names)) for p in own}
         outputs = found.pop("outputs", _keyword("outputs", Outputs, NO_FILES))
+        found.pop("file", None)
         if self.physics is not None:
             found["physics"] = _keyword("physics", self.physics, None)
         return found | {"outputs": outputs}
@@ -188,12 +190,13 @@ class Analysis:
     def command(self) -> Callable[..., None]:
         """The function of the command, with the signature that makes its help."""
 
-        def run(scene: Path, /, **options: Any) -> None:
-            self.run(scene, options)
+        def run(scene: Path, /, *second: Path | None, **options: Any) -> None:
+            named = (name for name, each in self.options.items() if READ_SECOND in _extras(each.annotation))
+            self.run(scene, options | dict(zip(named, second, strict=False)))
 
         file = Annotated[Path, Parameter(name="SCENE.toml", help=self.about_scene)]
         first = inspect.Parameter("scene", inspect.Parameter.POSITIONAL_ONLY, annotation=file)
-        shown = self.shown.values()
+        shown = sorted(map(_placed, self.shown.values()), key=lambda option: option.kind)
         run.__name__, run.__doc__ = self.function.__name__, self.function.__doc__
         run.__signature__ = inspect.Signature([first, *shown])  # pyright: ignore[reportFunctionMemberAccess]
         run.__annotations__ = {each.name: each.annotation for each in (first, *shown)}
@@ -216,7 +219,7 @@ class Analysis:
         if given.get("physics") is not None:
             scene = replace(scene, physics=given["physics"])
         question = Question.on_file(f"beamdyn {self.name}", file, **asked)
-        deliver(self.answer(scene, given, outputs), outputs, question)
+        deliver(self.answer(scene, given, outputs, file=file), outputs, question)
 
     def answer(
         self,
@@ -224,6 +227,7 @@ class Analysis:
         given: Mapping[str, Any],
         outputs: Files = NO_FILES,
         named: Callable[[str], str] = _option,
+        file: Path | None = None,
     ) -> Answer:
         """The answer on a scene.
 
@@ -237,11 +241,15 @@ class Analysis:
             Files that are asked for.
         named : callable
             ``named(name)``: what the user calls an option.
+        file : Path, optional
+            The file of the scene, if it is in one.
         """
         values = {name: value for name, value in given.items() if name != "physics"}
         values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
-        if "outputs" in inspect.signature(self.function).parameters:
-            values["outputs"] = outputs
+        own = {"outputs": outputs, "file": file}
+        values |= {
+            name: own[name] for name in own.keys() & inspect.signature(self.function).parameters.keys()
+        }
         made = self.function(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 
@@ -302,6 +310,12 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
 
 def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _placed(option: inspect.Parameter) -> inspect.Parameter:
+    """The option as the command takes it: by its place if it is the second file."""
+    second = READ_SECOND in _extras(option.annotation)
+    return option.replace(kind=inspect.Parameter.POSITIONAL_ONLY) if second else option
 
 
 def _extras(annotation: Any) -> tuple[Any, ...]:

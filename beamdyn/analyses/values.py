@@ -144,6 +144,13 @@ def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
     return np.linspace(start, stop, int(parts[2]))
 
 
+def parse_amounts(option: str, text: str, unit: str, example: str) -> tuple[list[float], list[str]]:
+    """Numbers in a list with one unit at its end, such as "62.1, 389 Hz": their values, and as written."""
+    found = _UNIT.search(text.strip())
+    values = [value for (value,) in _tuples(option, text, 1, example, unit)]
+    return values, [part.strip() for part in text.strip()[: found.start() if found else None].split(",")]
+
+
 def parse_positions(option: str, text: str) -> list[float]:
     """Positions along the beam [m]: a list with a unit at its end, such as "0, 10, 25 mm"."""
     return [x for (x,) in _tuples(option, text, 1, "0, 10, 25 mm")]
@@ -154,14 +161,14 @@ def parse_points(option: str, text: str) -> list[list[float]]:
     return _tuples(option, text, 2, "-0.1:0, 0.1:0 mm")
 
 
-def _tuples(option: str, text: str, size: int, example: str) -> list[list[float]]:
-    """Lengths [m] in a list of members of so many numbers, with one unit for all at the end."""
+def _tuples(option: str, text: str, size: int, example: str, of: str = "m") -> list[list[float]]:
+    """Amounts [of] in a list of members of so many numbers, with one unit for all at the end."""
     unit = _UNIT.search(text.strip())
     members = text.strip()[: unit.start()].split(",") if unit else []
     parts = [[number.strip() for number in member.split(":")] for member in members]
     if unit is None or any(len(part) != size or not all(map(_NUMBER.fullmatch, part)) for part in parts):
         raise ValueError(f'{option} = "{text}": give numbers and one unit at their end, e.g. "{example}"')
-    return [[parse_quantity(option, f"{number} {unit.group()}", "m") for number in part] for part in parts]
+    return [[parse_quantity(option, f"{number} {unit.group()}", of) for number in part] for part in parts]
 
 
 def unit_of_speed(*texts: str | None) -> str:

@@ -135,7 +135,16 @@ SOURCE = re.compile(
 WITHOUT_PHYSICS = {  # functions that read, draw, or put the questions of others
     *(
         f"beamdyn.{name}"
-        for name in ("draw", "load", "load_scene", "read_deck", "study", "sweep", "tradeoff")
+        for name in (
+            "draw",
+            "load",
+            "load_scene",
+            "read_deck",
+            "read_measurements",
+            "study",
+            "sweep",
+            "tradeoff",
+        )
     ),
     "brakes.drum.duplex",
     "brakes.drum.simplex",

@@ -113,6 +113,14 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "EquilibriumBranches": lambda: bd.equilibrium_branches(BENT, 5.0),
     "Fade": lambda: drum.repeat_stops(drum.Duty(20.0, 50.0, 5.0, stops=2), 0.4, lambda mu: 1000.0 * mu),
     "ForkliftAnswer": lambda: _answer(FORKLIFT),
+    "FrequencyComparison": lambda: bd.compare(
+        HARVESTER, bd.MeasuredFrequencies([62.1, 389.0], uncertainty=0.5)
+    ),
+    "Identification": lambda: bd.identify(
+        HARVESTER,
+        bd.MeasuredFrequencies([62.1, 389.0], uncertainty=0.5),
+        {"beam.thickness": None},
+    ),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
     "FromPedal": _from_pedal,

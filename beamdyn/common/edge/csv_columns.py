@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import difflib
+import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -31,13 +32,16 @@ class CsvColumn:
     unit : str
         Its unit, as written.
     values : tuple of float
-        Numbers: in SI where `name` is not empty, else as written.
+        Numbers: in SI where `name` is not empty, else as written; nan where a cell may be empty, and is.
+    written : tuple of str
+        The cells as written.
     """
 
     head: str
     name: str
     unit: str
     values: tuple[float, ...]
+    written: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,13 @@ class CsvTable:
         return {column.name: column for column in self.columns if column.name}
 
 
-def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, str]) -> CsvTable:
+def read_csv(
+    text: DataText,
+    known: Mapping[str, Quantity],
+    names: Mapping[str, str],
+    may_lack: Collection[str] = (),
+    least_rows: int = 2,
+) -> CsvTable:
     """Read a CSV file.
 
     Lines that are empty or begin with # or ! are comments.  Columns are separated by commas, semicolons
@@ -80,6 +90,10 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
         Quantities that columns may have, by name.
     names : mapping
         Names of quantities by the plain names of heads: several heads may stand for one quantity.
+    may_lack : collection of str
+        Quantities whose cells may be empty.
+    least_rows : int
+        Fewest rows of numbers.
 
     Raises
     ------
@@ -98,11 +112,13 @@ def read_csv(text: DataText, known: Mapping[str, Quantity], names: Mapping[str, 
         if name in plain[:k]:
             same, first = quote(heads[k].head), quote(heads[plain.index(name)].head)
             raise text.refusal(head_line, f"{same} is the same column as {first}; give one")
-    if len(rest) < 2:
-        raise text.lacking("expected two rows of numbers at least below the heads")
-    rows = [_read_row(text, line, _cells(text, line, delimiter), heads) for line in rest]
-    columns = zip(heads, zip(*rows, strict=True), strict=True)
-    made = tuple(CsvColumn(head.head, head.name, head.unit, tuple(values)) for head, values in columns)
+    if len(rest) < least_rows:
+        count = {1: "a row", 2: "two rows"}.get(least_rows, f"{least_rows} rows")
+        raise text.lacking(f"expected {count} of numbers at least below the heads")
+    cells = [_row_of_cells(text, line, _cells(text, line, delimiter), heads) for line in rest]
+    rows = [_read_row(text, line, each, heads, may_lack) for line, each in zip(rest, cells, strict=True)]
+    columns = zip(heads, zip(*rows, strict=True), zip(*cells, strict=True), strict=True)
+    made = tuple(CsvColumn(head.head, head.name, head.unit, values, each) for head, values, each in columns)
     return CsvTable(text, head_line, tuple(rest), made)
 
 
@@ -153,14 +169,24 @@ def _read_head(
     return _ColumnHead(head, name, "" if unit in ("-", "1") else unit, quantity)
 
 
-def _read_row(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[float]:
-    """Numbers of a line: in SI where the column is known."""
+def _row_of_cells(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[str]:
+    """The cells of a line, one a head."""
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
         raise text.refusal(line, f"expected {len(heads)} cells under the heads, found {len(cells)}")
+    return cells
+
+
+def _read_row(
+    text: DataText, line: int, cells: list[str], heads: list[_ColumnHead], may_lack: Collection[str]
+) -> list[float]:
+    """Numbers of a line: in SI where the column is known."""
     row = []
     for cell, (head, name, unit, quantity) in zip(cells, heads, strict=True):
+        if not cell and name in may_lack:
+            row.append(math.nan)
+            continue
         number = number_at(text, line, cell, f"{head} [{unit}]" if unit else head)
         try:
             given = f"{as_decimal(cell)} {unit}" if quantity.unit else number

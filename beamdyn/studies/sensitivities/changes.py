@@ -136,9 +136,11 @@ class PencilChange:
         """The weighted sum of some equations."""
         return cls(*(_sum(weights, [getattr(p, f.name) for p in pencils]) for f in fields(cls)))
 
-    def at(self, s: complex, speed: float) -> np.ndarray:
-        """The derivative of P(s) at a speed [rad/s]."""
-        return s**2 * self.M + s * (self.C + speed * self.G) + self.stiffness(speed)
+    def between(self, left: np.ndarray, right: np.ndarray, s: complex, speed: float) -> complex:
+        """The derivative of P(s) at a speed [rad/s] between two vectors: no matrix is made of it."""
+        of_rate = left @ (self.C @ right) + speed * (left @ (self.G @ right))
+        of_stiffness = left @ (self.K0 @ right) + speed**2 * (left @ (self.K2 @ right))
+        return complex(s**2 * (left @ (self.M @ right)) + s * of_rate + of_stiffness)
 
     def stiffness(self, speed: float) -> np.ndarray:
         """The derivative of the stiffness at a speed [rad/s]."""
@@ -183,7 +185,9 @@ class PerturbedModes:
         """Derivatives of the eigenvalues where the matrices change, shape (k,)."""
         return np.array(
             [
-                self._quotient(k, change.at(s, self.speed)) if s else _NONE
+                -change.between(self.left[:, k], self.right[:, k], s, self.speed) / self._slope(k)
+                if s
+                else _NONE
                 for k, s in enumerate(self.eigenvalue)
             ]
         )
@@ -215,9 +219,9 @@ class PerturbedModes:
 
     def _slope(self, k: int) -> complex:
         """The derivative of P(s) by s between both eigenvectors."""
-        p = self.pencil
-        dP = 2 * self.eigenvalue[k] * p.M + p.C + self.speed * p.G
-        return complex(self.left[:, k] @ dP @ self.right[:, k])
+        p, left, right = self.pencil, self.left[:, k], self.right[:, k]
+        of_rate = left @ (p.C @ right) + self.speed * (left @ (p.G @ right))
+        return complex(2 * self.eigenvalue[k] * (left @ (p.M @ right)) + of_rate)
 
 
 _NONE = complex(np.nan, np.nan)  # a double eigenvalue 0 moves by the root of a change

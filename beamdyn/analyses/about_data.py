@@ -1,0 +1,192 @@
+"""Own data beside a scene: comparison, and numbers of the scene found from data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from cyclopts import Parameter
+
+import beamdyn as bd
+from beamdyn.analyses.analysis import READ_SECOND, WRITTEN, Answer, AsText, analysis
+from beamdyn.analyses.options import Text, none_given
+from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, parse_speeds
+from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.varied_inputs import find_input, numbers
+from beamdyn.common.results.files import write_text
+from beamdyn.files.measurements import half_unit
+from beamdyn.files.scene_inputs import SceneInput
+from beamdyn.files.scene_text import with_numbers_in_text
+
+if TYPE_CHECKING:
+    from beamdyn.beside_data.frequency_comparison import FrequencyComparison
+    from beamdyn.beside_data.identification import Identification
+    from beamdyn.scene.scene import Scene
+
+Data = Annotated[
+    Path | None,
+    READ_SECOND,
+    Parameter(
+        name="DATA.csv",
+        help='Measured frequencies: a line of heads, such as "speed [rpm], frequency 1 [Hz], frequency 2 '
+        '[Hz], uncertainty [Hz]", then a line a speed; or a list of modes of ANSYS (SET,LIST).',
+    ),
+]
+Measured = Annotated[
+    str | None,
+    Parameter(help='Measured frequencies at one speed in place of a file, e.g. "62.1, 389, 1090 Hz".'),
+]
+AtSpeeds = Annotated[
+    Any,
+    AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
+    Parameter(help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest.'),
+]
+Uncertainty = Annotated[
+    str | None,
+    Parameter(help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".'),
+]
+
+
+@analysis(
+    'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
+    "beamdyn compare examples/epps.toml examples/epps.csv",
+    screen="Compare",
+)
+def compare(
+    scene: Scene,
+    *,
+    data: Data = None,
+    measured: Measured = None,
+    speeds: AtSpeeds,
+    uncertainty: Uncertainty = None,
+) -> FrequencyComparison:
+    """Measured natural frequencies beside those of the scene: what agrees, and what explains the rest."""
+    given = _data(data, measured, speeds, uncertainty)
+    return bd.compare(in_unit_of(scene, f"0 {given.speed_unit}"), given)
+
+
+@analysis(
+    'beamdyn identify examples/tyre_harvester.toml --free length --measured "62 Hz"',
+    "beamdyn identify examples/epps.toml examples/epps.csv --free length",
+    screen="Identify",
+)
+def identify(
+    scene: Scene,
+    *,
+    data: Data = None,
+    free: Text,
+    measured: Measured = None,
+    speeds: AtSpeeds,
+    uncertainty: Uncertainty = None,
+    starts: int = 4,
+    seed: int = 0,
+    write: Annotated[Path | None, WRITTEN] = None,
+    file: Path | None = None,
+) -> Answer:
+    """Numbers of the scene found from measured natural frequencies, with their intervals.
+
+    Parameters
+    ----------
+    free
+        The unknown numbers by their names in the file, a comma between them, each with bounds or
+        without: "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
+    starts
+        Most starts of the search, from places that are nearest to the data.
+    seed
+        Of the random places.
+    write
+        Write the scene with the numbers found into this file, with where they come from.
+    """
+    given = _data(data, measured, speeds, uncertainty)
+    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
+    if write is not None and file is not None:
+        _write(found, file, write, given.source)
+    return Answer(found, _untold(found))
+
+
+def _untold(found: Identification) -> str:
+    """Why the data do not tell numbers; empty if they tell all."""
+    lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
+    return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
+
+
+def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
+    values = dict(zip(found.names, found.value.tolist(), strict=True))
+    ranges = ", ".join(found.says(k) for k in range(len(values)))
+    head = [
+        f"Found by beamdyn {found.provenance.version} identify from {source or 'frequencies given'}, "
+        f"beginning with {scene.name}.",
+        f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
+    ]
+    assert found.scene_found is not None  # refused where a number is not told
+    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
+
+
+# Values of options --------------------------------------------------------------------------------
+
+
+def _data(
+    file: Path | None, measured: str | None, speeds: np.ndarray | None, uncertainty: str | None
+) -> bd.MeasuredFrequencies:
+    """The data of a file, or of the option."""
+    if (file is None) == (measured is None):
+        raise ValueError('give either a file, such as measured.csv, or --measured "62.1, 389, 1090 Hz"')
+    data = bd.read_measurements(file, speeds) if file is not None else _in_words(measured or "", speeds)
+    return data if uncertainty is None else _with_uncertainty(data, uncertainty)
+
+
+def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
+    """Frequencies of ``--measured`` at one speed."""
+    values, written = parse_amounts("--measured", text, "Hz", "62.1, 389, 1090 Hz")
+    if speeds is not None and len(speeds) != 1:
+        raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")
+    halves = [half_unit(cell) * value / float(cell) for cell, value in zip(written, values, strict=True)]
+    at = (0.0,) if speeds is None else speeds
+    return bd.MeasuredFrequencies(values, at, rounding=[halves])
+
+
+def _with_uncertainty(data: bd.MeasuredFrequencies, text: str) -> bd.MeasuredFrequencies:
+    """The data with an uncertainty of ``--uncertainty`` where they have none."""
+    if text.strip().endswith("%"):
+        try:
+            spread = data.frequency * float(text.strip()[:-1]) / 100
+        except ValueError:
+            raise ValueError(f'--uncertainty = "{text}": give e.g. "0.5 Hz" or "1 %"') from None
+    else:
+        spread = np.full(data.frequency.shape, parse_quantity("--uncertainty", text, "Hz"))
+    return replace(data, uncertainty=np.where(np.isfinite(data.uncertainty), data.uncertainty, spread))
+
+
+def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
+    """Unknown numbers of ``--free``, each with its bounds [SI] or None.
+
+    Raises
+    ------
+    ValueError
+        If a name is not known, or bounds are not two values with a unit.
+    """
+    found: dict[str, tuple[float, float] | None] = {}
+    known = [*{entry.path: entry for entry in numbers(describe(SceneInput))}.values()]
+    for part in filter(None, (each.strip() for each in text.split(","))):
+        words = f'--free = "{part}"'
+        key, _, bounds = (each.strip() for each in part.partition("="))
+        entry = find_input(known, key, words)
+        found[entry.path] = _bounds(bounds, entry.quantity.unit, words) if bounds else None
+    if not found:
+        raise ValueError('--free: give the unknown numbers, e.g. "beam.thickness, mount.root_stiffness"')
+    return found
+
+
+def _bounds(text: str, unit: str, words: str) -> tuple[float, float]:
+    ends, _, given = text.partition(" ")
+    low, _, high = ends.partition(":")
+    try:
+        if not unit:
+            return float(low), float(high)
+        least, most = (parse_quantity("--free", f"{end} {given}".strip(), unit) for end in (low, high))
+    except ValueError:
+        example = f"{words.partition('=')[2].strip().strip(chr(34)).partition('=')[0]}=1:2 {unit}".rstrip()
+        raise ValueError(f'{words}: give two bounds and a unit, e.g. "{example}"') from None
+    return least, most

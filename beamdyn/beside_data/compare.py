@@ -1,0 +1,180 @@
+"""Comparison of measured natural frequencies with a scene's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.beside_data.explanations import explain
+from beamdyn.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
+from beamdyn.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
+from beamdyn.common.inputs.checks import InvalidValue, kind
+from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.one_line import number
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import Speeds
+from beamdyn.common.words import Words
+from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.scene.scene import Scene, check_scene
+
+_MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
+
+
+def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
+    """Compare measured natural frequencies with those of a scene, and find what would explain deviations.
+
+    Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
+    where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
+    what the model leaves out together, each number of the scene alone is fitted to all the data within
+    physical bounds.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.
+    data : MeasuredFrequencies
+        The measured frequencies.
+
+    Returns
+    -------
+    FrequencyComparison
+
+    Raises
+    ------
+    ValueError
+        If the data are of another kind, or shapes are at positions beyond the beam.
+
+    References
+    ----------
+    Allemang (2003), The modal assurance criterion; pairs by linear assignment (standard).
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    >>> found = bd.compare(bd.Scene(strip), bd.MeasuredFrequencies([58.90, 369.2], uncertainty=0.05))
+    >>> found.explanations[0].explains
+    True
+    """
+    found = beside(scene, data)
+    if OUTSIDE not in found.verdict:
+        return found
+    bound = found.allowance + found.error + np.nan_to_num(found.model_error)
+    return replace(found, explanations=explain(scene, data, bound))
+
+
+def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
+    """The comparison without explanations; arguments as of `compare`."""
+    start = perf_counter()
+    check_scene(scene)
+    kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
+    _check_positions(scene, data)
+    rows = [_Row.of(scene, data, k) for k in range(len(data.speeds))]
+    at, column = np.nonzero(np.isfinite(data.frequency))
+    joined = (np.concatenate([getattr(row, name) for row in rows]) for name in _PARTS)
+    warnings = dict.fromkeys(str(said) for row in rows for said in row.modes.warnings)
+    provenance = rows[0].modes.provenance
+    return FrequencyComparison(
+        tuple(data.labels[k] for k in column.tolist()),
+        data.speeds[at],
+        data.frequency[at, column],
+        *joined,
+        unmeasured=tuple(said for row in rows for said in row.unmeasured()),
+        explanations=(),
+        warnings=tuple(warnings),
+        provenance=Provenance(
+            __version__, provenance.method, provenance.compared_with, perf_counter() - start
+        ),
+        scene=scene,
+        source=data.source,
+    )
+
+
+def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
+    """Refuse shapes at points that the beam does not have."""
+    if data.positions is None:
+        return
+    length, beyond = (
+        scene.beam.length,
+        (data.positions < 0) | (data.positions > scene.beam.length * (1 + 1e-9)),
+    )
+    if beyond.any():
+        bound = f"positions of shapes run from 0 to the length of the beam, {length:g} m"
+        raise InvalidValue("positions", float(data.positions[beyond][0]), bound, "measure from the root", "m")
+
+
+_PARTS = "computed", "mode", "allowance", "error", "model_error", "likeness"
+
+
+@dataclass(frozen=True)
+class _Row:
+    """The measured values at one speed beside the modes there; arrays are of those that are given."""
+
+    data: MeasuredFrequencies
+    row: int
+    modes: Modes
+
+    @classmethod
+    def of(cls, scene: Scene, data: MeasuredFrequencies, row: int) -> _Row:
+        count = data.frequency.shape[1] + _MORE_MODES
+        with unannounced():
+            return cls(data, row, natural_modes(scene, float(data.speeds[row]), count))
+
+    @cached_property
+    def _known(self) -> np.ndarray:
+        return np.isfinite(self.data.frequency[self.row])
+
+    @cached_property
+    def _of_shapes(self) -> np.ndarray | None:
+        """Likeness (m, n) of shapes, or of what labels say of them."""
+        data, modes = self.data, self.modes
+        if data.shapes is None:
+            return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
+        return likeness_of(data.shapes, modes.shape(np.minimum(data.positions, modes.scene.beam.length)))
+
+    @cached_property
+    def _place(self) -> np.ndarray:
+        return pair(self.data.frequency[self.row], self.modes.frequency, self._of_shapes)[self._known]
+
+    def _of_modes(self, values: np.ndarray, none: float = np.nan) -> np.ndarray:
+        return np.where(self._place == NO_MODE, none, values[self._place])
+
+    @property
+    def mode(self) -> np.ndarray:
+        return self._place + 1
+
+    @property
+    def computed(self) -> np.ndarray:
+        return self._of_modes(self.modes.frequency)
+
+    @property
+    def allowance(self) -> np.ndarray:
+        return self.data.allowance[self.row][self._known]
+
+    @property
+    def error(self) -> np.ndarray:
+        return self._of_modes(self.modes.error * self.modes.frequency)
+
+    @property
+    def model_error(self) -> np.ndarray:
+        return self._of_modes(self.modes.left_out_effects.total_of_known * self.modes.frequency)
+
+    @property
+    def likeness(self) -> np.ndarray:
+        none = np.full(len(self._place), np.nan)
+        if self.data.shapes is None or self._of_shapes is None:
+            return none
+        found = self._of_shapes[self._known]
+        return np.where(self._place == NO_MODE, np.nan, found[np.arange(len(found)), self._place])
+
+    def unmeasured(self) -> Iterator[str]:
+        """Yield modes below the highest that is paired which have no measured value."""
+        highest = int(self._place.max(initial=NO_MODE))
+        for k in sorted(set(range(highest)) - set(self._place.tolist())):
+            frequency = number(self.modes.frequency[k], "Hz")
+            yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))

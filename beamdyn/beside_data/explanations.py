@@ -1,0 +1,160 @@
+"""Which number of a scene, changed alone, would explain what was measured."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beamdyn.beside_data.fit import Fitting, fit_from
+from beamdyn.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.one_line import number
+from beamdyn.common.words import Named, amount
+from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.scene.numbers import SCALE
+from beamdyn.scene.scene import Scene
+
+_WITHIN = {  # numbers that may be wrong, and by which factors they are at most
+    "beam.length": (0.8, 1.25),
+    "beam.thickness": (0.5, 2.0),
+    "beam.width": (0.5, 2.0),
+    "beam.youngs_modulus": (0.4, 2.5),
+    "beam.density": (0.4, 2.5),
+    "beam.bending_stiffness": (0.2, 5.0),
+    "beam.mass_per_length": (0.2, 5.0),
+    "mount.radius": (0.5, 2.0),
+}
+_HEAVIEST = 2.0  # largest body at the tip over the mass of the beam
+_SOLVES = 25  # of one number
+_TOLERANCE = 1e-7  # relative change at which its fit ends
+_MATTERS = 1e-3  # least relative change of a frequency by a whole change of a number
+_DIGITS = 3  # of values in sentences
+_USUAL = {"Pa": ("GPa", 1e-9), "kg": ("g", 1e3)}
+_NOTHING = 1e-5  # relative deviation up to which none is left
+_TIE = 3  # decimals of remaining deviations that are told apart
+_SLACK = 1e-6  # by which a deviation may pass its bound
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A number of a scene that, changed alone, comes nearest to the data.
+
+    Parameters
+    ----------
+    name : str
+        Its name in scene files, such as "beam.thickness".
+    unit : str
+        Its SI unit.
+    given : float
+        Its value in the scene [unit]; inf of a clamped root.
+    value : float
+        The value that comes nearest to the data [unit].
+    remaining : float
+        Largest deviation that it leaves, over the computed frequency.
+    explains : bool
+        Whether all deviations are then within the uncertainty of the data and what the model leaves out.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.compare(bd.Scene(strip), bd.MeasuredFrequencies([60.0], rounding=0.05))
+    >>> [each.name for each in found.explanations if each.explains][:2]
+    ['mount.root_stiffness', 'beam.length']
+    """
+
+    name: str
+    unit: str
+    given: float
+    value: float
+    remaining: float
+    explains: bool
+
+    @property
+    def left(self) -> str:
+        """The largest deviation that it leaves, in words."""
+        return percent(self.remaining) if self.remaining > _NOTHING else "nothing"
+
+
+def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[Explanation, ...]:
+    """Fit each number alone to all data; those that explain them first, and of them those that leave least.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    data : MeasuredFrequencies
+        The measured frequencies.
+    bound : ndarray, shape (N,)
+        By how much each value may deviate [Hz]; nan where the scene has no such mode.
+    """
+    allowed = np.full(data.frequency.shape, np.nan)
+    allowed[np.isfinite(data.frequency)] = bound
+    frequency = np.where(np.isfinite(allowed), data.frequency, np.nan)
+    if not np.isfinite(frequency).any():
+        return ()
+    paired = replace(data, frequency=frequency)
+    tried = (_explanation(scene, paired, free, allowed) for free in _numbers(scene))
+    found = [each for each in tried if each is not None]
+    return tuple(sorted(found, key=lambda each: (not each.explains, round(each.remaining, _TIE))))
+
+
+def _numbers(scene: Scene) -> list[FreeNumber]:
+    """The numbers of a scene that may be wrong, a spring at the root first, with physical bounds."""
+    found = []
+    for path in (
+        *SPRINGS,
+        *_WITHIN,
+        "beam.tip.mass",
+        *(SCALE + n for n in ("bending_stiffness", "mass_per_length")),
+    ):
+        try:
+            (free,) = free_numbers(scene, {path: None})
+        except InvalidValue:  # none of this scene
+            continue
+        low, high = _physical(scene, free)
+        if low < high:  # a radius of 0 is the axis itself
+            found.append(replace(free, bounds=(low, high)))
+    return found
+
+
+def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
+    if free.path in SPRINGS:
+        return free.bounds
+    if free.path == "beam.tip.mass":
+        return 0.0, max(_HEAVIEST * free.scale, 2 * free.given)
+    low, high = _WITHIN.get(free.path, _WITHIN.get(f"beam.{free.path.removeprefix(SCALE)}", (0.5, 2.0)))
+    return low * free.given, high * free.given
+
+
+def _explanation(
+    scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
+) -> Explanation | None:
+    """What a number alone explains; None where it hardly changes a frequency, or leaves its bounds."""
+    weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
+    fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
+    start = fitting.at(np.array([free.first]))
+    pairs = start.pairs()
+    slope = np.abs(start.derivative(pairs)[:, 0] * fitting.weight[pairs >= 0] / data.frequency[pairs >= 0])
+    if slope.max(initial=0.0) < _MATTERS:
+        return None
+    found = fit_from(fitting, start.x.tolist(), _SOLVES)
+    x, residual = float(found.modes.x[0]), found.modes.residual(found.pairs)
+    off = np.abs(residual * fitting.weight[found.pairs >= 0] / data.frequency[found.pairs >= 0])
+    explains = bool((np.abs(residual) <= 1 + _SLACK).all()) and found.rank[0] == int(
+        np.isnan(data.frequency).sum()
+    )
+    return Explanation(free.path, free.unit, free.given, free.value(x), float(off.max()), explains)
+
+
+def say_value(value: float, unit: str) -> str:
+    """A value with three digits and its unit, as each medium has it: Python in SI, files in mm, GPa and g."""
+    if math.isinf(value):
+        return "clamped"
+    rounded = float(f"{value:.{_DIGITS}g}")
+    if unit in ("m", "rad"):
+        return amount(rounded, unit=unit)
+    usual, size = _USUAL.get(unit, (unit, 1.0))
+    return Named(number(rounded, unit), number(float(f"{rounded * size:.{_DIGITS}g}"), usual))

@@ -1,0 +1,307 @@
+"""Bounded least squares on natural frequencies: residuals, their derivatives, and the fit.
+
+A residual is a computed frequency less the measured one over its weight [Hz].  Its derivatives are those of
+the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7), where dP is the
+difference of the matrices of two scenes close by: eigenvalues are not differenced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats.qmc import LatinHypercube
+
+from beamdyn.beside_data.free_numbers import FreeNumber, opened
+from beamdyn.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results.announced import unannounced
+from beamdyn.common.words import Named, Words
+from beamdyn.equations.discretization import Discretization
+from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.modes.kinds import kinds_of_modes
+from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modes import natural_modes
+from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
+
+_STEP = 1e-4  # of a variable of size 1, to either side
+_HZ = 1 / (2 * np.pi)
+_MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
+_TRIED = 4  # places tried for each start
+_PAIRINGS = 3  # times that pairs are chosen anew in a fit
+
+
+@dataclass(frozen=True)
+class Fitting:
+    """What is to be fitted: frequencies of a scene at some speeds, by some of its numbers.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    data : MeasuredFrequencies
+        The measured frequencies.
+    numbers : tuple of FreeNumber
+        The p numbers.
+    weight : ndarray, shape (S, m)
+        Weights [Hz] by which residuals are divided.
+    tolerance : float
+        Relative change of variables and of the sum of squares at which a fit ends.
+    """
+
+    scene: Scene
+    data: MeasuredFrequencies
+    numbers: tuple[FreeNumber, ...]
+    weight: np.ndarray
+    tolerance: float = 1e-12
+    solved: list[int] = field(default_factory=lambda: [0])  # number of solves so far
+
+    @cached_property
+    def start(self) -> Scene:
+        """The scene with a finite spring or a body wherever one is free."""
+        return opened(self.scene, [number.path for number in self.numbers])
+
+    @cached_property
+    def modes(self) -> int:
+        """Number of computed modes."""
+        return self.data.frequency.shape[1] + _MORE_MODES
+
+    @cached_property
+    def discretization(self) -> Discretization:
+        """Functions that suffice at the highest speed; the scenes of a fit have them all."""
+        with unannounced():
+            found = natural_modes(self.start, float(np.abs(self.data.speeds).max()), self.modes)
+        if found.scene.physics.large_deflection:
+            remedy = Words("leave it out, or try values by ", Named("bd.study", "beamdyn study"))
+            bound = "a fit uses the derivatives of the linear equations"
+            raise InvalidValue("physics.large_deflection", True, bound, remedy)
+        return found.model.discretization
+
+    def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
+        """The scene with variables (p,)."""
+        pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
+        values = {number.path: number.number(each) for number, each in pairs}
+        return with_numbers(self.start, values) if values else self.start
+
+    def at(self, x: np.ndarray) -> FittedModes:
+        """The modes of the scene with variables (p,)."""
+        self.solved[0] += 1
+        return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
+
+    @property
+    def flat(self) -> float:
+        """Slope of the sum of squares that counts as none: as of relative deviations, in the weights'."""
+        return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
+
+    @property
+    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest variables, (p,) each."""
+        low, high = zip(*(number.limits for number in self.numbers), strict=True)
+        return np.array(low), np.array(high)
+
+
+@dataclass(frozen=True)
+class FittedModes:
+    """Modes of one scene of a fit at all speeds.
+
+    Parameters
+    ----------
+    fitting : Fitting
+        The fit.
+    x : ndarray, shape (p,)
+        Variables.
+    model : Model
+        The discretized scene.
+    """
+
+    fitting: Fitting
+    x: np.ndarray
+    model: Model
+
+    @cached_property
+    def _solved(self) -> tuple[np.ndarray, np.ndarray]:
+        found = self.model.solver.solve(self.fitting.data.speeds, self.fitting.modes)
+        return found.eigenvalue, found.vector
+
+    @property
+    def frequency(self) -> np.ndarray:
+        """Frequencies [Hz] (S, n); 0 where a mode does not vibrate."""
+        return np.abs(np.imag(self._solved[0])) * _HZ
+
+    def pairs(self) -> np.ndarray:
+        """Index (S, m) of the mode of each measured frequency; `NO_MODE` where there is none."""
+        data = self.fitting.data
+        rows = range(len(data.speeds))
+        return np.array([pair(data.frequency[i], self.frequency[i], self._likeness(i)) for i in rows])
+
+    def _likeness(self, row: int) -> np.ndarray | None:
+        """Likeness (m, n) of measured and computed shapes at a speed; None where none were measured."""
+        data, equations, vectors = self.fitting.data, self.model.equations, self._solved[1][row]
+        if data.shapes is None:
+            kinds = kinds_of_modes(equations, vectors[None])
+            return likeness_of_kinds(data.labels, None if kinds is None else kinds[0], vectors.shape[1])
+        xi = np.asarray(data.positions) / self.model.scene.beam.length
+        return likeness_of(data.shapes, vectors.T @ equations.deflection(np.minimum(xi, 1.0)))
+
+    def residual(self, pairs: np.ndarray) -> np.ndarray:
+        """Residuals (N,) of the pairs."""
+        rows, columns = np.nonzero(pairs != NO_MODE)
+        off = self.frequency[rows, pairs[rows, columns]] - self.fitting.data.frequency[rows, columns]
+        return off / self.fitting.weight[rows, columns]
+
+    def derivative(self, pairs: np.ndarray) -> np.ndarray:
+        """Derivatives (N, p) of the residuals of the pairs by the variables."""
+        rows, columns = np.nonzero(pairs != NO_MODE)
+        of_modes = np.array([self._changes(change) for change in self._matrix_changes])
+        found = of_modes[:, rows, pairs[rows, columns]] / self.fitting.weight[rows, columns]
+        return found.T.reshape(len(rows), len(self.x))
+
+    def _changes(self, change: PencilChange) -> np.ndarray:
+        """Derivatives [Hz] (S, n) of the frequencies where the matrices change."""
+        each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
+        return np.nan_to_num(np.array(each))
+
+    @cached_property
+    def _perturbed(self) -> list[PerturbedModes]:
+        pencil, (s, v) = self.model.equations.steady(), self._solved
+        speeds = self.fitting.data.speeds.tolist()
+        return [PerturbedModes.of(pencil, *each) for each in zip(speeds, s, v, strict=True)]
+
+    @property
+    def _matrix_changes(self) -> list[PencilChange]:
+        """Derivatives of the matrices by each variable."""
+        changes = []
+        for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
+            step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)
+            low, high = max(self.x[k] - step, least), min(self.x[k] + step, most)
+            scenes = (
+                self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x)) for at in (low, high)
+            )
+            pencils = [Model(scene, self.model.discretization).equations.steady() for scene in scenes]
+            changes.append(PencilChange.of(pencils, np.array([-1.0, 1.0]) / (high - low)))
+        return changes
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fit.
+
+    Parameters
+    ----------
+    modes : FittedModes
+        The modes of the scene that was found.
+    pairs : ndarray, shape (S, m)
+        As `FittedModes.pairs` gives them.
+    cost : float
+        Sum of squared residuals of the pairs.
+    """
+
+    modes: FittedModes
+    pairs: np.ndarray
+    cost: float
+
+    @property
+    def rank(self) -> tuple[int, float]:
+        """By what fits are compared: fewer frequencies without a mode, then smaller residuals."""
+        return int((self.pairs == NO_MODE).sum()), self.cost
+
+
+@one_blas_thread()
+def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
+    """Fit from variables (p,), with at most so many solves; pairs follow the fit.
+
+    Parameters
+    ----------
+    fitting : Fitting
+        What is to be fitted.
+    x : sequence of float
+        Where to begin.
+    most : int
+        Most solves.
+    """
+    cache: dict[bytes, FittedModes] = {}
+
+    def at(x: np.ndarray) -> FittedModes:
+        key = np.asarray(x).tobytes()
+        if key not in cache:
+            cache.clear()
+            cache[key] = fitting.at(np.array(x))
+        return cache[key]
+
+    found, end = np.array(x, dtype=float), fitting.solved[0] + most
+    pairs = at(found).pairs()
+    for _ in range(_PAIRINGS):
+        if (pairs == NO_MODE).all() or fitting.solved[0] >= end:
+            break
+        solved = least_squares(
+            lambda x, pairs=pairs: at(x).residual(pairs),
+            found,
+            lambda x, pairs=pairs: at(x).derivative(pairs),
+            bounds=fitting.limits,
+            xtol=fitting.tolerance,
+            ftol=fitting.tolerance,
+            gtol=fitting.flat,
+            max_nfev=end - fitting.solved[0],
+        )
+        found, before = solved.x, pairs
+        pairs = at(found).pairs()
+        if np.array_equal(pairs, before):
+            break
+    return _unfitted(at(found))
+
+
+def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
+    """The best fit of several, which begin where the frequencies are nearest to the measured ones.
+
+    These places are the scene's own numbers and random ones, `_TRIED` for each start.
+
+    Parameters
+    ----------
+    fitting : Fitting
+        What is to be fitted.
+    starts : int
+        Most starts, from the nearest of the places tried.
+    seed : int
+        Of the random starts.
+    most : int
+        Most solves in all.
+    enough : float
+        Sum of squared residuals at which no further start is made.
+    """
+    best: Fitted | None = None
+    for first in _nearest(fitting, starts, seed):
+        left = most - fitting.solved[0]
+        if left < 2 and best is not None:
+            break
+        found = fit_from(fitting, first, max(left, 2))
+        best = found if best is None or found.rank < best.rank else best
+        if best.rank[0] == 0 and best.cost <= enough:
+            break
+    assert best is not None
+    return best
+
+
+def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
+    """Variables (p,) at which to begin, the nearest to the data first."""
+    numbers = fitting.numbers
+    shares = LatinHypercube(len(numbers), rng=seed).random(
+        _TRIED * starts if len(numbers) > 1 else starts - 1
+    )
+    tried = [np.array([n.first for n in numbers])]
+    tried += [
+        np.array([n.place(share) for n, share in zip(numbers, each, strict=True)]) for each in shares.tolist()
+    ]
+    ranks = [_unfitted(fitting.at(x)).rank for x in tried]
+    return [tried[k] for k in sorted(range(len(tried)), key=ranks.__getitem__)[:starts]]
+
+
+def _unfitted(modes: FittedModes) -> Fitted:
+    """The modes with their pairs as they are."""
+    pairs = modes.pairs()
+    return Fitted(modes, pairs, float((modes.residual(pairs) ** 2).sum()))

@@ -1,0 +1,168 @@
+"""Numbers of a scene as variables of size 1: what a fit changes, and between which bounds.
+
+A spring at the root is its compliance, the size of the beam's stiffness over the spring: frequencies are
+nearly linear in that, and a clamped root is 0.  All others are shares of their value, or of the beam's size.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from beamdyn.common.inputs.checks import InvalidValue, positive
+from beamdyn.scene.numbers import check_path, number_at, with_numbers
+from beamdyn.scene.profile import mean
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber, numbers_of
+
+Bounds = tuple[float, float]
+
+SPRINGS = ("mount.root_stiffness", "mount.second_root_stiffness")
+_STEP = 0.01  # of `SceneNumber.step` in the size of a number
+_RIGID = 1e-6  # least compliance
+_CLAMPED = 1e-5  # compliance up to which a root counts as clamped
+_FIRST = 0.1  # variable at which a fit begins where the scene's root is clamped, or it has no such body
+_SOFTEST = 1e3
+_TIMES = 10.0  # a number is sought from a tenth to ten times its value
+_TURN = math.pi / 2  # an angle, within a right angle
+
+
+@dataclass(frozen=True)
+class FreeNumber:
+    """A number that data shall tell.
+
+    Parameters
+    ----------
+    path : str
+        Its name in scene files.
+    unit : str
+        Its SI unit.
+    given : float
+        Its value in the scene [unit]; inf where the root is clamped.
+    scale : float
+        Size of the number [unit], by which it is divided.
+    bounds : tuple of float
+        Least and largest value [unit].
+    """
+
+    path: str
+    unit: str
+    given: float
+    scale: float
+    bounds: Bounds
+
+    @property
+    def is_compliance(self) -> bool:
+        """Whether the variable is the inverse of the number."""
+        return self.path in SPRINGS
+
+    def variable(self, value: float) -> float:
+        """The variable of a value [unit]."""
+        return self.scale / value if self.is_compliance else value / self.scale
+
+    def value(self, x: float) -> float:
+        """The value [unit] of a variable; inf for a compliance at which a root counts as clamped."""
+        if self.is_compliance:
+            return math.inf if x <= _CLAMPED else self.scale / x
+        return self.scale * x
+
+    def number(self, x: float) -> float:
+        """The value [unit] in the scenes of a fit, where a spring is finite."""
+        return self.scale / x if self.is_compliance else self.scale * x
+
+    @property
+    def limits(self) -> Bounds:
+        """Least and largest variable."""
+        low, high = sorted(self.variable(each) for each in self.bounds)
+        return (max(low, _RIGID), high) if self.is_compliance else (low, high)
+
+    @property
+    def first(self) -> float:
+        """The variable at which a fit begins: that of the scene, within the limits."""
+        low, high = self.limits
+        absent = math.isinf(self.given) if self.is_compliance else self.given == low == 0
+        return min(max(_FIRST if absent else self.variable(self.given), low), high)
+
+    def place(self, share: float) -> float:
+        """The variable at a share, from 0 to 1, of the range in which fits begin.
+
+        It is any compliance from stiff to soft, half to twice the size, or up to the size where it may be 0.
+        """
+        low, high = self.limits
+        if self.is_compliance or low > 0:
+            ends = (0.02, 5.0) if self.is_compliance else (0.5, 2.0)
+            x = ends[0] * (ends[1] / ends[0]) ** share
+        else:
+            middle = self.variable(self.given)
+            x = max(middle - 0.5, low) + share
+        return min(max(x, low), high)
+
+
+def opened(scene: Scene, paths: Sequence[str]) -> Scene:
+    """The scene with a spring or body, as small as can be, where a number of one shall be found."""
+    values: dict[str, float] = {}
+    for path in paths:
+        if path in SPRINGS and math.isinf(number_at(scene, path) or 0.0):
+            values[path] = _stiffness(scene) / _FIRST
+        if path.startswith("beam.tip.") and scene.beam.tip is None:
+            values[path] = 0.0
+    return with_numbers(scene, values) if values else scene
+
+
+def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeNumber, ...]:
+    """The numbers by their paths, with bounds [unit] or None for those that follow from their kind.
+
+    Raises
+    ------
+    ValueError
+        If a path is none of the scene's, or bounds do not ascend or leave the scene's range.
+    """
+    if not isinstance(free, Mapping) or not free:
+        bound = "give the numbers that are unknown, by their names"
+        raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
+    paths = [check_path("free", path) for path in free]
+    made = numbers_of(opened(scene, paths), paths)
+    return tuple(_free(scene, number, free[number.name]) for number in made)
+
+
+def _free(scene: Scene, number: SceneNumber, bounds: Bounds | None) -> FreeNumber:
+    given, path = number_at(scene, number.name), number.name
+    given = number.value if given is None or math.isnan(given) else given
+    scale = _stiffness(scene) if path in SPRINGS else number.step / _STEP
+    if number.name == "beam.tip.offset" or number.unit == "rad":
+        scale = max(scale, 1.0 if number.unit == "rad" else scene.beam.length)
+    usual = _usual_bounds(number, given, scale)
+    return FreeNumber(path, number.unit, given, scale, usual if bounds is None else _checked(number, bounds))
+
+
+def _usual_bounds(number: SceneNumber, given: float, scale: float) -> Bounds:
+    """Between which values a number is sought, by its kind."""
+    if number.name in SPRINGS:
+        return scale / _SOFTEST, math.inf
+    if number.unit == "rad":
+        return given - _TURN, given + _TURN
+    if number.name == "beam.poissons_ratio":
+        return 0.0, 0.5
+    if given > 0 and scale <= 1.5 * given:
+        return given / _TIMES, given * _TIMES
+    return max(number.least, -scale), given + _TIMES * scale
+
+
+def _checked(number: SceneNumber, bounds: Bounds) -> Bounds:
+    try:
+        low, high = (float(each) for each in bounds)
+    except (TypeError, ValueError):
+        bound = "bounds are a least and a largest value"
+        raise InvalidValue(number.name, bounds, bound, "give two numbers, or None") from None
+    if number.name in SPRINGS:
+        positive(number.name, low, number.unit)
+    if not max(number.least, -math.inf) <= low < high:
+        bound = f"bounds ascend, from {number.least:g} on"
+        raise InvalidValue(number.name, bounds, bound, "give the smaller one first", number.unit)
+    return low, high
+
+
+def _stiffness(scene: Scene) -> float:
+    """Bending stiffness over the length [N m/rad]."""
+    return mean(scene.beam.bending_stiffness) / scene.beam.length

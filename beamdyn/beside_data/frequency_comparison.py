@@ -1,0 +1,193 @@
+"""Measured natural frequencies beside computed ones: pairs, deviations, and a verdict on each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from beamdyn.beside_data.explanations import Explanation, say_value
+from beamdyn.common.plots.plots import mark_points, plot_locus
+from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.statements import Speeds, joined
+from beamdyn.common.words import Setting, Words
+from beamdyn.modes.kinds import TORSION
+from beamdyn.modes.locus import frequency_locus
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
+_DIGITS = 6  # of frequencies in sentences
+_PLACES = 61  # speeds at which a picture draws the model
+_ONE_SPEED = 0.1  # share of the first angular frequency up to which a picture of one speed goes
+
+
+@dataclass(frozen=True)
+class FrequencyComparison(Result):
+    """Measured natural frequencies beside those of a scene.
+
+    Parameters
+    ----------
+    label : tuple of str, shape (N,)
+        Name of each measured value, such as "flap 1".
+    speed : ndarray, shape (N,)
+        Speeds [rad/s].
+    measured, computed : ndarray, shape (N,)
+        Frequencies [Hz]; computed ones are nan where the scene has no such mode.
+    mode : ndarray of int, shape (N,)
+        Number of the computed mode at its speed, from 1; 0 where there is none.
+    allowance : ndarray, shape (N,)
+        By how much the measured value may be off [Hz]: half of its last digit, and twice its uncertainty.
+    error : ndarray, shape (N,)
+        Estimated numerical error of the computed frequency [Hz].
+    model_error : ndarray, shape (N,)
+        What the effects that the model leaves out would change in the computed frequency [Hz], as far as it
+        is known.
+    likeness : ndarray, shape (N,)
+        Modal assurance criterion of measured and computed shape; nan where no shapes were measured.
+    unmeasured : tuple of str
+        Modes of the scene between the measured ones that have no measured value.
+    explanations : tuple of Explanation
+        Numbers of the scene of which one alone, changed, would come nearest to all the data; the best first.
+    warnings : tuple of str
+        Limits of the answer.
+    provenance : Provenance
+        How the frequencies were computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> found = bd.compare(bd.Scene(strip), bd.MeasuredFrequencies([65.2305, 408.79], rounding=0.005))
+    >>> found.verdict
+    ('agrees', 'agrees')
+    """
+
+    label: tuple[str, ...]
+    speed: np.ndarray
+    measured: np.ndarray
+    computed: np.ndarray
+    mode: np.ndarray
+    allowance: np.ndarray
+    error: np.ndarray
+    model_error: np.ndarray
+    likeness: np.ndarray
+    unmeasured: tuple[str, ...]
+    explanations: tuple[Explanation, ...]
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    source: str = field(default="", repr=False)
+
+    field_units: ClassVar[dict[str, str]] = {
+        "rad/s": "speed",
+        "Hz": "measured computed allowance error model_error",
+    }
+
+    def headline(self) -> Iterator[str]:
+        """Yield the parts of the result's one line; see `Result.headline`."""
+        yield f"{self.verdict.count(AGREES)} of {counted(len(self.label), 'frequency', 'frequencies')} agree"
+        if np.isfinite(self.deviation).any():
+            yield f"largest deviation {percent(float(np.nanmax(np.abs(self.deviation))))}"
+        yield warned(self.warnings)
+
+    @property
+    def deviation(self) -> np.ndarray:
+        """Measured less computed over the computed, shape (N,)."""
+        return self.measured / self.computed - 1
+
+    @property
+    def verdict(self) -> tuple[str, ...]:
+        """Of each value: "agrees", "within the model error", "outside" or "no mode"; shape (N,)."""
+        off, sure = np.abs(self.measured - self.computed), self.allowance + self.error
+        each = [np.isnan(off), off <= sure, off <= sure + self.model_error]
+        return tuple(np.select(each, [ALONE, AGREES, LEFT_OUT], OUTSIDE).tolist())
+
+    @property
+    def agrees(self) -> bool:
+        """Whether all values agree within their own uncertainty, half of their last digit and our error."""
+        return set(self.verdict) == {AGREES}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
+        more = {"deviation": self.deviation, "verdict": self.verdict, "sentences": self.sentences()}
+        return super().to_dict() | {name: plain(value) for name, value in more.items()}
+
+    def sentences(self) -> tuple[str, ...]:
+        """What the comparison says in words: the worst deviations, and what would explain them."""
+        return tuple(self._sentences())
+
+    def _sentences(self) -> Iterator[str]:
+        off, verdicts = np.nan_to_num(np.abs(self.deviation)), np.array(self.verdict)
+        if self.agrees:
+            yield f"All agree: {self._say(int(off.argmax()), 'which is the largest deviation')}."
+        for verdict, words in _WORDS.items():
+            if (verdicts == verdict).any():
+                worst = int(np.where(verdicts == verdict, off, -1.0).argmax())
+                others = int((verdicts == verdict).sum()) - 1
+                more = (
+                    f"; so {'is' if others == 1 else 'are'} {counted(others, 'other')}, by less"
+                    if others
+                    else ""
+                )
+                yield Words(self._say(worst, words), more, ".")
+        for k in np.flatnonzero(verdicts == ALONE):
+            yield self._alone(int(k))
+        if self.unmeasured:
+            yield Words("Without a measured value: ", joined(", ", self.unmeasured), ".")
+        yield from self._explained()
+
+    def _alone(self, k: int) -> Words:
+        """One value without a mode in words, with what may have it."""
+        setting = Setting("physics", torsion=True)
+        twists = TORSION in self.label[k].lower()
+        advice = ["; with ", setting, " it may have one."] if twists else ["."]
+        start = f"{self.label[k]}, {self.measured[k]:.{_DIGITS}g} Hz at "
+        return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice)
+
+    def _say(self, k: int, words: str) -> Words:
+        """One deviation in words."""
+        deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
+        side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'}" if deviation else "the same"
+        left_out, own = (float(each[k] / self.computed[k]) for each in (self.model_error, self.allowance))
+        of_data = f" and the data's uncertainty ({percent(own)})" if own else ""
+        said = words.format(left_out=percent(left_out)) + of_data * (words == _WORDS[OUTSIDE])
+        start = f"{self.label[k]} at "
+        return Words(
+            start,
+            Speeds(self.speed[k]),
+            f": {self.measured[k]:.{_DIGITS}g} Hz is {side} of {computed}, {said}",
+        )
+
+    def _explained(self) -> Iterator[str]:
+        good = [each for each in self.explanations if each.explains]
+        if good:
+            each = [Words(f"{e.name} = ", say_value(e.value, e.unit), f" (leaves {e.left})") for e in good]
+            yield Words("One number alone would explain it: ", joined(" or ", each), ".")
+        elif self.explanations:
+            best = self.explanations[0]
+            value, left = say_value(best.value, best.unit), f", which leaves {best.left}."
+            yield Words(f"No number alone explains it: the nearest is {best.name} = ", value, left)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies of the scene over speed, and the measured ones as points."""
+        speeds = np.abs(self.speed)
+        top = float(speeds.max()) or _ONE_SPEED * 2 * np.pi * float(np.nanmin(self.measured))
+        modes = max(int(self.mode.max()), 1)
+        with unannounced():
+            locus = frequency_locus(self.scene, np.linspace(0.0, top, _PLACES), modes)
+        ax = plot_locus(locus.speeds, locus.frequency, ax, units=self.display_units)
+        per_si = self.display_units.speed_unit().per_si
+        return mark_points(ax, speeds * per_si, self.measured, self.source or "measured")
+
+
+_WORDS = {
+    OUTSIDE: "outside what the model leaves out ({left_out})",
+    LEFT_OUT: "within what the model leaves out ({left_out})",
+}

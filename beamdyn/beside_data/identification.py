@@ -1,0 +1,155 @@
+"""Numbers of a scene found from measured natural frequencies: values, intervals, and what is not told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamdyn.beside_data.explanations import say_value
+from beamdyn.beside_data.frequency_comparison import FrequencyComparison
+from beamdyn.beside_data.separability import NotSeparable
+from beamdyn.common.inputs.checks import NoModelAnswer
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words
+from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Identification(Result):
+    """Numbers of a scene found from measured natural frequencies by bounded least squares.
+
+    Parameters
+    ----------
+    names, units : tuple of str, shape (p,)
+        The numbers, by their names in scene files, and their SI units.
+    given, value : ndarray, shape (p,)
+        Values in the scene, and found [unit]; nan where the data do not tell the number, inf of a clamped
+        root.
+    low, high : ndarray, shape (p,)
+        Ends of the 95 % interval [unit], within the bounds of the number; nan where it is not known.
+    covariance : ndarray, shape (p, p)
+        Covariance of the values [unit times unit]; nan where it is not known.
+    correlation : ndarray, shape (p, p)
+        Correlation of the numbers, of springs that of their compliances.
+    not_separable : tuple of NotSeparable
+        Numbers that the data do not tell apart, and what would.
+    comparison : FrequencyComparison
+        The data beside the scene that was found.
+    standardized : ndarray, shape (N,)
+        Deviation of each value over its uncertainty, or where none are known over the one that follows from
+        all deviations; nan where the scene has no such mode.
+    scatter : float
+        Root mean square deviation over the measured frequency, for the degrees of freedom that remain.
+    outliers : tuple of str
+        Values that lie further off than in one of a hundred such sets of data by chance; none is left out.
+    solves : int
+        Number of solved eigenproblems: of one scene at all speeds each.
+    warnings : tuple of str
+        Limits of the answer.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> data = bd.MeasuredFrequencies([58.707, 367.91], uncertainty=0.05)  # of 0.18 mm
+    >>> found = bd.identify(bd.Scene(strip), data, free={"beam.thickness": None})
+    >>> bool(abs(found.value[0] - 0.18e-3) < 1e-7)
+    True
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    given: np.ndarray
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    covariance: np.ndarray
+    correlation: np.ndarray
+    not_separable: tuple[NotSeparable, ...]
+    comparison: FrequencyComparison
+    standardized: np.ndarray
+    scatter: float
+    outliers: tuple[str, ...]
+    solves: int
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """Yield the parts of the result's one line; see `Result.headline`."""
+        for name, value, unit in zip(self.names, self.value, self.units, strict=True):
+            yield f"{name} {'not told' if np.isnan(value) else f'{value:.4g} {unit}'.rstrip()}"
+        yield f"scatter {percent(self.scatter)}"
+        yield warned(self.warnings)
+
+    @property
+    def scene_found(self) -> Scene:
+        """The scene with the numbers that were found.
+
+        Raises
+        ------
+        ValueError
+            If the data do not tell all of them.
+        """
+        if np.isnan(self.value).any():
+            lost = ", ".join(
+                name for name, value in zip(self.names, self.value, strict=True) if np.isnan(value)
+            )
+            raise NoModelAnswer(f"the data do not tell {lost}: keep one of them fixed, or measure more")
+        return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with sentences."""
+        return super().to_dict() | {"sentences": plain(self.sentences())}
+
+    def sentences(self) -> tuple[str, ...]:
+        """What was found in words: numbers that are not told, the residual, and values that lie far off."""
+        return tuple(self._sentences())
+
+    def _sentences(self) -> Iterator[str]:
+        for each in self.not_separable:
+            many = len(each.names) > 1
+            said = "cannot be told apart by these data" if many else "is not told by these data"
+            more = joined(" or ", each.measurements) if each.measurements else "to keep one of them fixed"
+            yield Words(joined(" and ", each.names), f" {said}. What would help: ", more, ".")
+        left_out = np.nan_to_num(self.comparison.model_error / self.comparison.computed)
+        yield (
+            f"The deviations that remain are {percent(self.scatter)} of the frequencies; "
+            f"what the model leaves out would change them by up to {percent(float(left_out.max()))}."
+        )
+        yield from (f"Far off, and not left out: {each}." for each in self.outliers)
+        alone = [k for k, mode in enumerate(self.comparison.mode) if not mode]
+        for k in alone:
+            yield f"{self.comparison.label[k]}: the model has no such mode; it was not used."
+
+    def says(self, k: int) -> Words:
+        """Number k with its interval, in words."""
+        ends = (say_value(each, self.units[k]) for each in (self.low[k], self.high[k]))
+        return Words(
+            f"{self.names[k]} = ", say_value(self.value[k], self.units[k]), " (", joined(" to ", ends), ")"
+        )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the frequencies of the scene that was found over speed, and the measured ones as points."""
+        return self.comparison.plot(ax)
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Number of values beyond that of the numbers."""
+        return int(np.isfinite(self.standardized).sum()) - len(self.names)
+
+    def counted(self) -> str:
+        """How much was asked of how much: "3 numbers from 15 frequencies"."""
+        values = counted(int(np.isfinite(self.standardized).sum()), "frequency", "frequencies")
+        return f"{counted(len(self.names), 'number')} from {values}"

@@ -1,0 +1,264 @@
+"""Identification of numbers of a scene from measured natural frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+from scipy import stats
+
+from beamdyn._version import __version__
+from beamdyn.beside_data.compare import beside
+from beamdyn.beside_data.fit import Fitted, Fitting, fit
+from beamdyn.beside_data.free_numbers import Bounds, FreeNumber, free_numbers
+from beamdyn.beside_data.identification import Identification
+from beamdyn.beside_data.pairing import NO_MODE
+from beamdyn.beside_data.separability import FINEST, Information, not_separable
+from beamdyn.common.inputs.checks import InvalidValue, count, kind
+from beamdyn.common.results.one_line import number
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import INPUT, LIMITS, Speeds, Statement
+from beamdyn.common.words import Words
+from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.scene.scene import Scene, check_scene
+
+MOST_SOLVES = 40  # for each number
+_LEVEL = 0.95
+_CHANCE = 0.01  # of one outlier in a set of data in which there is none
+_LIKELY = 0.999  # of sums of squares, beyond which a fit is poor: further starts are made, and it is said
+_NOTHING = 1e-20  # sum of squared relative deviations of data without noise
+
+
+def identify(
+    scene: Scene,
+    data: MeasuredFrequencies,
+    free: Mapping[str, Bounds | None],
+    starts: int = 4,
+    seed: int = 0,
+) -> Identification:
+    """Find numbers of a scene from measured natural frequencies, by bounded least squares.
+
+    Deviations count over the uncertainties of the data; where these are not known, over the frequencies, and
+    the uncertainty follows from the deviations.  At most 40 solves are made for each number.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is not used.  Its numbers are where the search begins.
+    data : MeasuredFrequencies
+        The measured frequencies, at least as many as there are unknown numbers.
+    free : mapping of str to pair of float or None
+        The unknown numbers by their names in scene files, such as "beam.thickness", each with its least and
+        largest value [SI], or None for bounds that follow from its kind.
+    starts : int
+        Most starts: from the numbers of the scene, or random ones that are nearer to the data.
+    seed : int
+        Of the random starts.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    ValueError
+        If a name or a bound is wrong, there are more unknowns than data, or large deflection is modelled.
+
+    References
+    ----------
+    Bounded least squares: Branch, Coleman and Li (1999); derivatives: Lancaster (1966), section 7.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> data = bd.MeasuredFrequencies([62.0, 390.0, 1095.0], uncertainty=0.3)
+    >>> found = bd.identify(bd.Scene(strip), data, free={"mount.root_stiffness": None})
+    >>> bool(found.low[0] < found.value[0] < found.high[0])
+    True
+    """
+    start = perf_counter()
+    check_scene(scene)
+    kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
+    numbers = free_numbers(scene, free)
+    if data.count < len(numbers):
+        bound = f"there are {len(numbers)} unknowns for {data.count} frequencies"
+        raise InvalidValue("free", ", ".join(free), bound, "free fewer, or measure more")
+    known = bool(np.isfinite(data.uncertainty[np.isfinite(data.frequency)]).all())
+    weight = data.uncertainty if known else data.frequency
+    fitting = Fitting(scene, data, numbers, weight)
+    enough = stats.chi2.ppf(_LIKELY, max(data.count - len(numbers), 1)) if known else _NOTHING
+    most = MOST_SOLVES * len(numbers)
+    found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, float(enough))
+    return _Told(found, known).result(start)
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What a fit tells: its numbers with their intervals."""
+
+    fit: Fitted
+    known: bool
+
+    @property
+    def _fitting(self) -> Fitting:
+        return self.fit.modes.fitting
+
+    @property
+    def _numbers(self) -> tuple[FreeNumber, ...]:
+        return self._fitting.numbers
+
+    @cached_property
+    def _residual(self) -> np.ndarray:
+        return self.fit.modes.residual(self.fit.pairs)
+
+    @property
+    def _freedom(self) -> int:
+        """Degrees of freedom that remain."""
+        return len(self._residual) - len(self._numbers)
+
+    @cached_property
+    def _measured(self) -> np.ndarray:
+        return self._fitting.data.frequency[self.fit.pairs != NO_MODE]
+
+    @cached_property
+    def _deviation(self) -> float:
+        """Standard deviation of the residuals: 1 where uncertainties are known; nan if nothing tells it."""
+        if self.known:
+            return 1.0
+        return float(np.sqrt(self.fit.cost / self._freedom)) if self._freedom > 0 else np.nan
+
+    @cached_property
+    def _uncertainty(self) -> np.ndarray:
+        """Standard deviation of each residual, with the least that counts."""
+        least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
+        return np.maximum(np.nan_to_num(self._deviation), least)
+
+    @cached_property
+    def _information(self) -> Information:
+        return Information(self.fit.modes.derivative(self.fit.pairs) / self._uncertainty[:, None])
+
+    @cached_property
+    def _values(self) -> np.ndarray:
+        each = [n.value(x) for n, x in zip(self._numbers, self.fit.modes.x.tolist(), strict=True)]
+        return np.where(self._information.told, each, np.nan)
+
+    @cached_property
+    def _intervals(self) -> np.ndarray:
+        """Ends (p, 2) of the intervals; from the step without bounds, where a bound holds a number."""
+        quantile = stats.norm.ppf(0.5 + _LEVEL / 2)
+        if not self.known:
+            quantile = stats.t.ppf(0.5 + _LEVEL / 2, self._freedom) if self._freedom > 0 else np.nan
+        middle = self.fit.modes.x + self._information.step(self._residual / self._uncertainty)
+        half = quantile * np.sqrt(np.diag(self._information.covariance))
+        low, high = self._fitting.limits
+        ends = np.clip([middle - half, middle + half], low, high).T
+        each = [
+            sorted(n.value(x) for x in pair) for n, pair in zip(self._numbers, ends.tolist(), strict=True)
+        ]
+        sure = self._information.told & np.isfinite(half)
+        return np.where(sure[:, None], np.array(each), np.nan)
+
+    @cached_property
+    def _covariances(self) -> tuple[np.ndarray, np.ndarray]:
+        """Covariance and correlation of the numbers (p, p)."""
+        C = self._information.covariance
+        sizes = np.sqrt(np.diag(C))
+        x = self.fit.modes.x
+        slope = np.array(
+            [-n.scale / v**2 if n.is_compliance else n.scale for n, v in zip(self._numbers, x, strict=True)]
+        )
+        sure = self._information.told & np.isfinite(self._values) & np.isfinite(self._deviation)
+        both = np.outer(sure, sure)
+        return np.where(both, C * np.outer(slope, slope), np.nan), C / np.outer(sizes, sizes)
+
+    @cached_property
+    def _standardized(self) -> np.ndarray:
+        """Residuals over their own uncertainty in the fit, (N,)."""
+        spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
+        return self._residual / (self._uncertainty * spread)
+
+    @property
+    def _poorness(self) -> float:
+        """Deviation over the uncertainty of the data."""
+        return float(np.sqrt(self.fit.cost / max(self._freedom, 1)))
+
+    @property
+    def _is_poor(self) -> bool:
+        """Whether the deviations are too large for the uncertainties of the data."""
+        freedom = self._freedom
+        return self.known and freedom > 0 and bool(self.fit.cost > stats.chi2.ppf(_LIKELY, freedom))
+
+    def _outliers(self) -> Iterator[str]:
+        """Yield values that lie too far off for chance."""
+        size, freedom = np.abs(self._standardized), self._freedom
+        chance = _CHANCE / max(len(size), 1) / 2
+        limit = stats.norm.isf(chance)
+        if not self.known or self._is_poor:  # each beside the deviation of the others
+            size = np.abs(self._standardized) / (self._poorness if self.known else 1.0)
+            if freedom < 2:
+                return
+            rest = np.maximum(freedom - size**2, FINEST)
+            size, limit = size * np.sqrt((freedom - 1) / rest), stats.t.isf(chance, freedom - 1)
+        rows, columns = np.nonzero(self.fit.pairs != NO_MODE)
+        data = self._fitting.data
+        for k in np.flatnonzero(size > limit):
+            name, value = data.labels[columns[k]], number(self._measured[k], "Hz")
+            yield Words(
+                f"{name} at ", Speeds(data.speeds[rows[k]]), f", {value}, by {size[k]:.1f} uncertainties"
+            )
+
+    def _warnings(self) -> Iterator[str]:
+        if self._is_poor:
+            said = f"deviations are {self._poorness:.2g} times the uncertainties of the data: it does not fit"
+            yield Statement(
+                f"{said}, and the intervals do not say by how much that changes the numbers", kind=LIMITS
+            )
+        if not self.known and self._freedom <= 0:
+            said = "there are as many unknowns as data: no interval follows; give uncertainties or more data"
+            yield Statement(said, kind=INPUT)
+        for number_, x, low, high in zip(self._numbers, self.fit.modes.x, *self._fitting.limits, strict=True):
+            if not low * (1 + 1e-6) + 1e-9 < x < high * (1 - 1e-6) and not (
+                number_.is_compliance and x <= 2 * low
+            ):
+                said = f"{number_.path} is at a bound of its range: give wider bounds, or free another number"
+                yield Statement(said, kind=LIMITS)
+
+    def result(self, start: float) -> Identification:
+        """The result of a fit that began at a time."""
+        fitting, information = self._fitting, self._information
+        comparison = beside(fitting.scene_at(self.fit.modes.x), fitting.data)
+        covariance, correlation = self._covariances
+        standardized = np.full(len(comparison.label), np.nan)
+        standardized[comparison_rows(fitting, self.fit.pairs)] = self._standardized
+        relative = self._residual * fitting.weight[self.fit.pairs != NO_MODE] / self._measured
+        low, high = self._intervals.T
+        provenance = comparison.provenance
+        return Identification(
+            names=tuple(n.path for n in self._numbers),
+            units=tuple(n.unit for n in self._numbers),
+            given=np.array([n.given for n in self._numbers]),
+            value=self._values,
+            low=low,
+            high=high,
+            covariance=covariance,
+            correlation=correlation,
+            not_separable=not_separable(self.fit.modes, information.lost),
+            comparison=comparison,
+            standardized=standardized,
+            scatter=float(np.sqrt((relative**2).sum() / max(self._freedom, 1))),
+            outliers=tuple(self._outliers()),
+            solves=fitting.solved[0],
+            warnings=(*self._warnings(), *comparison.warnings),
+            provenance=Provenance(
+                __version__, provenance.method, provenance.compared_with, perf_counter() - start
+            ),
+            scene=fitting.scene,
+        )
+
+
+def comparison_rows(fitting: Fitting, pairs: np.ndarray) -> np.ndarray:
+    """Which of the finite values (N,) have a pair."""
+    return (pairs != NO_MODE)[np.isfinite(fitting.data.frequency)]

@@ -1,0 +1,164 @@
+"""What data tell of numbers together: covariance, numbers that are not told apart, and what would tell them.
+
+With J the derivatives of residuals over their uncertainties by the variables of size 1, J = U S V^T, a change
+of size 1/s along a column of V changes the data by one uncertainty.  Bounds of the numbers count as if 1/s
+were ten at most.  A number that may change by its whole size unnoticed is not told by the data.
+Uncertainties count as a millionth of the frequency at least, so that no verdict hangs on rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from beamdyn.beside_data.fit import FittedModes, Fitting
+from beamdyn.common.results.announced import unannounced
+from beamdyn.modes.modes import natural_modes
+from beamdyn.scene.points import TipMass
+from beamdyn.scene.profile import mean
+from beamdyn.scene.scene import Scene
+
+LARGEST = 1.0  # standard error of a variable of size 1, beyond which its number is not told
+FINEST = 1e-6  # least relative uncertainty of a frequency with which that is decided
+_TAKES_PART = 0.5  # least share of that standard error that a direction has which names a number
+_BOUND = 0.1  # least singular value: bounds are about ten sizes apart
+_TOLD = 0.05  # least relative change of a measurement by a whole change along a direction that tells it
+_STEP = 1e-3
+_BODY = 0.2  # mass of a known body over that of the beam
+_FASTER = 2.0  # times the largest speed
+_FAST = np.pi / 2  # speed over the first frequency [Hz] at rest: a quarter of it in radians
+_PLACES = np.linspace(0.0, 1.0, 201)
+
+
+@dataclass(frozen=True)
+class Information:
+    """What residuals tell of p variables.
+
+    Parameters
+    ----------
+    J : ndarray, shape (N, p)
+        Derivatives of the residuals over their standard uncertainties.
+    """
+
+    J: np.ndarray
+
+    @cached_property
+    def _parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        U, s, V = np.linalg.svd(self.J, full_matrices=False)
+        return U, np.maximum(s, _BOUND), V.T
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """Covariance of the variables (p, p)."""
+        _, s, V = self._parts
+        return (V / s**2) @ V.T
+
+    @property
+    def told(self) -> np.ndarray:
+        """Which variables (p,) the data tell."""
+        return np.sqrt(np.diag(self.covariance)) <= LARGEST
+
+    @property
+    def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Directions (p,) that are not told, and which of the variables (p,) each leaves untold."""
+        _, s, V = self._parts
+        each = [
+            (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))
+            for v, size in zip(V.T, s, strict=True)
+        ]
+        return [(v, named) for v, named in each if named.any()]
+
+    @property
+    def leverage(self) -> np.ndarray:
+        """Share (N,) of each value in its own fit: the diagonal of the hat matrix."""
+        U, s, _ = self._parts
+        return (U[:, s > _BOUND] ** 2).sum(axis=1)
+
+    def step(self, residual: np.ndarray) -> np.ndarray:
+        """The step (p,) to the least sum of squares of the linear problem without bounds."""
+        U, s, V = self._parts
+        return -V @ ((U.T @ residual) / s)
+
+
+@dataclass(frozen=True)
+class NotSeparable:
+    """Numbers that the data do not tell apart.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Their names in scene files.
+    measurements : tuple of str
+        What could be measured, too, to tell them apart.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> data = bd.MeasuredFrequencies([62.0, 389.0, 1090.0], uncertainty=0.5)
+    >>> unknown = {"beam.youngs_modulus": None, "beam.density": None}
+    >>> bd.identify(bd.Scene(strip), data, free=unknown).not_separable[0].names
+    ('beam.youngs_modulus', 'beam.density')
+    """
+
+    names: tuple[str, ...]
+    measurements: tuple[str, ...]
+
+
+def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]]) -> tuple[NotSeparable, ...]:
+    """Name the numbers of each direction, and the measurements that change along it."""
+    paths = np.array([number.path for number in modes.fitting.numbers])
+    return tuple(
+        NotSeparable(tuple(paths[named].tolist()), tuple(_telling(modes, direction)))
+        for direction, named in lost
+    )
+
+
+def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
+    """Measurements that change along a direction of the variables."""
+    low, high = modes.fitting.limits
+    ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
+    change = float(np.linalg.norm(ends[1] - ends[0]))
+    before, after = (_measured(modes.fitting, modes.fitting.scene_at(x)) for x in ends)
+    return [name for name in before if abs(np.log(after[name] / before[name])) > _TOLD * change]
+
+
+def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
+    """What else could be measured, and its value of a scene."""
+    first, speed = _frequency(scene), float(np.abs(fitting.data.speeds).max())
+    return {
+        "the mass of the beam": _mass(scene),
+        "the deflection of the tip under a known force": _compliance(scene),
+        "the first frequency with a known body at the tip": _frequency(
+            _loaded(scene, _BODY * _mass(fitting.scene))
+        ),
+        f"the frequency of mode {fitting.modes} at rest": _frequency(scene, mode=fitting.modes),
+        "the first frequency at a higher speed": _frequency(scene, max(_FASTER * speed, _FAST * first)),
+    }
+
+
+def _frequency(scene: Scene, speed: float = 0.0, mode: int = 1) -> float:
+    """Natural frequency [Hz]; 1 where the mode does not vibrate."""
+    with unannounced():
+        found = float(natural_modes(scene, speed, mode).frequency[mode - 1])
+    return found if found > 0 else 1.0
+
+
+def _mass(scene: Scene) -> float:
+    """Mass of the beam with the body at its tip [kg]."""
+    beam = scene.beam
+    return mean(beam.mass_per_length) * beam.length + (0.0 if beam.tip is None else beam.tip.mass)
+
+
+def _compliance(scene: Scene) -> float:
+    """Deflection of the tip over a force on it [m/N]: unit load over bending stiffness and root spring."""
+    L, arm = scene.beam.length, (1 - _PLACES) ** 2
+    bending = float(np.trapezoid(arm / scene.beam.bending_stiffness(_PLACES), _PLACES)) * L**3
+    return bending + L**2 / scene.mount.root_stiffness
+
+
+def _loaded(scene: Scene, mass: float) -> Scene:
+    """The scene with a further body at the tip [kg]."""
+    tip = scene.beam.tip or TipMass(0.0)
+    return replace(scene, beam=replace(scene.beam, tip=replace(tip, mass=tip.mass + mass)))

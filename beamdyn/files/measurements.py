@@ -1,0 +1,196 @@
+"""Files of measured natural frequencies: tables with units as CSV, and lists of modes that ANSYS writes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+
+import numpy as np
+
+from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
+from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
+from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.inputs.checks import InvalidValue, real_array
+from beamdyn.measured.frequencies import MeasuredFrequencies
+
+_MOST_SPEED = 1e5  # rad/s, a million revolutions per minute: faster is a unit mistaken
+_MOST = 40  # columns of frequencies
+_SPEED, _OF_ALL = "speed", "uncertainty"
+_KNOWN = {
+    _SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED),
+    _OF_ALL: Quantity("Hz", above=0.0),
+}
+_FREQUENCY, _SPREAD = Quantity("Hz", above=0.0), Quantity("Hz", above=0.0)
+_STEMS = ("frequency", "f", "mode", "flap", "edge", "lag", "chord", "bending", "torsion")
+_SET_LIST = re.compile(r"\s*SET\s+TIME/FREQ\s+LOAD STEP\s+SUBSTEP\s+CUMULATIVE", re.IGNORECASE)
+_SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
+
+
+def read_measurements(
+    path: str | PathLike[str], speeds: Sequence[float] | np.ndarray | None = None
+) -> MeasuredFrequencies:
+    """Read natural frequencies from a file of a laboratory or of another program.
+
+    A CSV file has a line of heads with units, such as "speed [rpm], frequency 1 [Hz], frequency 2 [Hz],
+    uncertainty [Hz]", then a line a speed; a cell may be empty where a frequency was not found.  Heads may
+    also be flap 1, edge 1, torsion 1 or mode 1; "uncertainty" holds for all columns, "uncertainty 1" for one.
+    A single column of frequencies is a list of modes at one speed.  A list of modes of ANSYS (SET,LIST) is
+    read as it stands: each load step is a speed.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The file.
+    speeds : sequence of float, optional
+        Speeds [rad/s] of the rows where the file has none; a single row is at rest if they are not given.
+
+    Returns
+    -------
+    MeasuredFrequencies
+
+    Raises
+    ------
+    ValueError
+        At the first mistake: names file, line, and what was expected.
+
+    References
+    ----------
+    The list of data sets of ANSYS: Mechanical APDL Structural Analysis Guide, section 3.5.3.
+
+    Examples
+    --------
+    >>> data = bd.read_measurements("examples/lee_yoo_table_2.csv")
+    >>> data.frequency[:, 0]
+    array([65.23 , 61.963, 50.907])
+    """
+    text = read_data(path)
+    given = None if speeds is None else real_array("speeds", speeds)
+    head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
+    rows, written, labels, own, unit = _from_list(text, head) if head else _from_csv(text)
+    at = _speeds(text, own.get(_SPEED), given, len(rows))
+    spread = own.get(_OF_ALL, np.full(rows.shape, np.nan))
+    halves = _half_digits(written, rows)
+    return MeasuredFrequencies(rows, at, spread, halves, labels, source=text.path.name, speed_unit=unit)
+
+
+_Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndarray], str]
+
+
+def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, count: int) -> np.ndarray:
+    """Speeds of the rows, from the file or as given with it."""
+    if own is not None:
+        if given is not None:
+            raise InvalidValue("speeds", given, "the file has speeds of its own", "leave it out")
+        return own
+    if given is None and count == 1:
+        return np.zeros(1)
+    if given is None or len(given) != count:
+        found = "none" if given is None else str(len(given))
+        said = f"expected a column 'speed [rpm]' or {count} speeds with the file, found {found}"
+        raise text.refusal(1, said)
+    return given
+
+
+def _half_digits(written: list[list[str]], values: np.ndarray) -> np.ndarray:
+    """Half a unit of the last digit of each cell, in the unit of the values (S, m)."""
+    numbers = [[half_unit(cell) for cell in row] for row in written]
+    sizes = [[abs(float(_plain(cell))) if cell else 1.0 for cell in row] for row in written]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.nan_to_num(np.array(numbers) * values / np.array(sizes))
+
+
+def _plain(cell: str) -> str:
+    return re.sub(r"[dDqQ]", "e", cell)
+
+
+def half_unit(cell: str) -> float:
+    """Half a unit of the last digit of a number as it is written; 0 of an empty cell."""
+    if not cell:
+        return 0.0
+    mantissa, _, exponent = _plain(cell).lower().partition("e")
+    return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
+# CSV ----------------------------------------------------------------------------------------------
+
+
+def _from_csv(text: DataText) -> _Read:
+    known, names = dict(_KNOWN), {plain_name(name): name for name in (_SPEED, "uncertainty")}
+    names |= {"omega": _SPEED, "rotationspeed": _SPEED, "uncertainties": _OF_ALL}
+    columns = [(stem, k) for stem in _STEMS for k in ("", *map(str, range(1, _MOST + 1)))]
+    for stem, k in columns:
+        name = f"{stem} {k}".rstrip()
+        known[name], names[plain_name(name)] = _FREQUENCY, name
+        if k:
+            of_one = f"{_OF_ALL} {k}"
+            known[of_one], names[plain_name(of_one)] = _SPREAD, of_one
+    may_lack = [name for name in known if name != _SPEED]
+    table = read_csv(text, known, names, may_lack, least_rows=1)
+    _check_columns(table)
+    return _as_rows(table)
+
+
+def _check_columns(table: CsvTable) -> None:
+    """Refuse columns that are not known, and a table without frequencies."""
+    if unknown := next((column.head for column in table.columns if not column.name), ""):
+        known = "speed [rpm], frequency 1 [Hz], flap 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"
+        raise table.text.refusal(table.head_line, f"unknown column '{unknown}'; known are {known}")
+    if not [*_of_frequency(table)]:
+        found = ", ".join(column.head for column in table.columns)
+        said = f"expected a column such as 'frequency 1 [Hz]'; the heads are {found}"
+        raise table.text.refusal(table.head_line, said)
+
+
+def _of_frequency(table: CsvTable) -> Iterator[CsvColumn]:
+    """Yield the columns of frequencies."""
+    yield from (c for c in table.columns if c.name != _SPEED and not c.name.startswith(_OF_ALL))
+
+
+def _as_rows(table: CsvTable) -> _Read:
+    """Frequencies, their cells, labels, and what stands beside them, a row a speed; the unit of speeds."""
+    columns, named = [*_of_frequency(table)], table.named()
+    rows, written = (
+        np.array([c.values for c in columns]).T,
+        [[*row] for row in zip(*(c.written for c in columns), strict=True)],
+    )
+    spread, own = np.full(rows.shape, np.nan), {}
+    for k, column in enumerate(columns):
+        of_one = named.get(f"{_OF_ALL} {column.name.rpartition(' ')[2]}", named.get(_OF_ALL))
+        if of_one is not None:
+            spread[:, k] = of_one.values
+    labels = tuple(column.head for column in columns)
+    if len(columns) == 1 and len(rows) > 1 and _SPEED not in named:  # a list of modes at one speed
+        labels = tuple(f"{columns[0].head} {k}" for k in range(1, len(rows) + 1))
+        rows, written, spread = rows.T, [[row[0] for row in written]], spread.T
+    if _SPEED in named:
+        own[_SPEED] = np.array(named[_SPEED].values)
+    unit = named[_SPEED].unit if _SPEED in named else ""
+    return rows, written, labels, own | {_OF_ALL: spread}, unit
+
+
+# Lists of modes of ANSYS --------------------------------------------------------------------------
+
+
+def _from_list(text: DataText, head: int) -> _Read:
+    """Frequencies of each load step, below the heads of the list."""
+    steps: dict[int, list[tuple[float, str]]] = {}
+    for line in range(head + 1, len(text.lines) + 1):
+        match = _SET.fullmatch(text.lines[line - 1])
+        if match is None:
+            if steps and text.lines[line - 1].strip():
+                break
+            continue
+        value = number_at(text, line, match[2], "TIME/FREQ")
+        if value <= 0:
+            said = f"expected a frequency above 0, found {match[2]}; leave out modes of a rigid body"
+            raise text.refusal(line, said)
+        steps.setdefault(int(match[3]), []).append((value, match[2]))
+    if not steps:
+        raise text.lacking("expected a line for each mode below SET TIME/FREQ LOAD STEP SUBSTEP CUMULATIVE")
+    width = max(map(len, steps.values()))
+    rows, written = np.full((len(steps), width), np.nan), [[""] * width for _ in steps]
+    for i, modes in enumerate(steps.values()):
+        rows[i, : len(modes)] = [value for value, _ in modes]
+        written[i][: len(modes)] = [cell for _, cell in modes]
+    return rows, written, tuple(f"set {k}" for k in range(1, width + 1)), {}, ""

@@ -1,0 +1,1 @@
+"""Values from a laboratory or another program, as data: no mechanics."""

@@ -1,0 +1,127 @@
+"""Numbers of a scene from frequencies: found, with intervals, or named as not told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.scene.numbers import with_numbers
+from benchmarks.cases.identified import OUTWARD, SPEEDS, identify, measured, unknowns
+
+MATERIAL = {"beam.youngs_modulus": None, "beam.density": None}
+MOST_SOLVES = 40  # a number
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_spring_thickness_and_body_are_found_without_noise(seed):
+    true = unknowns(seed)
+    found = identify(true)
+    # Frequencies are good to 1e-11, and the numbers follow them up to a condition of some thousands.
+    np.testing.assert_allclose(found.value, [*true.values()], rtol=1e-7)
+    assert found.solves <= MOST_SOLVES * len(true)
+    assert found.comparison.agrees or np.abs(found.comparison.deviation).max() < 1e-9
+
+
+def test_intervals_cover_the_numbers_behind_noisy_data():
+    true = unknowns(4)
+    found = identify(true, noise=0.005, seed=4)
+    values = np.array([*true.values()])
+    assert ((found.low < values) & (values < found.high)).all()
+    half = (found.high - found.low)[1] / 2
+    # The interval of a normal distribution, in which the thickness is nearly linear.
+    np.testing.assert_allclose(half, 1.96 * np.sqrt(found.covariance[1, 1]), rtol=1e-3)
+    assert found.warnings == ()
+
+
+def test_intervals_shrink_with_the_uncertainty():
+    true = {"beam.thickness": 0.00019}
+    wide, narrow = (
+        bd.identify(
+            OUTWARD, replace(measured(true), uncertainty=np.full((5, 3), u)), {"beam.thickness": None}
+        )
+        for u in (1.0, 0.1)
+    )
+    np.testing.assert_allclose(  # linear about the same point
+        (wide.high - wide.low) / (narrow.high - narrow.low), 10.0, rtol=1e-6
+    )
+
+
+@pytest.mark.parametrize("uncertainty", [np.nan, 0.3])
+def test_stiffness_and_density_are_not_told_apart_by_frequencies_alone(uncertainty):
+    data = replace(measured({}), uncertainty=np.full((5, 3), uncertainty))
+    found = bd.identify(OUTWARD, data, MATERIAL)
+    assert np.isnan([found.value, found.low, found.high]).all()
+    (pair,) = found.not_separable
+    assert pair.names == (*MATERIAL,)
+    assert "the mass of the beam" in pair.measurements
+    assert not any("speed" in each for each in pair.measurements)  # f^2 = (E/rho) a + speed^2 b
+    with pytest.raises(ValueError, match=r"do not tell beam.youngs_modulus, beam.density"):
+        _ = found.scene_found
+
+
+def test_a_known_body_tells_stiffness_and_density_apart():
+    body = with_numbers(OUTWARD, {"beam.tip.mass": 4e-4})
+    frequency = bd.frequency_locus(body, SPEEDS, 3).frequency
+    found = bd.identify(body, bd.MeasuredFrequencies(frequency, SPEEDS), MATERIAL)
+    np.testing.assert_allclose(found.value, [200e9, 7850.0], rtol=1e-7)  # as above
+    assert found.not_separable == ()
+
+
+def test_a_number_that_frequencies_do_not_hang_on_is_not_told():
+    strip = bd.Scene(OUTWARD.beam, bd.Mount(radius=0.215))
+    data = bd.MeasuredFrequencies([65.2, 408.8], uncertainty=0.1)  # at rest: the radius has no effect
+    found = bd.identify(strip, data, {"mount.radius": None})
+    assert np.isnan(found.value[0])
+    assert found.not_separable[0].names == ("mount.radius",)
+    assert "the first frequency at a higher speed" in found.not_separable[0].measurements
+
+
+def test_an_outlier_is_named_and_kept():
+    frequency = measured({}).frequency.copy()
+    frequency[2, 1] *= 1.05
+    for uncertainty in (np.nan, 0.3):
+        data = bd.MeasuredFrequencies(frequency, SPEEDS, uncertainty)
+        found = bd.identify(OUTWARD, data, {"beam.thickness": None})
+        (said,) = found.outliers
+        assert said.startswith("frequency 2 at 75 rad/s")
+        assert np.isfinite(found.standardized).sum() == 15
+        assert found.value[0] > 0.0002  # it pulls
+
+
+def test_a_clamped_root_stays_clamped():
+    data = bd.MeasuredFrequencies([65.23, 408.79, 1144.63], uncertainty=0.05)
+    found = bd.identify(bd.Scene(OUTWARD.beam), data, {"mount.root_stiffness": None})
+    assert found.high[0] == np.inf
+    assert found.low[0] > 10  # N m/rad, 400 times the stiffness of the beam over its length
+
+
+@pytest.mark.parametrize(
+    ("free", "said"),
+    [
+        ({}, "give the numbers that are unknown"),
+        ({"beam.thicknes": None}, "give beam.thickness"),
+        ({"beam.thickness": (2e-4, 1e-4)}, "bounds ascend"),
+        ({"beam.thickness": 3}, "least and a largest"),
+        ({"beam.thickness": None, "beam.length": None, "mount.radius": None}, "3 unknowns for 2 frequencies"),
+        ({"mount.root_stiffness": (0.0, 1.0)}, "greater than 0"),
+    ],
+)
+def test_questions_that_have_no_answer_are_refused(free, said):
+    with pytest.raises(ValueError, match=said):
+        bd.identify(OUTWARD, bd.MeasuredFrequencies([62.0, 389.0]), free)
+
+
+def test_large_deflection_is_refused():
+    bent = replace(OUTWARD, physics=bd.Physics(large_deflection=True))
+    with pytest.raises(ValueError, match="derivatives of the linear equations"):
+        bd.identify(bent, bd.MeasuredFrequencies([62.0]), {"beam.thickness": None})
+
+
+def test_as_many_unknowns_as_data_have_no_interval_without_uncertainties():
+    found = bd.identify(bd.Scene(OUTWARD.beam), bd.MeasuredFrequencies([62.0]), {"beam.thickness": None})
+    assert np.isfinite(found.value[0])
+    assert np.isnan(found.low[0])
+    assert "no interval follows" in found.warnings[0]
