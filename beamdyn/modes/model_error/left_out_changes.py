@@ -34,7 +34,7 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 # Why large deflection cannot be added, by the field of the refusal where there is one.
-_TWO_PLANES = "it is solved in one plane of bending"
+_TWO_PLANES = "in two planes it is not judged: modes may cross"
 _OF_BENDING = "it is solved of modes of bending"
 _HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 _REFUSED = {
