@@ -32,7 +32,7 @@ from beamdyn.common.edge.input_sweep import (
 )
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
-from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.array_checks import solve_possible
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
@@ -408,20 +408,15 @@ class ArrayBrakeType(BrakeType[FileModel]):
         """Results from one answer whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
-        columns, rows, refused = in_si.columns(), np.arange(designs.count), dict[int, str]()
-        values, answer = np.full((len(outputs), designs.count), np.nan), None
-        while rows.size and answer is None:
-            try:
-                given = {name: values[rows] for name, values in columns.items()}
-                answer = self.solve(with_parts(asked.design, given))
-            except InvalidValue as error:
-                bad = error.by_case()
-                if error.cases is None or error.cases.bad.shape != rows.shape:
-                    raise  # it is not about some of the designs
-                paths = [entry.path for entry in describe(type(asked.design))]
-                key = path_of(error, paths) or error.field
-                refused.update((int(rows[i]), said_of(each, key, None)) for i, each in bad.items())
-                rows = rows[~error.cases.bad]
+        columns, paths = in_si.columns(), [entry.path for entry in describe(type(asked.design))]
+        answer, rows, errors = solve_possible(
+            lambda rows: self.solve(with_parts(asked.design, {name: x[rows] for name, x in columns.items()})),
+            designs.count,
+        )
+        values = np.full((len(outputs), designs.count), np.nan)
+        refused = {
+            row: said_of(each, path_of(each, paths) or each.field, None) for row, each in errors.items()
+        }
         if answer is None:
             made = swept(designs, outputs, [*values], (), refused)
             return made, made.warnings

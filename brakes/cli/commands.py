@@ -11,11 +11,11 @@ from cyclopts import Parameter
 from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.tables import console, show
-from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
+from beamdyn.common.edge.varying import SomeFolder
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
-from brakes.cli.answering import What, app, run_command
+from brakes.cli.answering import ONE_DESIGN, Asked, app, run_command
 
 if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program
@@ -40,9 +40,7 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
-    varying: VaryOptions = NOTHING_VARIED,
-    spreading: SpreadOptions = NO_SPREAD,
-    what: What = None,
+    asked: Asked = ONE_DESIGN,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
@@ -60,13 +58,8 @@ def caliper(
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
         Write an animation of the stroke: .gif.
-    varying
-        Inputs that are varied, e.g. --vary "clearance=1:2:11 mm" --vary "dimensions.pad.y=-55:-45:11 mm".
-    spreading
-        Inputs that have a tolerance, e.g. --spread "clearance=+-0.1 mm": ranges of results.
-    what
-        Results with --vary or --spread, separated by commas, such as "finger_travel,right_advantage"; a
-        wrong name lists all.
+    asked
+        What is asked of many designs.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
@@ -76,7 +69,7 @@ def caliper(
 
     if list_:
         files = vars(outputs) | {"free-bodies": free_bodies, "animation": animation, "force": None}
-        options = files | varying.options | spreading.options | {"what": what}
+        options = files | asked.options
         given = {"MECHANISM": mechanism} | {f"--{name}": value for name, value in options.items()}
         for name, value in given.items():
             if value:
@@ -89,7 +82,7 @@ def caliper(
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
-    run_command(MECHANISM, "caliper", mechanism, varying, spreading, what, outputs, further)
+    run_command(MECHANISM, "caliper", mechanism, asked, outputs, further)
 
 
 @app.command(
@@ -103,9 +96,7 @@ def forklift(
     /,
     *,
     stage: StageChoice = "all",
-    varying: VaryOptions = NOTHING_VARIED,
-    spreading: SpreadOptions = NO_SPREAD,
-    what: What = None,
+    asked: Asked = ONE_DESIGN,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part.
@@ -116,20 +107,15 @@ def forklift(
         The truck, the stop, and one of its brakes.
     stage
         What to show; what comes before it is computed where it is needed.
-    varying
-        Inputs that are varied, e.g. --vary "stop.speed=10:30:9 km/h".
-    spreading
-        Inputs that have a tolerance, e.g. --spread "stop.friction=+-10%": ranges of results.
-    what
-        Results with --vary or --spread, separated by commas, such as "distance,A"; the file of --csv
-        without them lists all names.
+    asked
+        What is asked of many designs.
     outputs
         Files to write.
     """
     from brakes.answers.forklift import FORKLIFT, TYPES
 
     brake = FORKLIFT if stage == "all" else TYPES[stage]
-    run_command(brake, "forklift", str(file), varying, spreading, what, outputs, stage=stage)
+    run_command(brake, "forklift", str(file), asked, outputs, stage=stage)
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
@@ -179,9 +165,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         file: BrakeFile,
         /,
         *,
-        varying: VaryOptions = NOTHING_VARIED,
-        spreading: SpreadOptions = NO_SPREAD,
-        what: What = None,
+        asked: Asked = ONE_DESIGN,
         outputs: Outputs = NO_FILES,
     ) -> None:
         """Answer a file.
@@ -190,17 +174,12 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         ----------
         file
             The TOML file that describes the brake.
-        varying
-            Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
-        spreading
-            Inputs that have a tolerance, e.g. --spread "friction=+-10%": ranges of results.
-        what
-            Results with --vary or --spread, separated by commas, such as "torque,pin_1"; the file of --csv
-            without them lists all names.
+        asked
+            What is asked of many designs.
         outputs
             Files to write.
         """
-        run_command(load(), name, str(file), varying, spreading, what, outputs)
+        run_command(load(), name, str(file), asked, outputs)
 
 
 for _name, (_help, _load) in STANDARD.items():
