@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import MOST_ONE_BY_ONE, Output, chosen
-from beamdyn.common.edge.inputs import Quantity, SlopeQuantity, WholeNumber, parts_of
+from beamdyn.common.edge.inputs import Quantity, SlopeQuantity, WholeNumber
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.edge.varied_inputs import Axis, find_input, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
@@ -137,7 +137,7 @@ def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: s
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)
-    if isinstance(entry.quantity, WholeNumber) or int in parts_of(entry.kind):
+    if isinstance(entry.quantity, WholeNumber):
         remedy = f'try each, such as --vary "{entry.path}=1:10:10"'
         raise InvalidValue(FIND, entry.path, "it is a whole number", remedy)
     if "=" in text:
@@ -145,10 +145,9 @@ def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: s
     if not value:
         example = f"{entry.path}=0:1:{_TOGETHER} {entry.quantity.unit}".rstrip()
         raise InvalidValue(FIND, entry.path, "the file's value is 0", f'give bounds, such as "{example}"')
-    written, usual = part_at(tables, entry.path), _USUAL.get(entry.quantity.unit, entry.quantity.unit)
-    unit, in_unit = unit_as_written(
-        written if isinstance(written, str) else f"1 {usual}", entry.quantity.unit
-    )
+    written, si = part_at(tables, entry.path), entry.quantity.unit
+    has_unit = isinstance(written, str) and "%" not in written
+    unit, in_unit = unit_as_written(written if has_unit else f"1 {_USUAL.get(si, si)}", si)
     count = _TOGETHER if brake.most_cases > MOST_ONE_BY_ONE else _ONE_BY_ONE
     low, high = sorted(entry.quantity.nearest_within(end) for end in (value / _TIMES, value * _TIMES))
     values = np.geomspace(low, high, count)

@@ -209,7 +209,7 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
         for (sign, last), (following, _) in pairwise(_courses_of_run(y))
     ]
     x, y = _joined(x, y, cuts, answers(np.array(cuts)))
-    places = np.searchsorted(x, [x[0], *cuts, x[-1]])
+    places = np.searchsorted(x, np.unique([x[0], *cuts, x[-1]]))
     yield from ((x[i : j + 1], y[i : j + 1]) for i, j in pairwise(places.tolist()))
 
 
@@ -234,20 +234,26 @@ def _solve(answers: _Answers, pieces: Sequence[Curve], target: float) -> tuple[n
         ends = [x[i] for i in (0, -1) if abs(past[i]) <= _SURE * abs(target)]
         if not ends and past[0] * past[-1] < 0:
             k = int(np.argmax(np.sign(past) != np.sign(past[0])))
-            root, jumped = _root(answers, target, x[k - 1 : k + 1], past[k - 1 : k + 1])
+            root, jumped = _root(
+                answers, target, dict(zip(x[k - 1 : k + 1], past[k - 1 : k + 1], strict=True))
+            )
             (jumps if jumped else found).append(root)
         found += ends
     return np.unique(found), np.unique(jumps)
 
 
-def _root(answers: _Answers, target: float, bracket: np.ndarray, past: np.ndarray) -> tuple[float, bool]:
-    """Where the answer passes the wanted value, and whether it jumps there."""
+def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
+    """Where the answer passes the wanted value between two inputs, and whether it jumps there.
+
+    The differences at both are known: computed alone they may round otherwise, to another sign.
+    """
     from scipy.optimize import toms748  # here: only a question backwards needs it
 
     def difference(x: float) -> float:
-        return float(answers(np.array([x]))[0]) - target
+        return float(bracket[x] if x in bracket else answers(np.array([x]))[0] - target)
 
-    if past[1] == 0:
-        return float(bracket[1]), False
-    root = toms748(difference, *bracket.tolist(), xtol=np.finfo(float).tiny, rtol=4 * _EPS)
-    return root, abs(difference(root)) > _JUMP * abs(past[1] - past[0])
+    (low, before), (high, after) = bracket.items()
+    if after == 0:
+        return float(high), False
+    root = toms748(difference, float(low), float(high), xtol=np.finfo(float).tiny, rtol=4 * _EPS)
+    return root, abs(difference(root)) > _JUMP * abs(after - before)
