@@ -74,8 +74,8 @@ def _question(brake: ArrayBrakeType[Any], name: str, rng: np.random.Generator) -
     text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))
     design = brake.read(tables, name)
-    entries = [each for each in brake.sweep_inputs(design, tables) if part_at(design, each.path)]
-    entries = [each for each in entries if isinstance(part_at(tables, each.path), str | float)]
+    inputs = brake.sweep_inputs(design, tables)
+    entries = [each for each in inputs if not each.choices and part_at(tables, each.path)]
     values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
     written = {e.path: f"{values[e.path]!r} {e.quantity.unit}" for e in entries if e.quantity.unit}
     tables = with_parts(tables, values | written)

@@ -400,9 +400,9 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return describe(self.model)
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers in those tables that the design has; what has neither unit nor symbol is a choice."""
+        """Numbers in those tables that the design has, and choices, which are refused by their names."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
-        return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]
+        return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""

@@ -27,9 +27,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _AXLES: tuple[Axle, Axle] = ("front", "rear")
-_HOLDING = take_fields(
-    Holding,
-    "largest_slope slipping_slope tipping_slope rolling_slope needed_force front_load rear_load",
+_HOLDING = (
+    Output("holds", "holds on the slope: 1, else 0", lambda holding: np.equal(holding.status, "holds") * 1.0),
+    *take_fields(
+        Holding,
+        "largest_slope slipping_slope tipping_slope rolling_slope needed_force braking_force front_load rear_load",
+    ),
 )
 _BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
 _LEVER = take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel")
@@ -182,8 +185,8 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     error_from = "rounding of inputs and sums"
     model = VehicleInput
     sections = needs = ("truck", "vehicle", "road", "braking", "lever", "cable", "line", "brakes")
-    example_sweep = "road.friction=0.4:0.9:26"
-    sweep_results = "largest_slope_front,largest_slope_rear"
+    example_sweep = "road.slope=1:35:35 deg"
+    sweep_results = "holds_front,holds_rear,braking_force_front,braking_force_rear"
     key_results = (
         ("largest slope, front axle downhill", "largest_slope_front"),
         ("largest slope, rear axle downhill", "largest_slope_rear"),

@@ -31,7 +31,7 @@ StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
     help_epilogue=examples(
         "brakes caliper v-brake --plot v_brake.png",
         'brakes caliper dual-pivot --vary "dimensions.side_pivot.x=22:32:3 mm"',
-        "brakes caliper examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+        "brakes caliper examples/calipers/eebrake.toml --free-bodies bodies.png",
     ),
 )
 def caliper(
@@ -44,7 +44,7 @@ def caliper(
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Forces, travels and mechanical advantage of a caliper, or of any planar mechanism.
+    """Forces, travels and mechanical advantage of a caliper.
 
     With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
     statics does not determine and which contacts open, and then ends with code 1.
@@ -65,7 +65,7 @@ def caliper(
     outputs
         Files to write.
     """
-    from brakes.answers.caliper import MECHANISM, names_tables
+    from brakes.answers.caliper import names_tables
 
     if list_:
         files = vars(outputs) | {"free-bodies": free_bodies, "animation": animation, "force": None}
@@ -78,17 +78,63 @@ def caliper(
                 raise ValueError(f"{name} = {text}: {says}")
         show(names_tables())
         return
+    _run_planar("caliper", mechanism, free_bodies, animation, asked, outputs)
+
+
+@app.command(
+    help_epilogue=examples(
+        "brakes mechanism examples/block_brake.toml",
+        "brakes mechanism examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+    )
+)
+def mechanism(
+    file: Annotated[Path, Parameter(name="MECHANISM.toml")],
+    /,
+    *,
+    free_bodies: Path | None = None,
+    animation: Path | None = None,
+    asked: Asked = ONE_DESIGN,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Every force in a planar mechanism of bodies, joints and loads, as drawn and over a stroke.
+
+    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
+    statics does not determine and which contacts open, and then ends with code 1.
+
+    Parameters
+    ----------
+    file
+        The mechanism, part by part, or a caliper.
+    free_bodies
+        Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
+    animation
+        Write an animation of the stroke: .gif.
+    asked
+        What is asked of many designs.
+    outputs
+        Files to write.
+    """
+    _run_planar("mechanism", str(file), free_bodies, animation, asked, outputs)
+
+
+def _run_planar(
+    command: str, name: str, free_bodies: Path | None, animation: Path | None, asked: Asked, outputs: Outputs
+) -> None:
+    """Answer a caliper or a mechanism, with the pictures that others do not have."""
+    from brakes.answers.caliper import MECHANISM
+
     further = {
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
-    run_command(MECHANISM, "caliper", mechanism, asked, outputs, further)
+    run_command(MECHANISM, command, name, asked, outputs, further)
 
 
 @app.command(
     help_epilogue=examples(
         "brakes forklift examples/forklift.toml --plot forklift.png",
         'brakes forklift examples/forklift.toml --vary "stop.speed=10:30:3 km/h"',
+        'brakes forklift examples/forklift.toml --find friction --so-that "distance=9 m"',
     )
 )
 def forklift(
