@@ -10,6 +10,7 @@ import numpy as np
 from brakes.answers.tables import format_number
 
 PART = 0.1  # by which the friction of linings varies
+ENDS = (1 - PART, 1 + PART)  # over the given friction
 
 
 def doubt(at: Callable[[float], Any], torque: float, of_laws: Iterable[tuple[str, float]] = ()) -> str:
@@ -24,7 +25,7 @@ def doubt(at: Callable[[float], Any], torque: float, of_laws: Iterable[tuple[str
     of_laws : iterable of (str, float)
         Words and torque of other laws [N m].
     """
-    ends = ", ".join(_said(at(part).torque, torque) for part in (1 - PART, 1 + PART))
+    ends = ", ".join(_said(at(part).torque, torque) for part in ENDS)
     others = (f"{words} {_said(found, torque)}" for words, found in of_laws)
     said = (f"friction -+{100 * PART:.0f} %: {ends}", *others)
     return f"At this force, torque {format_number(torque)} N m; " + "; ".join(said) + "."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import doubt
+from brakes.answers.doubts import ENDS, doubt
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
@@ -81,16 +82,19 @@ class DrumAnswer(Answer):
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
+        doubtful = [self._at_friction(part, self.design.load.given) for part in ENDS]
+        of_shoes = [*zip(*(each.shoes for each in doubtful), strict=True)]
         made: list[RenderableType] = [
-            outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
-            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes), (0, len(names) + 1)),
+            outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake, doubtful),
+            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes, of_shoes), (0, len(names) + 1)),
         ]
-        return made if brake.locked else [*made, doubt(self._at_friction, brake.torque)]
+        at_force = partial(self._at_friction, given={"force": brake.force})
+        return made if brake.locked else [*made, doubt(at_force, brake.torque)]
 
-    def _at_friction(self, part: float) -> BrakeResult:
-        """The result at a part of the friction, with the same force."""
-        given = {"force": self.result.force, "reverse": self.result.reverse}
-        return brake_torque(self.result.brake, friction=part * self.result.friction, **given)
+    def _at_friction(self, part: float, given: Mapping[str, Any]) -> BrakeResult:
+        """The result at a part of the friction, with a load."""
+        brake, friction = self.result.brake, part * self.result.friction
+        return brake_torque(brake, friction=friction, reverse=self.result.reverse, **given)
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import doubt
+from brakes.answers.doubts import ENDS, doubt
 from brakes.answers.tables import list_outputs, outputs_csv, take_fields, take_from
 from brakes.config.machine import MachineInput, file_of
 from brakes.drawings.machine import charts_of, machine_figure
@@ -110,20 +111,20 @@ class MachineAnswer(Answer):
         title = f"{self.design.title}, {direction}, friction {result.friction:g}"
         names, parts = [each.name for each in result.linings], _of_lining(result.brake)
         heads = ("", *laws, "unit"), ("", *names, "unit")
+        doubtful = [*laws.values(), *(self._at_friction(part, self.design.load.given) for part in ENDS)]
+        of_laws = [doubtful] * len(laws)
+        of_linings = [*zip(*(each.linings for each in doubtful), strict=True)]
         made: list[RenderableType] = [
-            table(title, heads[0], list_outputs(_WHOLE, [*laws.values()]), (0, len(laws) + 1)),
-            table("Linings", heads[1], list_outputs(parts, result.linings), (0, len(names) + 1)),
+            table(title, heads[0], list_outputs(_WHOLE, [*laws.values()], of_laws), (0, len(laws) + 1)),
+            table("Linings", heads[1], list_outputs(parts, result.linings, of_linings), (0, len(names) + 1)),
         ]
-        return (
-            made if result.locked else [*made, doubt(self.torque_at(), result.torque, self.at_same_force())]
-        )
+        at_force = partial(self._at_friction, given={"force": result.force})
+        return made if result.locked else [*made, doubt(at_force, result.torque, self.at_same_force())]
 
-    def torque_at(self) -> Callable[[float], MachineResult]:
-        """The result at another friction, in parts of the given one, with the same force."""
-        result = self.result
-        return lambda part: solve_brake(
-            result.brake, friction=part * result.friction, force=result.force, reverse=result.reverse
-        )
+    def _at_friction(self, part: float, given: Mapping[str, Any]) -> MachineResult:
+        """The result at a part of the friction, with a load."""
+        brake, friction = self.result.brake, part * self.result.friction
+        return solve_brake(brake, friction=friction, reverse=self.result.reverse, **given)
 
     def at_same_force(self) -> Iterator[tuple[str, float]]:
         """Words and torque of the other laws of the pressure, with the same force."""

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 from rich.console import Group
+from rich.text import Text
 
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.results.meanings import meanings
 
 _SHOWN = 24  # rows of a sweep
+_ROUNDING = 1e-12  # relative difference of two answers that is none
 SCALES = {"mm": 1e-3, "deg": pi / 180, "kN": 1e3, "MPa": 1e6}  # sizes in SI of units that people see
 
 
@@ -41,14 +43,30 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
     )
 
 
-def list_outputs(outputs: Iterable[Output], results: Sequence[Any]) -> list[list[str]]:
-    """Rows of a table: what each output is, its value in each result, its unit."""
-    return [[o.words, *(format_number(o.shown(result)) for result in results), o.unit] for o in outputs]
+def list_outputs(
+    outputs: Iterable[Output], results: Sequence[Any], doubtful: Sequence[Sequence[Any]] = ()
+) -> list[list[str | Text]]:
+    """Rows of a table: what each output is, its value in each result, its unit.
+
+    Digits of a result in which doubtful ones of it differ (the same with other friction, say) are dimmed.
+    """
+    doubted = doubtful or [()] * len(results)
+    each = [*zip(results, doubted, strict=True)]
+    return [[o.words, *(_doubted(o, *one) for one in each), o.unit] for o in outputs]
 
 
-def outputs_table(title: str, outputs: Iterable[Output], result: Any) -> Group:
+def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
+    """An output of a result, its digits dimmed in which it differs in doubtful ones; nan counts as equal."""
+    value = float(output.shown(result))
+    changes = [abs(float(output.shown(other)) - value) for other in doubtful]
+    change = float(np.fmax.reduce([0.0, *changes]))
+    text = format_number(value)
+    return set_apart(text, change) if change > _ROUNDING * abs(value) else text
+
+
+def outputs_table(title: str, outputs: Iterable[Output], result: Any, doubtful: Sequence[Any] = ()) -> Group:
     """A table of a result's outputs."""
-    return table(title, ("", "value", "unit"), list_outputs(outputs, [result]), (0, 2))
+    return table(title, ("", "value", "unit"), list_outputs(outputs, [result], [doubtful]), (0, 2))
 
 
 def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[object]]:

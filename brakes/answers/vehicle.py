@@ -31,7 +31,8 @@ _HOLDING = (
     Output("holds", "holds on the slope: 1, else 0", lambda holding: np.equal(holding.status, "holds") * 1.0),
     *take_fields(
         Holding,
-        "largest_slope slipping_slope tipping_slope rolling_slope needed_force braking_force front_load rear_load",
+        "largest_slope slipping_slope tipping_slope rolling_slope needed_force braking_force "
+        "front_load rear_load",
     ),
 )
 _BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
@@ -166,11 +167,8 @@ class VehicleAnswer(Answer):
 
 
 def _failures(holding: Holding) -> list[str]:
-    """A sentence if it does not hold; of many cases how many."""
-    if np.ndim(holding.status):
-        short = int(np.sum(holding.status != "holds"))
-        return [f"it does not hold in {short} of {holding.status.size} cases"] if short else []
-    return [] if holding.status == "holds" else [holding.message]
+    """A sentence if one vehicle does not hold; of many, `holds` says which."""
+    return [holding.message] if np.ndim(holding.status) == 0 and holding.status != "holds" else []
 
 
 class ParkingType(ArrayBrakeType[VehicleInput]):
