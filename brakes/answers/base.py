@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
 from types import MappingProxyType
@@ -287,6 +287,11 @@ class BrakeType(ABC, Generic[FileModel]):
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
         """Inputs of the form, for tables as far as they are filled in."""
 
+    @property
+    def optional(self) -> Collection[str]:
+        """Tables of the file that may be left out."""
+        return ()
+
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
         """Paths of inputs that have no effect beside these entries; see `Document`."""
         return ()
@@ -398,6 +403,11 @@ class ArrayBrakeType(BrakeType[FileModel]):
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
         """Inputs of the form: those of the model."""
         return describe(self.model)
+
+    @property
+    def optional(self) -> Collection[str]:
+        """Tables of the model that it does not require."""
+        return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
         """Numbers in those tables that the design has, and choices, which are refused by their names."""

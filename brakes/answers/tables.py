@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import groupby
 from math import inf, pi
 from operator import attrgetter
 from typing import Any
@@ -12,6 +13,7 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
+from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.results.meanings import meanings
 
@@ -74,6 +76,28 @@ def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[
     yield "result", *results, "unit"
     for output in outputs:
         yield output.name, *(float(output.shown(result)) for result in results.values()), output.unit
+
+
+def keys_tables(inputs: Iterable[Input], optional: Collection[str]) -> Iterator[Group]:
+    """Tables of the keys of a file: what each means with unit, bounds and choices, and its default.
+
+    Optional are tables that may be left out.
+    """
+    for place, entries in groupby(inputs, key=lambda entry: entry.path.rpartition(".")[0]):
+        rows = ((each.name, ": ".join([each.help, *_choices(each)]), _default(each)) for each in entries)
+        title = f"[{place}]{', which may be left out' * (place in optional)}" if place else "At the top"
+        yield table(title, ("key", "what", "if not given"), rows, (0, 1, 2))
+
+
+def _choices(entry: Input) -> list[str]:
+    return [", ".join(map(str, entry.choices))] if entry.choices else []
+
+
+def _default(entry: Input) -> str:
+    """What a key has that is not given, as a file would say it."""
+    if entry.required:
+        return "required"
+    return "" if entry.default in (None, [], ()) else f"{entry.default} {entry.quantity.unit}".rstrip()
 
 
 def sweep_table(sweep: InputSweep) -> Group:

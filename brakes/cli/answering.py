@@ -164,6 +164,8 @@ def run_command(
     written = {option: path for option, (path, _) in (further or {}).items()}
     outputs.check(file, **written)
     tables, text = brake.open(file)
+    if not tables:
+        raise ValueError(f"{file}: it has no tables yet; `brakes keys {command}` lists them with their keys")
     question = Question.of(f"brakes {command}", file, text, **options, **asked.options)
     asked.check()
     for option, path in written.items():

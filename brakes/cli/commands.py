@@ -12,6 +12,7 @@ from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.tables import console, show
 from beamdyn.common.edge.varying import SomeFolder
+from beamdyn.common.inputs.checks import one_of
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
@@ -104,7 +105,7 @@ def mechanism(
     Parameters
     ----------
     file
-        The mechanism, part by part, or a caliper.
+        The mechanism, part by part, or a caliper; `brakes keys mechanism` lists all keys.
     free_bodies
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
@@ -150,7 +151,7 @@ def forklift(
     Parameters
     ----------
     file
-        The truck, the stop, and one of its brakes.
+        The truck, the stop, and one of its brakes; `brakes keys forklift` lists all keys.
     stage
         What to show; what comes before it is computed where it is needed.
     asked
@@ -162,6 +163,26 @@ def forklift(
 
     brake = FORKLIFT if stage == "all" else TYPES[stage]
     run_command(brake, "forklift", str(file), asked, outputs, stage=stage)
+
+
+@app.command(help_epilogue=examples("brakes keys disc"))
+def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
+    """List the tables and keys of a file from which to begin: meaning, unit, bounds and default of each.
+
+    Parameters
+    ----------
+    brake
+        The command that takes the file, such as drum, disc, vehicle, forklift, caliper or mechanism.
+    """
+    from brakes.answers.caliper import CALIPER, MECHANISM
+    from brakes.answers.forklift import FORKLIFT
+    from brakes.answers.tables import keys_tables
+
+    others = {each.name: each for each in (FORKLIFT, CALIPER, MECHANISM)}
+    one_of("COMMAND", brake, [*STANDARD, *others])
+    found = others.get(brake) or STANDARD[brake][1]()
+    about = 'A quantity is text with a unit, "50 mm"; a number without a unit and true or false stand bare.'
+    show([*keys_tables(found.inputs({}), found.optional), about])
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
@@ -219,7 +240,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         Parameters
         ----------
         file
-            The TOML file that describes the brake.
+            The TOML file that describes the brake; `brakes keys` lists its keys.
         asked
             What is asked of many designs.
         outputs
