@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.inputs.paths import part_at, with_parts
 from brakes.answers import STANDARD
-from brakes.answers.base import ArrayBrakeType
+from brakes.answers.base import BrakeType
 from brakes.answers.finding import find_in_file
 from brakes.answers.forklift import FORKLIFT
 from brakes.app.bases import base
@@ -69,7 +69,7 @@ def questions(count: int, seed: int = 34) -> Iterator[Asked]:
             yield asked
 
 
-def _question(brake: ArrayBrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
+def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
     """A question; None where the design has no answer, or the result does not depend on the input."""
     text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))

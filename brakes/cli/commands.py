@@ -12,7 +12,6 @@ from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.tables import console, show
 from beamdyn.common.edge.varying import SomeFolder
-from beamdyn.common.inputs.checks import one_of
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
@@ -174,6 +173,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
     brake
         The command that takes the file, such as drum, disc, vehicle, forklift, caliper or mechanism.
     """
+    from beamdyn.common.inputs.checks import one_of
     from brakes.answers.caliper import CALIPER, MECHANISM
     from brakes.answers.forklift import FORKLIFT
     from brakes.answers.tables import keys_tables
