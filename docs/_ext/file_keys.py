@@ -120,7 +120,6 @@ def first_sentence(text: str) -> str:
 def write_tables(app, docname: str, source: list[str]) -> None:
     source[0] = source[0].replace("<!-- standard brakes -->", rows_of_brakes())
     source[0] = source[0].replace("<!-- list of examples -->", list_of_examples())
-    source[0] = source[0].replace("<!-- keys of brakes pressed by one force -->", keys_of_machines())
     if not MARK.search(source[0]):
         return
     source[0] = with_tables(source[0])
@@ -128,6 +127,7 @@ def write_tables(app, docname: str, source: list[str]) -> None:
 
 def with_tables(text: str) -> str:
     """A page with the tables in place of its marks."""
+    text = text.replace("<!-- keys of brakes pressed by one force -->", keys_of_machines())
     return MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2]), mark[3]), text)
 
 
