@@ -203,7 +203,7 @@ class BrakeType(ABC, Generic[FileModel]):
        exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
     6. An `Output` takes its number, in SI, from the `Answer`; if the design has arrays, an array.  A field of
        a result that is annotated by `Meaning` says its words and unit itself: `take_fields`.
-    7. ``brakes/app/bases/name.toml`` is the example with which the screen opens.
+    7. ``examples/name.toml``, or ``brakes/app/bases/name.toml``, is the example with which the screen opens.
     8. A line in `brakes.answers.STANDARD` adds the command and the screen.
 
     Attributes
