@@ -45,7 +45,7 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
         ``answer(x)``: the answers to an array of inputs (n,), nan where there is none.  Inputs for which the
         functions of this package refuse it have none either.
     target : float
-        The wanted value.
+        The wanted value [unit of the answer].
     samples : array_like, shape (n,)
         Inputs in ascending order, where the search begins: it ends at the first and at the last of them.
     why : callable, optional
@@ -63,7 +63,7 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
 
     References
     ----------
-    Standard (intermediate values on pieces that rise or fall); roots by Alefeld, Potra, Shi (1995).
+    Standard (intermediate values on pieces that rise or fall); roots by Alefeld, Potra and Shi (1995).
 
     Examples
     --------
@@ -71,7 +71,7 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
     >>> def torque(friction):
     ...     return machines.solve_brake(band, friction=friction, force=100.0).torque
     >>> brakes.find(torque, 90.0, np.linspace(0.05, 0.4, 8)).values.round(6)
-    array([0.164414])
+    array([0.164578])
     """
     function("answer", answer)
     target, x = real("target", target), ascending("samples", samples)

@@ -70,17 +70,17 @@ class Solutions(Result):
     Attributes
     ----------
     target : float
-        The wanted value.
+        The wanted value [output_unit].
     values : ndarray, shape (k,)
-        Inputs that give it, in ascending order; empty if there are none.
+        Inputs that give it [unit], in ascending order; empty if there are none.
     residuals : ndarray, shape (k,)
-        Answers there, less the wanted value.
+        Answers there, less the wanted value [output_unit].
     pieces : tuple of Piece
         Ranges over which the answer rises, falls or is level, which show that there are no other solutions.
     gaps : tuple of Gap
         Ranges without an answer.
     jumps : ndarray, shape (j,)
-        Inputs at which the answer jumps past the wanted value.
+        Inputs at which the answer jumps past the wanted value [unit].
     samples, answers : ndarray, shape (n,)
         Inputs at which the answer was computed to find the pieces, and the answers; nan where there is none.
     settled : bool
