@@ -75,7 +75,8 @@ def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Ask
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))
     design = brake.read(tables, name)
     inputs = brake.sweep_inputs(design, tables)
-    entries = [each for each in inputs if not each.choices and part_at(tables, each.path)]
+    given = ((each, part_at(tables, each.path)) for each in inputs if not each.choices)
+    entries = [each for each, value in given if isinstance(value, str | float)]  # no counts, no whole shares
     values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
     written = {e.path: f"{values[e.path]!r} {e.quantity.unit}" for e in entries if e.quantity.unit}
     tables = with_parts(tables, values | written)
