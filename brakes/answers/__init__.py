@@ -19,6 +19,7 @@ _SHOWN = {  # by the name of the command and of its module: what it shows
     "cone": "Torque, pressure and sticking of a cone brake.",
     "disc": "Torque, forces and pressure of a disc brake with a fixed or floating caliper.",
     "plates": "Torque and pressure of a multi-plate brake.",
+    "sliding": "Torque, contact and self-locking of a drum brake whose shoes slide on their abutment.",
     "vehicle": "Parking on a slope in both directions, pitching over, and which axle locks first.",
 }
 

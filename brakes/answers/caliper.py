@@ -37,7 +37,8 @@ from brakes.answers.planar import (
     reactions_table,
     select_rows,
 )
-from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, StoppingDistance
+from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, Stance, StoppingDistance
+from brakes.common.limits import passes, verdict
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import (
     PARTS,
@@ -161,8 +162,13 @@ class CaliperAnswer(PlanarAnswer):
         """Warnings of the stroke, and a sentence if friction holds the brake."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
-        unchecked = self.stop.unchecked if self.stop and self.stop.status == "stops" else ()
-        return tuple(map(in_files, (*self.run.warnings, *held, *unchecked)))
+        hard = [f"hand, {self._verdict}"] if passes("bicycle", self.run.finger_force) else []
+        return tuple(map(in_files, (*self.run.warnings, *held, *hard)))
+
+    @property
+    def _verdict(self) -> str:
+        """Whether the hand's force keeps the limit of the standard."""
+        return verdict("bicycle", self.run.finger_force)
 
     @property
     def error(self) -> float:
@@ -213,9 +219,22 @@ class CaliperAnswer(PlanarAnswer):
             ]
         if self.stop is not None:
             shown.append(
-                f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}."
+                f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}"
+                f"{self._assumed()}."
             )
-        return [*shown, self._diagnosis(run.message, run.virtual_work)]
+        return [*shown, f"Hand, {self._verdict}.", self._diagnosis(run.message, run.virtual_work)]
+
+    def _assumed(self) -> str:
+        """Which dimensions of the vehicle are those of a usual bicycle."""
+        assert self.design.stop is not None
+        given = {"braked_wheel", *self.design.stop.model_fields_set}
+        units = {"tyre_friction": ""}
+        said = ", ".join(
+            f"{key} {value:g} {units.get(key, 'm')}".rstrip()
+            for key, value in vars(Stance()).items()
+            if key not in given
+        )
+        return f"; of a usual bicycle, as [stop] does not give them: {said}" if said else ""
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import RenderableType
@@ -16,8 +15,8 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import ENDS, doubt
-from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, resultant, take_fields, take_from
+from brakes.answers.rubbing import RubbingAnswer, heat_outputs
+from brakes.answers.tables import list_outputs, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
@@ -48,33 +47,10 @@ def _outputs(shoes: int) -> tuple[Output, ...]:
 
 
 @dataclass(frozen=True)
-class DrumAnswer(Answer):
-    """Forces in a drum brake.
+class DrumAnswer(RubbingAnswer):
+    """Forces in a drum brake, and how hot it gets."""
 
-    Attributes
-    ----------
-    design : DrumInput
-        The file.
-    result : BrakeResult
-        The forces.
-    """
-
-    design: DrumInput
-    result: BrakeResult
-
-    @property
-    def error(self) -> Any:
-        """Bound of the relative error of torque, forces and C*; nan where the brake locks."""
-        return self.result.error
-
-    @property
-    def refusals(self) -> Sequence[str]:
-        """A sentence if the brake locks."""
-        return (self.result.message,) if np.any(self.result.locked) else ()
-
-    def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """A sentence on each design whose brake locks, by row."""
-        return self.result.messages_of_locked(count)
+    solver = staticmethod(brake_torque)
 
     def tables(self) -> list[RenderableType]:
         """The brake as a whole, and shoe by shoe."""
@@ -82,23 +58,17 @@ class DrumAnswer(Answer):
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
-        doubtful = [self._at_friction(part, self.design.load.given) for part in ENDS]
+        doubtful = [*self.doubtful()]
         of_shoes = [*zip(*(each.shoes for each in doubtful), strict=True)]
-        made: list[RenderableType] = [
+        return [
             outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake, doubtful),
             table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes, of_shoes), (0, len(names) + 1)),
+            *self.further_tables(),
         ]
-        at_force = partial(self._at_friction, given={"force": brake.force})
-        return made if brake.locked else [*made, doubt(at_force, brake.torque)]
 
-    def _at_friction(self, part: float, given: Mapping[str, Any]) -> BrakeResult:
-        """The result at a part of the friction, with a load."""
-        brake, friction = self.result.brake, part * self.result.friction
-        return brake_torque(brake, friction=friction, reverse=self.result.reverse, **given)
-
-    def rows(self) -> Iterable[Sequence[object]]:
-        """Names, values and units of all numbers."""
-        return outputs_csv(_outputs(len(self.result.shoes)), value=self)
+    def outputs(self) -> tuple[Output, ...]:
+        """Numbers of the brake and of its shoes."""
+        return _outputs(len(self.result.shoes))
 
     def figure(self, place: float | None = None) -> Figure:
         """Free bodies, pressures and factors."""
@@ -126,14 +96,6 @@ class DrumAnswer(Answer):
             Handle("height of the force", (0.55 * r, force), lambda x, y: {"shoe.force_arm": y}),
         )
 
-    def loadable(self) -> BrakeResult:
-        """The result of the mechanics."""
-        return self.result
-
-    def values(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return self.result.to_dict()
-
 
 def _from_bottom(x: float, y: float) -> float:
     """Angle of a point from straight down [rad]."""
@@ -149,14 +111,14 @@ class DrumType(ArrayBrakeType[DrumInput]):
     method = "pressure and friction of each shoe integrated in closed form"
     error_from = "rounding of inputs and sums, over the margin to self-locking"
     model = DrumInput
-    sections = needs = ("brake", "shoe", "second_shoe", "load")
+    sections = needs = ("brake", "shoe", "second_shoe", "load", "heat")
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
     example_sweep = "brake.friction=0.1:0.6:26"
     sweep_results = "torque,c_star,peak_pressure"
 
-    def solve(self, design: DrumInput) -> DrumAnswer:
-        """Forces in the brake."""
-        return DrumAnswer(design, design.solve())
+    def solve(self, design: DrumInput) -> Answer:
+        """Forces in the brake, and its heat."""
+        return DrumAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """Explain the symbols of the form."""
@@ -164,7 +126,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
         """Numbers of the brake and of its shoes."""
-        return _outputs(len(design.core.shoes))
+        return *_outputs(len(design.core.shoes)), *heat_outputs(design)
 
 
 BRAKE = DrumType()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,10 +39,15 @@ from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_VEHICLE = take_fields(
-    Stop,
-    "distance time acceleration torque_per_brake reaction_distance rise_distance braking_distance "
-    "speed_lost_in_rise speed_gained_coasting front_load rear_load standing_front_load standing_rear_load",
+_VEHICLE = (
+    *take_fields(Stop, "distance"),
+    take("pulled_distance", "... if the slope pulls while the brake force rises", "m"),
+    *take_fields(
+        Stop,
+        "time acceleration torque_per_brake reaction_distance rise_distance braking_distance "
+        "speed_lost_in_rise speed_gained_coasting front_load rear_load standing_front_load "
+        "standing_rear_load",
+    ),
 )
 _MOTION = take_fields(
     ShoeMotion,
@@ -155,11 +160,15 @@ class ForkliftAnswer(Answer):
         if self.stop is not None:
             rows = [["", str(self.stop.status), ""], *list_outputs(_VEHICLE, [self.stop])]
             if self.stop.limited_by == "brake":
-                rows = [[words.replace("wheels locked", "wheels rolling"), *rest] for words, *rest in rows]
+                rolls = ("wheels locked", "wheels rolling"), (", sliding", ", rolling")
+                rows = [
+                    [reduce(lambda said, each: said.replace(*each), rolls, w), *more] for w, *more in rows
+                ]
             tables.append(table("Vehicle", heads, rows, (0, 2)))
         if self.pedal is not None:
             title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
             tables.append(outputs_table(title, OUTPUTS, self.pedal))
+            tables.append(f"Pedal, {self.pedal.braked.actuation.verdict}.")
         if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
             rows = [
                 [
@@ -176,8 +185,17 @@ class ForkliftAnswer(Answer):
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
         if (f := self.forces) is not None:
             rows = [*list_outputs(_FORCES, [f]), [], *list_outputs(_ARMS, [f.levers])]
-            title = f"Forces in one brake; the torque is from {self.torque_from}"
+            limit = None if self.pedal is None else str(self.pedal.braked.limited_by)
+            source = {"brake": "the pedal", "road": "the road, on locked wheels", None: self.torque_from}[
+                limit
+            ]
+            title = f"Forces in one brake; the torque is from {source}"
             tables.append(table(title, heads, rows, (0, 2)))
+            if limit == "road" and self.design.forces is not None:
+                tables.append(
+                    f"The linings stick to their drums: of their friction "
+                    f"{self.design.forces.lining_friction:.4g} the locked wheels use {f.lining_friction:.4g}."
+                )
         return tables
 
     def rows(self) -> Iterable[Sequence[object]]:

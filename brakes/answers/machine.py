@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
 from rich.console import RenderableType
 
 from beamdyn.common.drawing.chart import Chart
@@ -17,8 +15,8 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import ENDS, doubt
-from brakes.answers.tables import list_outputs, outputs_csv, take_fields, take_from
+from brakes.answers.rubbing import RubbingAnswer, heat_outputs
+from brakes.answers.tables import list_outputs, take_fields, take_from
 from brakes.config.machine import MachineInput, file_of
 from brakes.drawings.machine import charts_of, machine_figure
 from brakes.drawings.sketches import cylinder_sketch
@@ -55,38 +53,15 @@ def _outputs(brake: Machine) -> tuple[Output, ...]:
 
 
 @dataclass(frozen=True)
-class MachineAnswer(Answer):
-    """Forces in a brake whose linings are pressed by one force.
+class MachineAnswer(RubbingAnswer):
+    """Forces in a brake whose linings are pressed by one force, and how hot it gets."""
 
-    Attributes
-    ----------
-    design : MachineInput
-        The file.
-    result : MachineResult
-        The forces.
-    """
-
-    design: MachineInput
-    result: MachineResult
-
-    @property
-    def error(self) -> Any:
-        """Bound of the relative error of torque, forces and C*; nan where the brake locks."""
-        return self.result.error
+    solver = staticmethod(solve_brake)
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Remarks of the brake's type, such as a cone that sticks."""
-        return self.result.brake.remarks(self.result.friction)
-
-    @property
-    def refusals(self) -> Sequence[str]:
-        """A sentence if the brake locks."""
-        return (self.result.message,) if np.any(self.result.locked) else ()
-
-    def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """A sentence on each design whose brake locks, by row."""
-        return self.result.messages_of_locked(count)
+        """Also remarks of the brake's type, such as a cone that sticks."""
+        return (*self.result.brake.remarks(self.result.friction, self.result.reverse), *super().warnings)
 
     def by_law(self) -> dict[str, MachineResult]:
         """The result under each law of the pressure, by its words, the chosen law first.
@@ -111,36 +86,20 @@ class MachineAnswer(Answer):
         title = f"{self.design.title}, {direction}, friction {result.friction:g}"
         names, parts = [each.name for each in result.linings], _of_lining(result.brake)
         heads = ("", *laws, "unit"), ("", *names, "unit")
-        doubtful = [*laws.values(), *(self._at_friction(part, self.design.load.given) for part in ENDS)]
-        of_laws = [doubtful] * len(laws)
-        of_linings = [*zip(*(each.linings for each in doubtful), strict=True)]
-        made: list[RenderableType] = [
+        doubtful = [*self.doubtful()]
+        of_laws, of_linings = (
+            [doubtful] * len(laws),
+            [*zip(*(each.linings for each in doubtful), strict=True)],
+        )
+        return [
             table(title, heads[0], list_outputs(_WHOLE, [*laws.values()], of_laws), (0, len(laws) + 1)),
             table("Linings", heads[1], list_outputs(parts, result.linings, of_linings), (0, len(names) + 1)),
+            *self.further_tables(),
         ]
-        at_force = partial(self._at_friction, given={"force": result.force})
-        return made if result.locked else [*made, doubt(at_force, result.torque, self.at_same_force())]
 
-    def _at_friction(self, part: float, given: Mapping[str, Any]) -> MachineResult:
-        """The result at a part of the friction, with a load."""
-        brake, friction = self.result.brake, part * self.result.friction
-        return solve_brake(brake, friction=friction, reverse=self.result.reverse, **given)
-
-    def at_same_force(self) -> Iterator[tuple[str, float]]:
-        """Words and torque of the other laws of the pressure, with the same force."""
-        result = self.result
-        for law, words in result.brake.laws.items():
-            try:
-                other = result.brake.with_law(law)
-            except InvalidValue:
-                continue
-            if law != result.brake.law:
-                given = {"friction": result.friction, "force": result.force, "reverse": result.reverse}
-                yield words, solve_brake(other, **given).torque
-
-    def rows(self) -> Iterable[Sequence[object]]:
-        """Names, values and units of all numbers."""
-        return outputs_csv(_outputs(self.result.brake), value=self)
+    def outputs(self) -> tuple[Output, ...]:
+        """Numbers of the brake and of its linings."""
+        return _outputs(self.result.brake)
 
     def figure(self, place: float | None = None) -> Figure:
         """The brake with its forces, pressures and factors."""
@@ -153,14 +112,6 @@ class MachineAnswer(Answer):
     def charts(self, place: float) -> Sequence[Chart]:
         """Pressures and factors."""
         return charts_of(self.result)
-
-    def loadable(self) -> MachineResult:
-        """The result of the mechanics."""
-        return self.result
-
-    def values(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
-        return self.result.to_dict()
 
 
 TYPES: dict[type[Machine], MachineType] = {}  # by class of the brake
@@ -192,12 +143,12 @@ class MachineType(ArrayBrakeType[MachineInput]):
     ) -> None:
         self.name, self.title, self.purpose = name, title, purpose  # type: ignore[misc]
         self.model, self.draw, self.sketched = file_of(made, name, title), draw, sketch
-        self.sections = self.needs = ("brake", name, "load")
+        self.sections = self.needs = ("brake", name, "load", "heat")
         TYPES[made] = self
 
-    def solve(self, design: MachineInput) -> MachineAnswer:
-        """Forces in the brake."""
-        return MachineAnswer(design, design.solve())
+    def solve(self, design: MachineInput) -> Answer:
+        """Forces in the brake, and its heat."""
+        return MachineAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """Explain the symbols of the form."""
@@ -205,4 +156,4 @@ class MachineType(ArrayBrakeType[MachineInput]):
 
     def outputs(self, design: MachineInput) -> Sequence[Output]:
         """Numbers of the brake and of its linings."""
-        return _outputs(design.core)
+        return *_outputs(design.core), *heat_outputs(design)

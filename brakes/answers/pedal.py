@@ -69,7 +69,7 @@ OUTPUTS = (
     ),
     Output(
         "allowed_force",
-        "largest pedal force by ISO 6292:2020",
+        "largest pedal force that is allowed",
         lambda found: found.braked.actuation.pedal.allowed_force,
         "N",
     ),
@@ -78,6 +78,7 @@ OUTPUTS = (
         (
             *take_fields(BrakedStop, "available_torque locking_torque"),
             take("locking_force", "force on the pedal at which the wheels just lock", "N"),
+            take("locking_pressure", "pressure of the line there", "MPa"),
             take("least_friction", "least friction of the tyres that stops the truck"),
         ),
     ),

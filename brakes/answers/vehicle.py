@@ -1,9 +1,9 @@
-"""Answers on vehicles: parking in both directions, pitching over, which axle locks, and the lever's force."""
+"""Answers on vehicles: parking and stops in both directions, which axle locks, and the lever's force."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +20,16 @@ from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take
 from brakes.chain import Actuation, actuate, force_for, ratio_for
 from brakes.config.vehicle import VehicleInput
 from brakes.drawings.vehicle import standing, vehicle_sketch
-from brakes.vehicle import Braking, Holding, Needed, braking_limits, friction_to_hold, hold
+from brakes.vehicle import (
+    Braking,
+    Holding,
+    Needed,
+    Slowing,
+    braking_limits,
+    friction_to_hold,
+    hold,
+    slow_down,
+)
 from brakes.vehicle.axles import Axle
 
 if TYPE_CHECKING:
@@ -36,6 +45,10 @@ _HOLDING = (
     ),
 )
 _BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
+_SLOWING = take_fields(
+    Slowing,
+    "distance time deceleration ratio front_force rear_force",
+) + tuple(replace(o, name=f"braked_{o.name}") for o in take_fields(Slowing, "front_load rear_load"))
 _LEVER = take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel")
 _WORDS = {
     "friction_to_hold": ("least friction of the tyres that holds", ""),
@@ -56,16 +69,19 @@ class OneDirection:
         In a stop.
     needs : mapping of str to Needed
         Answers backwards, by name.
+    slowing : Slowing, optional
+        The stop down the slope, if the file has one.
     """
 
     holding: Holding
     braking: Braking
     needs: Mapping[str, Needed]
+    slowing: Slowing | None
 
 
-def _of_one_way(with_lever: bool) -> tuple[Output, ...]:
+def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
     """Numbers of one way."""
-    names = [*_WORDS] if with_lever else ["friction_to_hold"]
+    names = ["friction_to_hold"] if design.lever is None else [*_WORDS]
     asked = (
         Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])
         for name in names
@@ -74,18 +90,23 @@ def _of_one_way(with_lever: bool) -> tuple[Output, ...]:
         *take_from(lambda way: way.holding, _HOLDING),
         *asked,
         *take_from(lambda way: way.braking, _BRAKING),
+        *_of_stop(design),
     )
+
+
+def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
+    """Numbers of the stop of one way, if there is one."""
+    return () if design.stop is None else take_from(lambda way: way.slowing, _SLOWING)
 
 
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
     """All numbers; those of a way end in the axle that is downhill or leads."""
-    pulled = _of_lever(design)
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
-        for o in take_from(lambda answer, axle=axle: answer.ways[axle], _of_one_way(bool(pulled)))
+        for o in take_from(lambda answer, axle=axle: answer.ways[axle], _of_one_way(design))
     )
-    return (*ways, *take_from(lambda answer: answer.lever, pulled))
+    return (*ways, *take_from(lambda answer: answer.lever, _of_lever(design)))
 
 
 def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
@@ -122,7 +143,7 @@ class VehicleAnswer(Answer):
     def refusals(self) -> Sequence[str]:
         """A sentence on each way in which it does not hold on the slope."""
         ways = self.ways.items()
-        return [f"{axle} axle downhill: {said}" for axle, way in ways for said in _failures(way.holding)]
+        return [f"{axle} axle downhill: {said}" for axle, way in ways for said in _failures(way)]
 
     @property
     def warnings(self) -> Sequence[str]:
@@ -131,15 +152,22 @@ class VehicleAnswer(Answer):
 
     def tables(self) -> list[RenderableType]:
         """Both ways, what cannot be had and why, and the lever."""
-        rows = list_outputs(_of_one_way(self.lever is not None), [*self.ways.values()])
-        said = [["", *(str(way.holding.status) for way in self.ways.values()), ""]]
-        first = [["ends the hardest braking", *(str(way.braking.first) for way in self.ways.values()), ""]]
+        ways = [*self.ways.values()]
+        shown = (o for o in _of_one_way(self.design) if o.name not in {each.name for each in _SLOWING})
+        rows = list_outputs(shown, ways)
+        said = [["", *(str(way.holding.status) for way in ways), ""]]
+        first = [["ends the hardest braking", *(str(way.braking.first) for way in ways), ""]]
         heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
         title = "The vehicle at rest on the slope, and in a stop on level ground"
         tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
+        if self.design.stop is not None:
+            ends = [["", *(str(way.slowing and way.slowing.status) for way in ways), ""]]
+            cells = [*ends, *list_outputs(_of_stop(self.design), ways)]
+            tables.append(table("A stop down the slope", heads, cells, (0, 3)))
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
+            tables.append(f"Lever, {self.lever.verdict}.")
         return tables
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
@@ -166,9 +194,12 @@ class VehicleAnswer(Answer):
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
 
 
-def _failures(holding: Holding) -> list[str]:
-    """A sentence if one vehicle does not hold; of many, `holds` says which."""
-    return [holding.message] if np.ndim(holding.status) == 0 and holding.status != "holds" else []
+def _failures(way: OneDirection) -> list[str]:
+    """A sentence if one vehicle does not hold (of many, `holds` says which), and one if it does not stop."""
+    holding, slowing = way.holding, way.slowing
+    said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
+    alone = np.ndim(holding.status) == 0 and holding.status != "holds"
+    return [holding.message, *said] if alone else said
 
 
 class ParkingType(ArrayBrakeType[VehicleInput]):
@@ -182,7 +213,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     method = "equilibrium of two axles in closed form"
     error_from = "rounding of inputs and sums"
     model = VehicleInput
-    sections = needs = ("truck", "vehicle", "road", "braking", "lever", "cable", "line", "brakes")
+    sections = needs = ("truck", "vehicle", "road", "braking", "stop", "lever", "cable", "line", "brakes")
     example_sweep = "road.slope=1:35:35 deg"
     sweep_results = "holds_front,holds_rear,braking_force_front,braking_force_rear"
     key_results = (
@@ -222,7 +253,21 @@ def _solve_way(
         each = holding.needed_force / gain
         needs["force_to_hold"] = force_for(pulled.pedal, pulled.line, each)
         needs["ratio_to_hold"] = ratio_for(pulled.pedal, pulled.line, each)
-    return OneDirection(holding, braking_limits(standing, road.friction, braking.front_share, axle), needs)
+    limits = braking_limits(standing, road.friction, braking.front_share, axle)
+    return OneDirection(holding, limits, needs, _solve_stop(design, limits, force))
+
+
+def _solve_stop(design: VehicleInput, limits: Braking, force: Any) -> Slowing | None:
+    """The stop of one way: by its own force, the lever's, or the hardest at which no wheel locks."""
+    if design.stop is None:
+        return None
+    approach, road, share = design.stop.core, design.road.core, design.braking.front_share
+    given = approach.brake_force
+    if given is None and design.lever is not None:
+        given, share = force, {"front": 1.0, "rear": 0.0, "both": share}[design.braking.parked_by]
+    elif given is None:
+        given = limits.largest * design.standing.mass * road.gravity * np.cos(road.slope)
+    return slow_down(design.standing, road, approach, given, share, limits.leading)
 
 
 BRAKE = ParkingType()

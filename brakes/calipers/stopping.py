@@ -32,23 +32,25 @@ Behind = Annotated[
 class Stance:
     """Where the weight of a vehicle with two wheels lies, and what the braked tyre holds.
 
+    What is not given is that of a usual upright bicycle with its rider.
+
     Parameters
     ----------
     braked_wheel : {"front", "rear"}
         The wheel with the brake.
-    tyre_friction : float, optional
-        Friction of its tyre on the road; needs the three lengths.
-    wheelbase : float, optional
+    tyre_friction : float
+        Friction of its tyre on the road.
+    wheelbase : float
         Distance of the axles [m].
-    cg_height : float, optional
-        Height of the centre of gravity above the road, with rider [m]; needs `cg_behind_front`.
-    cg_behind_front : float, optional
-        Its horizontal distance behind the front axle [m]; needs `cg_height`.
+    cg_height : float
+        Height of the centre of gravity above the road, with rider [m].
+    cg_behind_front : float
+        Its horizontal distance behind the front axle [m].
 
     Raises
     ------
     ValueError
-        If a value is out of its bounds, or one is given without those it needs.
+        If a value is out of its bounds, or the centre of gravity is behind the rear axle.
 
     References
     ----------
@@ -62,38 +64,31 @@ class Stance:
     """
 
     braked_wheel: Annotated[Literal["front", "rear"], Described(meaning="wheel with the brake")] = "front"
-    tyre_friction: TyreFriction | None = None
-    wheelbase: Wheelbase | None = None
-    cg_height: Height | None = None
-    cg_behind_front: Behind | None = None
+    tyre_friction: TyreFriction = 0.8
+    wheelbase: Wheelbase = 1.02
+    cg_height: Height = 1.1
+    cg_behind_front: Behind = 0.62
 
     def __post_init__(self) -> None:
         check_inputs(self)
         one_of("braked_wheel", self.braked_wheel, ("front", "rear"))
-        place = "cg_height", "cg_behind_front"
-        for name, needed in {"tyre_friction": ("wheelbase", *place), **dict.fromkeys(place, place)}.items():
-            missing = " and ".join(other for other in needed if getattr(self, other) is None)
-            if getattr(self, name) is not None and missing:
-                raise ValueError(f"{name} needs {missing}: give {missing} in m")
-        x, length = self.cg_behind_front, self.wheelbase
-        if x is not None and length is not None and x >= length * (1 - EQUAL):
+        if self.cg_behind_front >= self.wheelbase * (1 - EQUAL):
             bound = "it is behind the rear axle, at {other} = {limit}"
-            raise InvalidValue("cg_behind_front", x, bound, unit="m", limit=length, other="wheelbase")
+            given = {"unit": "m", "limit": self.wheelbase, "other": "wheelbase"}
+            raise InvalidValue("cg_behind_front", self.cg_behind_front, bound, **given)
 
     def pitch_limit(self, lift: float) -> float:
-        """Deceleration at which the rear wheel lifts [m/s2]; nan if the centre of gravity is not given.
+        """Deceleration at which the rear wheel lifts [m/s2].
 
         Parameters
         ----------
         lift : float
             (M h + J / R) / (M h): what the wheels' inertia adds to the moment that lifts it.
         """
-        if self.cg_height is None or self.cg_behind_front is None:
-            return math.nan
         return GRAVITY * self.cg_behind_front / (self.cg_height * lift)
 
     def grip_limit(self, lift: float, inertia: float) -> float:
-        """Deceleration at which the braked tyre slips [m/s2], inf if it never does; nan if not given.
+        """Deceleration at which the braked tyre slips [m/s2], inf if it never does.
 
         Parameters
         ----------
@@ -102,10 +97,8 @@ class Stance:
         inertia : float
             (M + J / R^2) / M.
         """
-        mu, length = self.tyre_friction, self.wheelbase
-        if mu is None or length is None or self.cg_height is None or self.cg_behind_front is None:
-            return math.nan
-        moved, x = mu * self.cg_height * lift, self.cg_behind_front
+        mu, length, x = self.tyre_friction, self.wheelbase, self.cg_behind_front
+        moved = mu * self.cg_height * lift
         if self.braked_wheel == "rear":
             return mu * GRAVITY * x / (inertia * length + moved)
         holds = inertia * length - moved  # not positive where pitching over comes first
@@ -113,9 +106,8 @@ class Stance:
 
 
 _RTOL, _ATOL = 1e-12, 1e-12  # tolerances of the integration; the latter [m]
-_NO_LIMITS = Stance()  # neither grip nor pitching over is known
+_USUAL = Stance()
 _WHEEL_INERTIA = Described("kg m2", "J", "moment of inertia of all wheels", least=0)
-_MOST_GRIP = 1.0  # [g] that a tyre holds at most, on a dry road
 
 
 @dataclass(frozen=True)
@@ -131,17 +123,16 @@ class StoppingDistance(Result):
     deceleration : float
         Mean deceleration over the distance [m/s2].
     grip_limit, pitch_limit : float
-        Decelerations at which the braked tyre slips and at which the rear wheel lifts [m/s2]; inf if it never
-        does, nan if not given.
+        Decelerations at which the braked tyre slips, inf if it never does, and at which the rear wheel lifts
+        [m/s2].
     pad_limit : float
-        Force on each pad at the lower of the two limits [N], which is not exceeded; inf if there is none.
+        Force on each pad at the lower of the two limits [N], which is not exceeded.
     limited_by : {"brake", "grip", "pitching over"}
         What limits the deceleration.
-    status : {"stops", "beyond grip", "does not stop"}
-        Whether it stops; beyond grip if that of the tyre is not given, and the deceleration passes the 1 g
-        that a tyre holds at most: the distance is then that of a tyre that held.
+    status : {"stops", "does not stop"}
+        Whether it stops.
     message : str
-        The status as a sentence, with what limits the stop and which limits were not given.
+        The status as a sentence, with what limits the stop if that is not the brake.
 
     Examples
     --------
@@ -173,11 +164,6 @@ class StoppingDistance(Result):
         yield f"limited by {self.limited_by}"
         yield self.status
 
-    @property
-    def unchecked(self) -> tuple[str, ...]:
-        """Limits that are not checked, with what to give: a sentence each."""
-        return tuple(_unchecked(self.grip_limit, self.pitch_limit))
-
 
 def stop(
     mass: Annotated[float, Described("kg", "M", "mass, wheels included", above=0)],
@@ -187,7 +173,7 @@ def stop(
     wheel_inertia: Annotated[float, _WHEEL_INERTIA] = 0.0,
     tyre_radius: Annotated[float, Described("m", "R", "rolling radius", above=0)] | None = None,
     rim_radius: Annotated[float, Described("m", "r", "radius at the pads", above=0)] | None = None,
-    stance: Stance = _NO_LIMITS,
+    stance: Stance = _USUAL,
 ) -> StoppingDistance:
     """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
 
@@ -212,8 +198,7 @@ def stop(
     rim_radius : float, optional
         Radius r at which the pads press [m]; that of the tyre if not given, as on that page.
     stance : Stance
-        The braked wheel, its grip, and where the centre of gravity is; a limit that is not given is named in
-        the message.
+        The braked wheel, its grip, and where the centre of gravity is; that of a usual bicycle if not given.
 
     Returns
     -------
@@ -241,11 +226,9 @@ def stop(
     inertia = mass + _equivalent_mass(not_negative("wheel_inertia", wheel_inertia, "kg m2"), tyre)
     energy = inertia * speed**2 / 2
     factor = 2 * positive("friction", friction) * _radius_ratio(rim_radius, tyre)
-    height = math.inf if stance.cg_height is None else stance.cg_height
-    lift = 1 + (inertia / mass - 1) * (tyre or 0.0) / height
+    lift = 1 + (inertia / mass - 1) * (tyre or 0.0) / stance.cg_height
     grip, pitch = stance.grip_limit(lift, inertia / mass), stance.pitch_limit(lift)
-    most = float(np.fmin(grip, pitch)) * inertia / factor
-    most = math.inf if math.isnan(most) else most
+    most = min(grip, pitch) * inertia / factor
     if callable(pad_force):
         path = (
             _integrated(energy, factor, lambda s: min(float(pad_force(s)), most)) if energy else np.zeros(1)
@@ -259,31 +242,19 @@ def stop(
     limited_by = "brake" if peak <= most * (1 + EQUAL) else limit
     stops = distance < math.inf
     deceleration = speed**2 / (2 * distance) if stops and distance else 0.0
-    held = factor * min(peak, most) / inertia / GRAVITY if math.isnan(grip) else 0.0
-    status = "does not stop" if not stops else "stops" if held <= _MOST_GRIP * (1 + EQUAL) else "beyond grip"
-    words = [_WORDS[status].format(distance=distance, held=held)]
+    status = "stops" if stops else "does not stop"
+    message = _WORDS[status].format(distance=distance)
     if limited_by != "brake":
         slips = f"the {stance.braked_wheel} tyre slips" if limited_by == "grip" else "the rear wheel lifts"
         at = f"{min(grip, pitch) / GRAVITY:.3g} g, {most:.4g} N on each pad"
-        words.append(f"limited by {limited_by}: {slips} at {at}")
-    message = "; ".join((*words, *_unchecked(grip, pitch)))
+        message = f"{message}; limited by {limited_by}: {slips} at {at}"
     return StoppingDistance(distance, energy, deceleration, grip, pitch, most, limited_by, status, message)
 
 
 _WORDS = {
     "stops": "stops in {distance:.6g} m",
-    "beyond grip": "would stop in {distance:.6g} m only on a tyre that holds {held:.3g} g, where none holds "
-    "more than about 1 g on a dry road: it slips, or the vehicle pitches over, before",
     "does not stop": "does not stop: the pads do not press long enough",
 }
-
-
-def _unchecked(grip: float, pitch: float) -> Iterator[str]:
-    """Which limits [m/s2] are not known, and what to give."""
-    if math.isnan(grip):
-        yield "grip is not checked: give tyre_friction, wheelbase, cg_height and cg_behind_front"
-    if math.isnan(pitch):
-        yield "pitching over is not checked: give cg_height and cg_behind_front"
 
 
 def _equivalent_mass(inertia: float, tyre_radius: float | None) -> float:

@@ -19,7 +19,8 @@ from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.chain.lines import BrakeCable, HydraulicLine
-from brakes.chain.pedal import CLAUSES, Pedal
+from brakes.chain.pedal import Pedal
+from brakes.common.limits import passes, verdict
 from brakes.vehicle.backwards import Needed, needed
 
 Line = HydraulicLine | BrakeCable
@@ -69,13 +70,14 @@ class Actuation(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence if the force is above what ISO 6292 allows."""
-        limb, most = self.pedal.operated_by, self.pedal.allowed_force
-        hardest = float(np.max(self.pedal_force))
-        if hardest <= most * (1 + _EDGE):
-            return ()
-        clause = f"ISO 6292:2020, {CLAUSES[limb]}"
-        return (f"the force is {hardest:.6g} N: {clause}, allows {most:g} N for a {limb}",)
+        """The verdict if the force is above what the standards allow."""
+        limb = self.pedal.operated_by
+        return (f"the {self.verdict}",) if passes(limb, self.pedal_force) else ()
+
+    @property
+    def verdict(self) -> str:
+        """Whether the force keeps the limit of the standards, in one sentence."""
+        return verdict(self.pedal.operated_by, self.pedal_force)
 
 
 def actuate(pedal: Pedal, line: Line) -> Actuation:

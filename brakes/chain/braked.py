@@ -76,6 +76,11 @@ class BrakedStop(Result):
         return self.locking.value
 
     @property
+    def locking_pressure(self) -> Numbers:
+        """Pressure of the line there [Pa], to which a brake's torque is in proportion; nan of a cable."""
+        return self.actuation.pressure * self.locking_torque / self.available_torque
+
+    @property
     def least_friction(self) -> Numbers:
         """Least friction of the tyres with which locked wheels stop the truck; nan where there is none."""
         return self.friction.value

@@ -10,10 +10,10 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
 from beamdyn.common.inputs.checks import one_of
 from beamdyn.common.inputs.described import Described
+from brakes.common.limits import LIMITS
 
-Limb = Literal["foot", "hand", "grip"]
-ALLOWED = {"foot": 450.0, "hand": 300.0, "grip": 150.0}  # [N] ISO 6292:2020, 4.5.2, 4.5.4 and 4.5.5
-CLAUSES = {"foot": "4.5.2", "hand": "4.5.4", "grip": "4.5.5"}
+Limb = Literal["foot", "hand", "grip", "bicycle"]
+_LIMB = "what presses: a foot, a hand, a squeezed grip of a truck, or a hand on a bicycle's lever"
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Pedal:
         Travel of the pedal over that of its rod, at the end of either.
     force : float or ndarray
         Force on the pedal [N].
-    operated_by : {"foot", "hand", "grip"}
-        What presses: a foot, a hand that pulls, or a hand that squeezes a grip.
+    operated_by : {"foot", "hand", "grip", "bicycle"}
+        What presses: a foot, a hand that pulls, one that squeezes a truck's grip, or a bicycle's lever.
     booster : float or ndarray
         Force behind the booster over that of the rod, up to the run-out.
     runout : float or ndarray, optional
@@ -51,9 +51,7 @@ class Pedal:
 
     ratio: Annotated[Numbers, Described("", "i", "travel of pedal or lever over that of its rod", above=0)]
     force: Annotated[Numbers, Described("N", "F", "force on the pedal or lever", above=0)]
-    operated_by: Annotated[Limb, Described(meaning="what presses: a foot, a hand, or a squeezed grip")] = (
-        "foot"
-    )
+    operated_by: Annotated[Limb, Described(meaning=_LIMB)] = "foot"
     booster: Annotated[Numbers, Described("", "k", "booster: its output over the rod's force", least=1)] = 1.0
     runout: Annotated[
         Numbers | None,
@@ -67,15 +65,15 @@ class Pedal:
     ] = None
 
     def __post_init__(self) -> None:
-        one_of("operated_by", self.operated_by, tuple(ALLOWED))
+        one_of("operated_by", self.operated_by, tuple(LIMITS))
         keep_checked(self)
         numbers = {name: x for name, x in vars(self).items() if name != "operated_by" and x is not None}
         together(**numbers)
 
     @property
     def allowed_force(self) -> float:
-        """Largest force on the pedal that ISO 6292:2020 allows [N]."""
-        return ALLOWED[self.operated_by]
+        """Largest force on the pedal that the standards allow [N]; see `brakes.common.limits`."""
+        return LIMITS[self.operated_by][0]
 
     @property
     def output_force(self) -> Numbers:

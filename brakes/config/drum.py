@@ -1,4 +1,4 @@
-"""Drum brakes in TOML: the tables [brake], [shoe], [load] and, where it differs, [second_shoe]."""
+"""Drum brakes in TOML: the tables [brake], [shoe], [load]; where it differs [second_shoe]; [heat]."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from beamdyn.common.edge.described_tables import MadeSection, fields_of, section
 from beamdyn.common.edge.inputs import Section
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.inputs.checks import InvalidValue
+from brakes.config.heat import HeatInput
 from brakes.config.load import LoadInput, RubbingInput
 from brakes.drum import BrakeResult, DrumBrake, Shoe, brake_torque, duplex, simplex
 
@@ -64,7 +65,7 @@ class ShoeInput(MadeSection):
 
 
 _Shoe = section_of(Shoe, base=ShoeInput)
-_SHOE = fields_of(Shoe, leave_out=("drum_radius", "pressure_zero"))
+_SHOE = fields_of(Shoe, leave_out=("drum_radius", "pressure_zero", "pressure_law"))
 _DIFFERENCES: dict[str, Any] = {key: (annotation | None, None) for key, (annotation, _) in _SHOE.items()}
 
 if TYPE_CHECKING:
@@ -88,12 +89,13 @@ class DrumBrakeInput(RubbingInput):
 
 
 class DrumInput(CoreSection):
-    """A drum brake: the tables [brake], [shoe], [load] and, where it differs, [second_shoe]."""
+    """A drum brake: the tables [brake], [shoe], [load]; where it differs [second_shoe]; [heat]."""
 
     brake: DrumBrakeInput
     shoe: _ShoeInput
     second_shoe: _SecondShoeInput | None = None
     load: LoadInput
+    heat: HeatInput | None = None
 
     @cached_property
     def core(self) -> DrumBrake:

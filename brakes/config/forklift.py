@@ -18,7 +18,7 @@ from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.wording import of_file
 from brakes.chain import Drums, HydraulicLine, Pedal
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
-from brakes.vehicle.stop import SlopeAngle
+from brakes.vehicle.stop import STEEPEST, SlopeAngle
 
 __all__ = ["STAGES", "ForkliftInput", "forklift_from_dict", "load_forklift", "parse_forklift"]
 
@@ -85,6 +85,13 @@ class LeversInput(MadeSection):
         return arms
 
 
+def _slope_of_road(**described: Any) -> SlopeQuantity:
+    """A slope in files, which is that of a road."""
+    bounds: dict[str, Any] = {"above": None, "below": None, "least": -STEEPEST, "most": STEEPEST}
+    bounds["remedy"] = "no road is steeper"
+    return SlopeQuantity(**{**described, **bounds})
+
+
 if TYPE_CHECKING:
     _TruckInput = CoreSection
     _StopInput = CoreSection
@@ -93,7 +100,7 @@ if TYPE_CHECKING:
     _PedalInput = _LineInput = _DrumsInput = CoreSection
 else:
     _TruckInput = section_of(Truck)
-    _StopInput = section_of(StopConditions, tables={SlopeAngle: SlopeQuantity})
+    _StopInput = section_of(StopConditions, tables={SlopeAngle: _slope_of_road})
     _geometry = section_of(DuoServo, base=DuoServoInput)
     _DuoServoInput = create_model("_Brake", __base__=_geometry, **fields_of(DuoServo.move_shoes))
     _LeversInput = section_of(Levers, base=LeversInput)

@@ -1,4 +1,4 @@
-"""Brakes whose linings are pressed by one force in TOML: [brake], a table of dimensions, [load]."""
+"""Brakes whose linings are pressed by one force in TOML: [brake], a table of dimensions, [load], [heat]."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pydantic import create_model
 from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.described_tables import MadeSection, section_of
 from beamdyn.common.edge.wording import in_range, of_file
+from brakes.config.heat import HeatInput
 from brakes.config.load import LoadInput, RubbingInput
 from brakes.machines import Machine, MachineResult, solve_brake
 
@@ -22,6 +23,7 @@ class MachineInput(CoreSection):
 
     brake: RubbingInput
     load: LoadInput
+    heat: HeatInput | None = None
 
     @property
     def dimensions(self) -> MadeSection:

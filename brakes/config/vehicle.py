@@ -1,4 +1,4 @@
-"""Vehicles in TOML: [truck] or [vehicle], [road], [braking]; [lever] with [cable] or [line] and [brakes]."""
+"""Vehicles in TOML: [truck] or [vehicle], [road], [braking], [stop]; [lever], [cable] or [line], [brakes]."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from beamdyn.common.edge.config import CoreSection
 from beamdyn.common.edge.described_tables import section_of
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from brakes.chain import BrakeCable, HydraulicLine, Pedal, WheelBrakes
-from brakes.vehicle import Road, Truck, Vehicle
+from brakes.vehicle import Approach, Road, Truck, Vehicle
 from brakes.vehicle.axles import Braked
 from brakes.vehicle.stop import SlopeAngle
 
@@ -30,17 +30,17 @@ class BrakingInput(Section):
 
 
 if TYPE_CHECKING:
-    _TruckInput = _VehicleInput = _RoadInput = CoreSection
+    _TruckInput = _VehicleInput = _RoadInput = _ApproachInput = CoreSection
     _LeverInput = _CableInput = _LineInput = _BrakesInput = CoreSection
 else:
     _TruckInput, _VehicleInput = section_of(Truck), section_of(Vehicle)
     _RoadInput = section_of(Road, tables={SlopeAngle: SlopeQuantity})
-    _LeverInput, _CableInput = section_of(Pedal), section_of(BrakeCable)
+    _LeverInput, _CableInput, _ApproachInput = map(section_of, (Pedal, BrakeCable, Approach))
     _LineInput, _BrakesInput = section_of(HydraulicLine), section_of(WheelBrakes)
 
 
 class VehicleInput(Section):
-    """A vehicle on a slope: [truck] or [vehicle], [road], [braking], and what its parking brake is pulled by.
+    """A vehicle on a slope: [truck] or [vehicle], [road], [braking], [stop], and its parking brake.
 
     [lever], [cable] or [line], and [brakes] go together.
     """
@@ -49,6 +49,7 @@ class VehicleInput(Section):
     vehicle: _VehicleInput | None = None
     road: _RoadInput
     braking: BrakingInput
+    stop: _ApproachInput | None = None
     lever: _LeverInput | None = None
     cable: _CableInput | None = None
     line: _LineInput | None = None

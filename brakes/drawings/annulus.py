@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outline, Symbol, arc
+from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
-from brakes.drawings.arrows import ForceArrows
+from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Cone, MachineResult, Plates
 from brakes.machines import Disc as DiscBrake
 
@@ -25,9 +25,7 @@ def draw_disc(result: MachineResult) -> Drawing:
     drag = float(result.torque) / r
     arrows = ForceArrows(0.8 * r / drag if drag else 0.0)
     _add_disc(arrows.shapes, disc)
-    inner = 0.55 * float(disc.inner_radius)
-    turn = arc((0, 0), inner, np.pi / 2 - 0.4 * sense, np.pi / 2 + 0.4 * sense)
-    arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
+    arrows.shapes += rotation(0.55 * float(disc.inner_radius), 0.4, -sense)
     if drag:
         arrows.add((0.0, r), np.array([sense * drag, 0.0]), "F", "friction")
     title = f"Pads pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label
+from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, arc
 
 _FORCES = 3  # priority of their labels
+_HEAD = 12  # points of an arc of 41 that its arrow's head takes
 
 
 @dataclass(eq=False)
@@ -21,11 +22,14 @@ class ForceArrows:
     ----------
     scale : float
         Length of an arrow per force [m/N].
+    least : float
+        Length [m] below which an arrow is drawn ten or a hundred times as long, and its label says so.
     shapes, labels : list
         Shapes and labels so far, in m.
     """
 
     scale: float
+    least: float = 0.0
     shapes: list[DrawnShape] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
@@ -46,15 +50,16 @@ class ForceArrows:
             Whether the arrow ends at `at`, as for a force that pushes, and does not start there.
         """
         start = np.asarray(at, dtype=float)
-        end = start + self.scale * np.asarray(vector)
+        length = self.scale * float(np.hypot(*vector))
+        longer = 10.0 ** np.ceil(np.log10(self.least / length)) if 0 < length < self.least else 1.0
+        end = start + longer * self.scale * np.asarray(vector)
         if ends_here:
             start, end = 2 * start - end, start
         self.shapes.append(Arrow(start, end, role, symbol, 2.0))
         free, along = (start, start - end) if ends_here else (end, end - start)
         places = np.stack([free, (start + end) / 2])
-        self.labels.append(
-            Label(force_size(vector), places, role, (along[0], along[1]), symbol, priority=_FORCES)
-        )
+        said = force_size(vector) + (f" (arrow x {longer:.0f})" if longer > 1 else "")
+        self.labels.append(Label(said, places, role, (along[0], along[1]), symbol, priority=_FORCES))
 
     def drawing(self, title: str, words: str, key: Mapping[str, str]) -> Drawing:
         """The drawing, with a title, what it shows in words, and the meaning of its colours."""
@@ -66,3 +71,20 @@ def force_size(vector: np.ndarray) -> str:
     """Size of a force, such as "3.44 kN"."""
     size = float(np.hypot(*vector))
     return f"{size / 1e3:.3g} kN" if size >= 1e3 else f"{size:.3g} N"
+
+
+def rotation(radius: float, half: float, sense: float) -> list[DrawnShape]:
+    """Arrow of the rotation of what is centred at the origin: above it, clockwise for a sense of 1.
+
+    Parameters
+    ----------
+    radius : float
+        Of its arc [m].
+    half : float
+        Half of the arc's angle [rad].
+    sense : float
+        1 if it turns clockwise, -1 if anticlockwise.
+    """
+    points = arc((0, 0), radius, np.pi / 2 + half * sense, np.pi / 2 - half * sense)
+    shaft = Outline(points[: 2 - _HEAD], "neutral", 1.5)
+    return [shaft, Arrow(points[-_HEAD], points[-1], "neutral", width=2.0)]

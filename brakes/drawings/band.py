@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
+from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
-from brakes.drawings.arrows import ForceArrows
+from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Band, MachineResult
 
 
@@ -22,11 +22,10 @@ def draw_band(result: MachineResult) -> Drawing:
     r, lining = float(band.drum_radius), result.linings[0]
     forces = {name: float(lining.reactions[name]) for name in ("first", "second")}
     largest = max(*forces.values(), float(result.force))
-    arrows = ForceArrows(0.0 if result.locked else 0.8 * r / largest)
+    arrows = ForceArrows(0.0 if result.locked else 0.8 * r / largest, 0.15 * r)
     rim, (first, second, _, end) = _places(band)
     _add_body(arrows.shapes, band)
-    turn = arc((0, 0), 0.6 * r, *np.radians((70.0, 110.0) if result.reverse else (110.0, 70.0)))
-    arrows.shapes += [Outline(turn[:-4], "neutral", 1.5), Arrow(turn[-6], turn[-1], "neutral", width=1.5)]
+    arrows.shapes += rotation(0.6 * r, 0.35, -1.0 if result.reverse else 1.0)
     if result.locked:
         arrows.labels.append(Label("the band grips by itself", (0.0, 0.2 * r), "inside", priority=4))
         title = f"Friction {float(result.friction):.3g}: the brake locks itself"
@@ -34,7 +33,7 @@ def draw_band(result: MachineResult) -> Drawing:
     for name, at, on in (("first", first, rim[-1]), ("second", second, rim[0])):
         way = (on - at) / np.hypot(*(on - at))
         arrows.add(at, forces[name] * way, "T_1" if name == "first" else "T_2", "tension")
-    arrows.add(end, np.array([0.0, -float(result.force)]), "P", "load")
+    arrows.add(end, np.array([0.0, -float(result.force)]), "P", "load", ends_here=True)
     title = f"Forces on the lever at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
     key = {"load": "actuating force P", "tension": "tension of an end"}
     return arrows.drawing(title, "A band brake: drum, band and lever with the forces on the lever", key)

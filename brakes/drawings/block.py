@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Outline, Symbol, arc
+from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
-from brakes.drawings.arrows import ForceArrows
+from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Block, LiningResult, MachineResult
 
 _SIDES = (np.eye(2), np.diag((1.0, -1.0)))  # from the axes of a block to the drawing: on top, and below
@@ -66,14 +66,8 @@ def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _add_drum(shapes: list[DrawnShape], r: float, *, reverse: bool) -> None:
     """Add the drum and its rotation; forward its top moves to the left, where the fulcrum is."""
-    sense = -1.0 if reverse else 1.0
-    turn = arc((0, 0), 0.6 * r, np.pi / 2 - 0.35 * sense, np.pi / 2 + 0.35 * sense)
-    shapes += [
-        Disc((0, 0), r, "neutral", 1.4),
-        Symbol("cross", (0, 0), "axis", 9.0),
-        Outline(turn[:-4], "neutral", 1.5),
-        Arrow(turn[-6], turn[-1], "neutral", width=1.5),
-    ]
+    shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
+    shapes += rotation(0.6 * r, 0.35, 1.0 if reverse else -1.0)
 
 
 def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> None:

@@ -37,12 +37,11 @@ def pressure_chart(result: MachineResult) -> Chart:
     brake = result.brake
     low, high = (float(end) for end in brake.reach())
     at, scale = np.linspace(low, high, _POINTS), _SCALES[brake.place.shown]
-    shape = brake.pressure(at, float(result.friction))
     curves = [
         ChartCurve(
             lining.name,
             scale * np.r_[low, at, high],
-            1e-6 * float(lining.peak_pressure) * np.r_[0.0, shape, 0.0],
+            1e-6 * float(lining.peak_pressure) * np.r_[0.0, _shape(result, i, at), 0.0],
             dashed=bool(i % 2),
         )
         for i, lining in enumerate(result.linings)
@@ -51,29 +50,31 @@ def pressure_chart(result: MachineResult) -> Chart:
     return Chart("Pressure on the linings", across, ChartAxis("pressure", "MPa", low=0.0), curves)
 
 
+def _shape(result: MachineResult, index: int, at: np.ndarray) -> np.ndarray:
+    """Pressure on a lining over its largest value."""
+    return result.brake.pressure_on(index, at, float(result.friction), result.reverse)
+
+
 def factor_chart(result: MachineResult) -> Chart:
     """C* over friction, forward and in reverse, with the friction at which the brake locks."""
     mu, limit = float(result.friction), float(result.locking_friction)
     top = 0.995 * limit if 0 < limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * mu)
     at = np.linspace(1e-3 * top, top, _POINTS)
+    ways = [solve_brake(result.brake, friction=at, force=1.0, reverse=way) for way in (False, True)]
     curves = [
-        ChartCurve(
-            "reverse" if way else "forward",
-            at,
-            solve_brake(result.brake, friction=at, force=1.0, reverse=way).c_star,
-            dashed=way,
-        )
-        for way in (False, True)
+        ChartCurve("reverse" if way.reverse else "forward", at, way.c_star, dashed=way.reverse)
+        for way in ways
     ]
     own = curves[result.reverse]
     marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
     if 0 < limit < _LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
     near = float(np.interp(min(mu, 0.6 * top), at, own.y))  # C* grows without bound towards locking
+    grows = any(np.isfinite(way.locking_friction).any() for way in ways)
     return Chart(
         "Brake factor",
         ChartAxis("friction of the linings", low=0.0),
-        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0)),
+        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0) if grows else None),
         curves,
         marks=marks,
     )

@@ -21,7 +21,7 @@ def standing(found: Holding) -> Drawing:
     L, h, a = float(v.wheelbase), float(v.cg_height), float(v.cg_behind_front)
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # turns row vectors
     weight = float(v.mass) * float(found.road.gravity)
-    arrows = ForceArrows(0.8 * max(L, h) / weight)
+    arrows = ForceArrows(0.8 * max(L, h) / weight, 0.12 * L)
     _draw_body(arrows.shapes, v, turn)
     loads = {"A": (0.0, float(found.front_load), "front"), "B": (L, float(found.rear_load), "rear")}
     braked = {k: load for k, (_, load, axle) in loads.items() if found.braked in (axle, "both") and load > 0}

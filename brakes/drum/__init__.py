@@ -8,6 +8,7 @@ where the drum's surface moves towards the pin, on the +x side in a drum that tu
 """
 
 from brakes.common.energy import stop_energy, temperature_rise
+from brakes.common.heat import Duty, Fade, repeat_stops
 from brakes.common.loads import wheel_cylinder_force
 from brakes.drum.assembly import BrakeResult, DrumBrake, brake_torque, duplex, shoe_torque, simplex
 from brakes.drum.shoe import Shoe, ShoeResult
@@ -15,10 +16,13 @@ from brakes.drum.shoe import Shoe, ShoeResult
 __all__ = [
     "BrakeResult",
     "DrumBrake",
+    "Duty",
+    "Fade",
     "Shoe",
     "ShoeResult",
     "brake_torque",
     "duplex",
+    "repeat_stops",
     "shoe_torque",
     "simplex",
     "stop_energy",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -31,7 +32,7 @@ class DrumBrake:
     Raises
     ------
     ValueError
-        If there is no shoe, the tuples differ in length, or the drum radii differ.
+        If there is no shoe, the tuples differ in length, or the drum radii or the laws of pressure differ.
 
     Examples
     --------
@@ -43,6 +44,10 @@ class DrumBrake:
 
     shoes: tuple[Shoe, ...]
     leading: tuple[bool, ...]
+
+    laws: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"wear": "sinusoidal pressure (wear)", "pressure": "uniform pressure"}
+    )
 
     def __post_init__(self) -> None:
         flags = enumerate(several("leading", self.leading, object))
@@ -56,6 +61,22 @@ class DrumBrake:
         radii = [shoe.drum_radius for shoe in self.shoes]
         if any(not np.all(np.asarray(radius) == radii[0]) for radius in radii):
             raise ValueError("drum_radius differs between the shoes: they share one drum; give one radius")
+        if len({shoe.pressure_law for shoe in self.shoes}) > 1:
+            raise ValueError("pressure_law differs between the shoes; give one law")
+
+    @property
+    def law(self) -> str:
+        """Name of the law of the pressure."""
+        return self.shoes[0].pressure_law
+
+    @property
+    def rubbing_radius(self) -> Numbers:
+        """Radius at which the linings rub [m]."""
+        return self.shoes[0].drum_radius
+
+    def with_law(self, law: Literal["wear", "pressure"]) -> DrumBrake:
+        """The same brake with another law of the pressure."""
+        return replace(self, shoes=tuple(replace(shoe, pressure_law=law) for shoe in self.shoes))
 
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:

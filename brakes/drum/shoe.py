@@ -4,6 +4,7 @@ The pressure is proportional to the radial displacement of the lining, p = p0 si
 rigid shoe that turns about its pin it vanishes on the line from the centre to the pin, delta = atan(b/c),
 as in textbooks (Shigley, whose theta is alpha - delta). Vardanyan et al. (2019) let it vanish on the -y axis
 instead (delta = 0), which is right for b = 0 only. In axes turned by delta the same formulas hold for both.
+A lining that is not worn in, or that bends, is nearer to the same pressure everywhere: `Shoe.pressure_law`.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ _PRESSURE_ZERO = (
     "line where the pressure vanishes: through the pin (pivot), about which the shoe turns; straight down "
     "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
 )
+_LAW = "wear: rigid shoe, pressure as the sine of the angle; pressure: the same pressure everywhere"
 _ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
 _EPS = np.finfo(float).eps
 
@@ -54,6 +56,8 @@ class Shoe:
     pressure_zero : {"pivot", "axis"}
         Line on which the pressure vanishes: from the centre to the pin, about which a rigid shoe turns, or
         the -y axis, the assumption of Vardanyan et al. (2019): for comparison with them.
+    pressure_law : {"wear", "pressure"}
+        Pressure as the sine of the angle from that line, or uniform pressure.
 
     Raises
     ------
@@ -86,8 +90,10 @@ class Shoe:
     ]
     force_arm: Annotated[Numbers, Described("m", "a", _FORCE_ARM)]
     pressure_zero: Annotated[Literal["pivot", "axis"], Described(meaning=_PRESSURE_ZERO)] = "pivot"
+    pressure_law: Annotated[Literal["wear", "pressure"], Described(meaning=_LAW)] = "wear"
 
     def __post_init__(self) -> None:
+        one_of("pressure_law", self.pressure_law, ("wear", "pressure"))
         one_of("pressure_zero", self.pressure_zero, ("pivot", "axis"))
         keep_checked(self)
         (a1, a2), (b, y) = self.lining, self.pivot
@@ -125,6 +131,10 @@ class Shoe:
         """Angle delta at which the pressure vanishes [rad]."""
         return self.pin_angle if self.pressure_zero == "pivot" else 0.0 * np.asarray(self.pin_angle)
 
+    def shape(self, alpha: np.ndarray) -> np.ndarray:
+        """Pressure at angles alpha [rad], over a constant."""
+        return np.sin(alpha - self.phase) if self.pressure_law == "wear" else np.ones_like(alpha)
+
     @property
     def moment_arm(self) -> Numbers:
         """Arm a + c of the actuating force about the pin [m]."""
@@ -135,9 +145,10 @@ class Shoe:
 class _Integrals:
     """Integrals over the arc, in axes turned by delta.
 
-    K, S, C are those of sin, sin^2, sin cos; n and d the arms [m] of the normal and, for friction 1,
-    of the friction forces about the pin: P (a + c) = A p0 (n + s mu d).  Rounding of K, and of S and C over
-    both, is bounded by `K_error` and `SC_error`, that of the arms by `n_error` and `d_error` [m].
+    K, S, C are those of q, q sin, q cos, where q is the sine, or 1 under uniform pressure; n and d the
+    arms [m] of the normal and, for friction 1, of the friction forces about the pin: P (a + c) = A p0 (n
+    + s mu d). Rounding of K, and of S and C over both, is bounded by `K_error` and `SC_error`, that of
+    the arms by `n_error` and `d_error` [m].
     """
 
     K: Numbers
@@ -145,7 +156,7 @@ class _Integrals:
     C: Numbers
     n: Numbers
     d: Numbers
-    peak: Numbers  # largest value of the sine
+    peak: Numbers  # largest value of q
     K_error: Numbers
     SC_error: Numbers
     n_error: Numbers
@@ -154,22 +165,25 @@ class _Integrals:
 
 def integrals(shoe: Shoe) -> _Integrals:
     """Integrals over the lining of a shoe, and the bounds of their rounding."""
+    uniform = shoe.pressure_law == "pressure"
     a1, a2 = (np.asarray(end) - shoe.phase for end in shoe.lining)
     m, h = (a1 + a2) / 2, (a2 - a1) / 2
-    K = 2 * np.sin(m) * np.sin(h)
-    S = h - np.cos(2 * m) * np.sin(2 * h) / 2
-    C = np.sin(2 * m) * np.sin(2 * h) / 2
+    sine, cosine = (2 * of(m) * np.sin(h) for of in (np.sin, np.cos))
+    K = 2 * h if uniform else sine
+    S = sine if uniform else h - np.cos(2 * m) * np.sin(2 * h) / 2
+    C = cosine if uniform else np.sin(2 * m) * np.sin(2 * h) / 2
     (b, y), far = shoe.pivot, np.hypot(*shoe.pivot)
     b, c = (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))  # in turned axes
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
-    peak = np.where(inside, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
+    peak = np.where(inside | uniform, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
     # Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed.
     ends = np.stack(np.broadcast_arrays(a1, a2))
     angle = _EPS * (np.abs(ends + shoe.phase).max(axis=0) + np.abs(shoe.phase))
     sines, cosines = np.abs(np.sin(ends)), np.abs(np.cos(ends))
-    dK = angle * sines.sum(axis=0) + _EPS * np.sin(h) * sines.max(axis=0)
-    dS = angle * (sines**2).sum(axis=0) + 2 * _EPS * h
-    dC = angle * (sines * cosines).sum(axis=0) + _EPS * np.abs(np.sin(2 * h))
+    q = np.ones_like(sines) if uniform else sines
+    dK = angle * q.sum(axis=0) + _EPS * (2 * h if uniform else np.sin(h) * sines.max(axis=0))
+    dS = angle * (q * sines).sum(axis=0) + 2 * _EPS * h
+    dC = angle * (q * cosines).sum(axis=0) + _EPS * np.abs(2 * np.sin(h) if uniform else np.sin(2 * h))
     n, d = c * S - b * C, shoe.drum_radius * K - b * S - c * C
     dn, dd = c * dS + np.abs(b) * dC, shoe.drum_radius * dK + np.abs(b) * dS + c * dC
     return _Integrals(K, S, C, n, d, peak, dK / K, (dS + dC) / np.hypot(S, C), dn, dd)
@@ -249,7 +263,7 @@ class ShoeResult(SlidesOrLocks):
         a1, a2 = self.shoe.lining
         on = (alpha >= a1) & (alpha <= a2)
         p0 = self.peak_pressure / integrals(self.shoe).peak
-        return np.where(on, p0 * np.sin(alpha - self.shoe.phase), 0.0)
+        return np.where(on, p0 * self.shoe.shape(alpha), 0.0)
 
 
 def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeResult:

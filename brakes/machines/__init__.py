@@ -1,4 +1,4 @@
-"""Brakes whose linings are pressed by one force: bands, discs, plates, cones and blocks.
+"""Brakes whose linings are pressed by one force: bands, discs, plates, cones, blocks and sliding shoes.
 
 Each is a frozen dataclass of its dimensions; `solve_brake` computes its forces, forward or in reverse, from
 the actuating force, the largest pressure or the torque.
@@ -8,6 +8,7 @@ from brakes.machines.annulus import Cone, Disc, Plates
 from brakes.machines.band import Band
 from brakes.machines.block import Block
 from brakes.machines.machine import LiningResult, Machine, MachineResult, solve_brake
+from brakes.machines.sliding import Sliding
 
 __all__ = [
     "Band",
@@ -18,5 +19,6 @@ __all__ = [
     "Machine",
     "MachineResult",
     "Plates",
+    "Sliding",
     "solve_brake",
 ]

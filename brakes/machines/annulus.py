@@ -66,6 +66,11 @@ class Ring(Machine):
         i, o = np.asarray(self.inner_radius), np.asarray(self.outer_radius)
         return (o + i) / 2 if self.law == "wear" else 2 * (o * o + o * i + i * i) / (3 * (o + i))
 
+    @property
+    def rubbing_radius(self) -> Numbers:
+        """Inner radius, as pressure times radius is the same everywhere under wear; else outer one [m]."""
+        return self.inner_radius if self.law == "wear" else self.outer_radius
+
     def reach(self) -> tuple[Numbers, Numbers]:
         """From the inner to the outer radius [m]."""
         return self.inner_radius, self.outer_radius
@@ -245,7 +250,7 @@ class Cone(Ring):
         forces = {"normal": normal, "release": force * (friction / self.taper - 1)}
         return {"cone": Lining(friction * normal * self.reference_radius, force, force, reactions=forces)}
 
-    def remarks(self, friction: Numbers) -> Sequence[str]:
+    def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
         """Whether it sticks."""
         sticks = np.asarray(friction >= self.taper)
         if not sticks.any():

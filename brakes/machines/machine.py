@@ -110,6 +110,11 @@ class Machine(ABC):
     def reference_radius(self) -> Numbers:
         """Radius that C* refers to [m]."""
 
+    @property
+    def rubbing_radius(self) -> Numbers:
+        """Radius whose product with the largest pressure is the largest of pressure times radius [m]."""
+        return self.reference_radius
+
     @abstractmethod
     def reach(self) -> tuple[Numbers, Numbers]:
         """Least and largest place on a lining, in the SI unit of `place`."""
@@ -118,8 +123,12 @@ class Machine(ABC):
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
         """Pressure over its largest value, at places on a lining."""
 
-    def remarks(self, friction: Numbers) -> Sequence[str]:
-        """What else a designer must know at a friction: one sentence each."""
+    def pressure_on(self, index: int, at: Numbers, friction: Numbers, reverse: bool) -> Numbers:
+        """As `pressure`, on the lining of that number; the same on all unless a brake says otherwise."""
+        return self.pressure(at, friction)
+
+    def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
+        """What else a designer must know at a friction, forward or in reverse: one sentence each."""
         return ()
 
     def with_law(self, law: str) -> Machine:

@@ -4,14 +4,17 @@ from brakes.vehicle.axles import Vehicle
 from brakes.vehicle.backwards import Needed, friction_to_hold, friction_to_stop
 from brakes.vehicle.braking import Braking, braking_limits
 from brakes.vehicle.holding import Holding, Road, hold
+from brakes.vehicle.slowing import Approach, Slowing, slow_down
 from brakes.vehicle.stop import Stop, StopConditions, stop
 from brakes.vehicle.truck import Truck
 
 __all__ = [
+    "Approach",
     "Braking",
     "Holding",
     "Needed",
     "Road",
+    "Slowing",
     "Stop",
     "StopConditions",
     "Truck",
@@ -20,5 +23,6 @@ __all__ = [
     "friction_to_hold",
     "friction_to_stop",
     "hold",
+    "slow_down",
     "stop",
 ]

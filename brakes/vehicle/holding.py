@@ -23,9 +23,8 @@ from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
-from brakes.vehicle.stop import STANDARD_GRAVITY, SlopeAngle
+from brakes.vehicle.stop import STANDARD_GRAVITY, STEEPEST, SlopeAngle
 
-STEEPEST = np.pi / 4  # [rad] past which no road goes
 _EDGE = 1e-9  # difference of slopes, over the larger one, that is not decided
 
 

@@ -36,9 +36,11 @@ from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import ACUTE, ROUNDING
+from brakes.vehicle.rise import to_rest
 from brakes.vehicle.truck import Truck
 
 STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
+STEEPEST = np.pi / 4  # [rad] past which no road goes
 
 
 @dataclass(frozen=True)
@@ -186,6 +188,14 @@ class Stop(Result):
         """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
         return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
+
+    @property
+    def pulled_distance(self) -> Numbers:
+        """Distance if the slope pulls from the start of the rise [m]; see `brakes.vehicle.rise`."""
+        c = self.conditions
+        pull = c.gravity * np.sin(c.slope)
+        way, _ = to_rest(c.speed, pull, pull - self.acceleration, c.rise_time, self.stops)
+        return (self.reaction_distance + way)[()]
 
     @property
     def residual(self) -> Numbers:

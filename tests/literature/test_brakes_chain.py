@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from brakes import chain, forklift, vehicle
-from brakes.chain.pedal import ALLOWED
+from brakes.common.limits import LIMITS
 
 LINING = 0.390283458  # given to nine digits, which is what the pedal's force at locking hangs on: rel=3e-9
 LINE = chain.HydraulicLine(master_bore=22.22e-3, cylinder_bore=31.75e-3)
@@ -94,7 +94,9 @@ def test_the_bicycle_pitches_over_before_its_front_tyre_slips():
 
 
 def test_limits_of_force_are_those_of_the_standard():
-    assert ALLOWED == {"foot": 450.0, "hand": 300.0, "grip": 150.0}
+    """ISO 6292:2020, 4.5, and TBIS 4210-2:2018, 4.6.9.2: excerpts of both texts were opened."""
+    found = {limb: most for limb, (most, _) in LIMITS.items()}
+    assert found == {"foot": 450.0, "hand": 300.0, "grip": 150.0, "bicycle": 180.0}
     said = chain.actuate(chain.Pedal(ratio=8.0, force=310.0, operated_by="hand"), LINE).warnings
-    assert said == ("the force is 310 N: ISO 6292:2020, 4.5.4, allows 300 N for a hand",)
+    assert said == ("the force of 310 N: ISO 6292:2020, 4.5.4, allows 300 N for a hand: passed",)
     assert not chain.actuate(chain.Pedal(ratio=8.0, force=300.0, operated_by="hand"), LINE).warnings

@@ -1,7 +1,10 @@
 """Band, disc, cone and block brakes against worked examples and numbers recomputed by two routes.
 
 The inputs are those of textbook problems: Shigley's band of 14 in and cone (16-19), Juvinall's differential
-band (figure 18.17); others, whose source was not opened, are checked by quadrature in tests/invariants.
+band (figure 18.17). Opened with their printed solutions: the bands of two public pages (mechdiploma.com,
+transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), a question of byjus.com (plates). None was
+found that could be opened of a sliding shoe, nor with all its numbers of an annular pad: these are checked by
+quadrature in tests/invariants.
 """
 
 import numpy as np
@@ -82,3 +85,45 @@ def test_short_block(reverse, torque):
     block = machines.Block(0.15, 0.05, 0.5, 0.6, 0.25, 0.05, pressure_law="short")
     found = machines.solve_brake(block, friction=0.4, force=500.0, reverse=reverse)
     assert found.torque == pytest.approx(torque, rel=DIGITS)
+
+
+def test_simple_band_of_a_lever_of_400_mm():
+    """mechdiploma.com: 500 N at 40 cm, tight end at 8 cm; it rounds exp(mu phi) to 2.67, by 0.05 %."""
+    band = machines.Band(0.2, 0.05, np.radians(225), force_arm=0.4, first_arm=0.08)
+    found = machines.solve_brake(band, friction=0.25, force=500.0, reverse=True)  # the first end is tight
+    assert found.linings[0].reactions["first"] == pytest.approx(2500.0, rel=1e-12)
+    assert found.linings[0].reactions["second"] == pytest.approx(936.3, rel=5e-4)
+    assert found.torque == pytest.approx(312.74, rel=5e-4)
+
+
+def test_band_that_holds_300_newton_metres():
+    """transtutors.com: 240 deg, tight end 50 mm and force 300 mm from the hinge.
+
+    Its tensions are those of a drum of 250 mm radius; the 240 in its line of the torque is a misprint.
+    """
+    band = machines.Band(0.25, 0.05, np.radians(240), force_arm=0.3, first_arm=0.05)
+    found = machines.solve_brake(band, friction=0.25, torque=300.0, reverse=True)
+    assert found.force == pytest.approx(308.13, rel=3e-5)  # printed with a factor of five digits
+    assert found.linings[0].reactions["first"] == pytest.approx(1848.80, rel=3e-5)
+    assert found.linings[0].reactions["second"] == pytest.approx(648.77, rel=3e-5)
+
+
+@pytest.mark.parametrize(("reverse", "torque"), [(False, 83.87), (True, 69.14)])
+def test_block_of_a_lecture(reverse, torque):
+    """Kannan, DTS 11.3, example 1: the long block has an equivalent friction of 0.385 at its middle."""
+    block = machines.Block(0.125, 0.05, np.radians(90), 0.45, 0.2, offset=0.05, pressure_law="short")
+    found = machines.solve_brake(block, friction=0.385, force=700.0, reverse=reverse)
+    assert found.torque == pytest.approx(torque, abs=0.005)  # half a unit of its last digit
+
+
+def test_forces_on_a_new_and_on_a_worn_clutch():
+    """byjus.com: rings of 250 and 50 mm in diameter; force for the same torque, new over worn, 0.871."""
+    force = {
+        law: machines.solve_brake(
+            machines.Plates(0.025, 0.125, faces=1, pressure_law=law), friction=0.3, torque=100.0
+        ).force
+        for law in ("pressure", "wear")
+    }
+    assert force["pressure"] / force["wear"] == pytest.approx(
+        0.871, abs=5e-4
+    )  # half a unit of its last digit

@@ -85,6 +85,7 @@ def _transient() -> bd.Transient:
 BASES = {
     "Answer",
     "PlanarAnswer",
+    "RubbingAnswer",
     "OfChosenPhysics",
     "StatesModelError",
     "JudgedByRepeating",
@@ -110,6 +111,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "DrumAnswer": lambda: _answer(DRUM),
     "Equilibrium": lambda: bd.equilibrium(BENT, 5.0),
     "EquilibriumBranches": lambda: bd.equilibrium_branches(BENT, 5.0),
+    "Fade": lambda: drum.repeat_stops(drum.Duty(20.0, 50.0, 5.0, stops=2), 0.4, lambda mu: 1000.0 * mu),
     "ForkliftAnswer": lambda: _answer(FORKLIFT),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
@@ -142,6 +144,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "SettingAngleLimits": lambda: bd.setting_angle_limits(HARVESTER, 400.0),
     "ShoeMotion": lambda: BENDIX.move_shoes(5e-4),
     "ShoeResult": lambda: made("BrakeResult").shoes[0],
+    "Slowing": lambda: vehicle.slow_down(BICYCLE, ROAD, vehicle.Approach(8.0), 200.0, 0.5),
     "SceneSpread": lambda: bd.spread(HARVESTER, {"beam.thickness": "+-2%"}, samples=128, modes=1, speed=50.0),
     "Spread": lambda: bd.Spread(*(getattr(made("SceneSpread"), each.name) for each in fields(bd.Spread))),
     "StaticLoads": lambda: bd.static_loads(HARVESTER, [0.0, 50.0]),

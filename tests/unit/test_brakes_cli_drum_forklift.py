@@ -240,7 +240,8 @@ def test_a_duo_servo_brake_that_locks_is_an_answer(run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "old, new, parts",
     [
-        ("0.3019 rad", "70 deg", ['stop.slope = "70 deg"', "overturns"]),
+        ("0.3019 rad", "70 deg", ['stop.slope = "70 deg"', "at most 45 deg"]),
+        ('"reverse"', '"forward"', ["stop.slope", "overturns"]),
         ("10.6 mm", "200 mm", ['brake.clearance = "200 mm"', "larger than the drum allows"]),
         ('"-1.20 m"', '"-3 m"', ["ahead of the front wheel"]),
         ('"20 km/h"', '"20 kg"', ["stop.speed", "mass", "velocity"]),

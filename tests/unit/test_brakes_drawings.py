@@ -14,11 +14,13 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.drawing.shapes import Outline, Symbol
 from beamdyn.common.plots.curves import curves, sweep_figure
-from brakes import drum, forklift
+from brakes import drum, forklift, machines
 from brakes.drawings import mechanism_parts
+from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.drum import brake_figure, drawing_of, factors, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_drawings, answer_figure, distances, forces_over, truck
+from brakes.drawings.machine import factor_chart
 
 ROOT = Path(__file__).parents[2]
 SHOE = drum.Shoe(0.138, 0.05, (np.radians(30.0), np.radians(110.0)), (0.020, -0.110), 0.115)
@@ -255,3 +257,20 @@ def test_drawing_of_a_mechanism_loads_no_library_of_geometry():
         "assert 'scipy.spatial' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+def test_factors_of_a_brake_that_never_locks_are_drawn_as_a_whole():
+    """C* of plates is in proportion to the friction, which the example has at an eighth of the axis."""
+    plates = machines.solve_brake(machines.Plates(0.05, 0.07, faces=4), friction=0.1, force=4000.0)
+    assert factor_chart(plates).y.high is None
+    band = machines.Band(0.2, 0.05, wrap=4.2, force_arm=0.5, first_arm=0.1, second_arm=0.025)
+    assert factor_chart(machines.solve_brake(band, friction=0.2, force=200.0)).y.high < 50
+
+
+def test_a_short_arrow_is_drawn_longer_and_says_so():
+    arrows = ForceArrows(1e-3, least=0.05)
+    arrows.add((0.0, 0.0), np.array([0.0, 2.0]), "P", "load")
+    arrows.add((0.0, 0.0), np.array([0.0, 200.0]), "Q", "load")
+    lengths = [np.hypot(*arrow.vector) for arrow in arrows.shapes]
+    np.testing.assert_allclose(lengths, [0.2, 0.2], rtol=1e-14)
+    assert [label.text for label in arrows.labels] == ["2 N (arrow x 100)", "200 N"]

@@ -194,3 +194,43 @@ def test_a_dragging_brake_tips_a_vehicle_on_a_slope_that_is_steep_enough():
     found = vehicle.hold(bicycle, roads, "both", "front", 0.45 * 80.0 * 9.806)
     assert found.status.tolist() == ["holds", "rolls", "tips"]
     assert np.isnan([found.front_load, found.rear_load]).tolist() == [[False, False, True]] * 2
+
+
+def test_a_bicycle_stops_down_its_slope(run):
+    text = (EXAMPLES / "bicycle.toml").read_text()
+    code, out, _ = run("vehicle", text)
+    assert code == DONE and "A stop down the slope" in out
+    assert "no wheel locks" in out and "front wheels locked" in out  # front and rear axle leading
+    code, out, err = run("vehicle", text, ('brake_force = "250 N"', 'brake_force = "70 N"'))
+    assert code == NO_ANSWER and "it does not stop: the slope pulls as much as the brakes hold" in err
+    assert row(out, "stopping distance, from the driver's reaction")[0] == "never"
+    code, out, _ = run("vehicle", text, ('brake_force = "250 N"', ""))
+    ratio = row(out, "braking force over the force normal to the road")
+    assert ratio == row(out, "hardest braking with these shares, g")[:2]
+
+
+def test_a_truck_is_stopped_by_its_lever(run, truck):
+    """The lever of the front wheels gives 4.6 0.15875 6400 N on each of two, at 0.4 m."""
+    code, out, _ = run("vehicle", truck, ("[lever]", '[stop]\nspeed = "10 km/h"\n[lever]'))
+    assert code == DONE
+    assert row(out, "braking force of the front wheels")[1] == "23368"
+    assert row(out, "braking force of the rear wheels")[:2] == ["0", "0"]
+    assert "Lever, force of 250 N: ISO 6292:2020, 4.5.4, allows 300 N for a hand: kept." in " ".join(
+        out.split()
+    )
+
+
+def test_what_limits_a_forklift_is_said_in_its_tables(run, forklift):
+    _, out, _ = run("forklift", forklift)
+    said = " ".join(out.split())
+    assert "the torque is from the road, on locked wheels" in said
+    assert "of their friction 0.3903 the locked wheels use 0.3626" in said
+    assert row(out, "pressure of the line there")[0] == "14.715"
+    assert row(out, "... if the slope pulls while the brake force rises")[0] == "15.054"
+    _, out, _ = run("forklift", forklift, ("booster = 3", "booster = 2.2"))
+    assert "the torque is from the pedal" in out and "sliding" not in out.partition("From the pedal")[0]
+
+
+def test_a_slope_in_percent_has_its_bound_in_percent(run):
+    code, _, err = run("vehicle", (EXAMPLES / "bicycle.toml").read_text(), ('"10 %"', '"120 %"'))
+    assert code == BAD_INPUT and 'road.slope = "120 %": it must be at least 0, at most 100 %; no road' in err

@@ -85,7 +85,7 @@ def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
     [
         ("drum", "torque of the brake", "62.96"),  # 13 % of 263 N m
         ("drum", "force on each shoe", ""),  # it is given
-        ("drum", "friction at self-locking", ""),  # of the geometry alone
+        ("band", "friction at self-locking", ""),  # of the geometry alone
         ("cone", "torque of the brake", ""),  # it is given
         ("cone", "actuating force", "416.9"),
         ("disc", "radius that C* refers to", "0.00"),  # by the law of the pressure
@@ -103,3 +103,43 @@ def test_digits_that_friction_or_law_of_the_pressure_change_are_dimmed(name, wor
 def test_reverse_turns_leading_into_trailing(answer):
     _, out, _ = answer("band", '"forward"', '"reverse"')
     assert "reverse" in out and "never" in out
+
+
+HEAT = """
+[heat]
+inertia = "25 kg m2"
+speed = "700 rpm"
+heated_mass = "5 kg"
+stops = 3
+friction_curve = [["20 degC", 0.2], ["60 degC", 0.15]]
+"""
+
+
+@pytest.mark.parametrize(
+    ("changed", "code", "said"),
+    [
+        (('["60 degC", 0.15]', '["200 degC", 0.12]'), DONE, ""),
+        (
+            ("stops = 3", "stops = 3"),
+            NO_ANSWER,
+            "a stop gets hotter than the last temperature of friction_curve",
+        ),
+        (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "the brake gives less than load_torque"),
+        (
+            ('"20 degC", 0.2', '"20 degC", 0.19'),
+            NO_ANSWER,
+            "begins with friction 0.19 of its curve, [brake] has 0.2",
+        ),
+        (
+            ('["20 degC", 0.2]', '["20 degC"]'),
+            BAD_INPUT,
+            'heat.friction_curve = [["20 degC"], ["60 degC", 0.15]]',
+        ),
+        (('"20 degC", 0.2', '"30 degC", 0.2'), BAD_INPUT, "below the first temperature of friction_curve"),
+    ],
+)
+def test_heat_of_stops(answer, changed, code, said):
+    found, out, err = answer("band", 'force = "200 N"', 'force = "200 N"' + HEAT.replace(*changed))
+    assert found == code and said in " ".join(err.split())
+    if code == DONE:
+        assert "hottest, above the surroundings" in out and "Stop by stop" in out

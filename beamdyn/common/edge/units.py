@@ -151,11 +151,13 @@ def _known(text: str, unit: str) -> float:
 def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:
     """The unit of a quantity as it was written, and what converts numbers in `unit` to it.
 
-    Where the text has no unit of that kind, it is `unit` itself.
+    Where the text has no unit of that kind, it is `unit` itself. Of an angle, "%" is the rise of a slope.
     """
     match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) and unit else None
     if match is None or not (written := match[2]):
         return unit, float
+    if (written, unit) == ("%", "rad"):
+        return written, lambda angle: 100 * math.tan(angle)
     if (factor := _common_factor(written, unit)) is not None:
         return written, lambda number: _product(repr(float(number)), 1 / factor)
     kind, wanted = _parse(written), _parse(unit)

@@ -1,0 +1,387 @@
+"""How hot a brake gets in stops that follow each other, and how far its lining fades.
+
+A stop turns kinetic energy, and the work of a load that drives on, into heat of what is warmed, C = m c, all
+of one temperature T and cooled between the stops only. With the torque M(T) at a constant actuating force,
+each turn dq heats by C dT = M dq: energy alone decides how hot a stop ends, and the angle is a quadrature,
+
+    T1 = T0 + (J w^2 / 2 + L q) / C,    q = C int dT / M(T) from T0 to T1.
+
+Without a load nothing is iterated. With one, T1 is the fixed point of a function of T1 that increases:
+iterated from T0, it rises and is bounded by the least solution, the one that the stop reaches first. It is
+there if the torque stays above the load on the way: T1 - L q / C increases then, and bisection finds it.
+Where the lining fades to the load before, the brake never stops it. Between stops T - T_a falls by exp(-h t
+/ C). Without a load each stop heats by the same J w^2 / (2 C): the temperatures of the stops follow an
+affine map, which contracts by exp(-h t / C) and so has one limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.checks import refuse
+from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.one_line import spanned, warned
+from beamdyn.common.results.result import Result
+
+_NODES = 20  # of the quadrature between two temperatures of the curve
+_FEWER = 12  # that estimate its error
+_EPS = np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class FrictionCurve(Described):
+    """Description of a curve of friction over temperature, which files give as rows."""
+
+
+@dataclass(frozen=True)
+class Duty:
+    """What a brake stops, how often, and what it warms; every number may be an array, one entry per case.
+
+    Parameters
+    ----------
+    inertia : float or ndarray
+        Moment of inertia J of all that one brake stops, about its axis [kg m2]; of a vehicle, its share of
+        the mass times the square of the wheel's radius.
+    speed : float or ndarray
+        Speed w before each stop [rad/s].
+    heated_mass : float or ndarray
+        Mass m that one brake warms [kg].
+    specific_heat : float or ndarray
+        Its specific heat c [J/(kg K)]; by default that of cast iron, about 500.
+    load_torque : float or ndarray
+        Torque L that drives on, such as that of a slope or of a hanging load [N m].
+    stops : float or ndarray
+        Number of stops, a whole one.
+    interval : float or ndarray
+        Time t between the end of a stop and the next [s].
+    cooling : float or ndarray
+        Heat that is lost then, over the difference to the surroundings, h [W/K].
+    surroundings : float or ndarray
+        Temperature of the surroundings, and of the brake before the first stop [K].
+    friction_curve : array_like, shape (n, 2), optional
+        Temperatures [K] that increase, and the friction of the lining at each, with straight lines between;
+        the given friction at any temperature if there is none.
+    most_pv : float or ndarray, optional
+        Largest product of pressure and rubbing speed [W/m2]; not checked if not given.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of bounds, the number of stops is not whole, or the curve does not increase or
+        begins above the surroundings.
+
+    Examples
+    --------
+    >>> duty = drum.Duty(inertia=20.0, speed=50.0, heated_mass=5.0)
+    >>> float(duty.rise_of_a_stop)  # K: J w^2 / (2 m c)
+    10.0
+    """
+
+    inertia: Annotated[Numbers, Described("kg m2", "J", "moment of inertia that one brake stops", above=0)]
+    speed: Annotated[Numbers, Described("rad/s", "omega", "speed before each stop", above=0)]
+    heated_mass: Annotated[Numbers, Described("kg", "m", "mass that one brake warms", above=0)]
+    specific_heat: Annotated[Numbers, Described("J/kg/K", "c", "specific heat of that mass", above=0)] = 500.0
+    load_torque: Annotated[
+        Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
+    ] = 0.0
+    stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000)] = 1.0
+    interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
+        0.0
+    )
+    cooling: Annotated[
+        Numbers, Described("W/K", "h", "heat lost then, over the difference to the surroundings", least=0)
+    ] = 0.0
+    surroundings: Annotated[
+        Numbers, Described("K", "T_a", "temperature of the surroundings, and before the first stop", above=0)
+    ] = 293.15
+    friction_curve: Annotated[
+        list[list[float]] | None,
+        FrictionCurve("", "mu(T)", "rows of temperature and friction of the lining", least=0),
+    ] = None
+    most_pv: Annotated[
+        Numbers | None,
+        Described("W/m2", "", "largest pressure times rubbing speed; not checked if not given", above=0),
+    ] = None
+
+    def __post_init__(self) -> None:
+        keep_checked(self)
+        given = vars(self).items()
+        together(**{name: x for name, x in given if x is not None and name != "friction_curve"})
+        stops = np.asarray(self.stops)
+        refuse(stops != np.round(stops), "stops", stops, "", "give a whole number")
+        if self.friction_curve is not None:
+            self._check(np.asarray(self.friction_curve))
+
+    def _check(self, curve: np.ndarray) -> None:
+        if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
+            raise ValueError("friction_curve has no rows: give two or more of temperature and friction")
+        if not np.all(np.diff(curve[:, 0]) > 0):
+            raise ValueError("friction_curve: the temperatures must increase from row to row")
+        bound = "it is below the first temperature of friction_curve, {limit}"
+        early, first = np.asarray(self.surroundings) < curve[0, 0], curve[0, 0]
+        refuse(early, "surroundings", self.surroundings, "K", bound, "begin the curve there", limit=first)
+
+    @property
+    def capacity(self) -> Numbers:
+        """Heat capacity C [J/K]."""
+        return self.heated_mass * self.specific_heat
+
+    @property
+    def rise_of_a_stop(self) -> Numbers:
+        """Temperature rise by the kinetic energy alone [K]."""
+        return self.inertia * np.square(self.speed) / 2 / self.capacity
+
+    @property
+    def kept(self) -> Numbers:
+        """Share of the difference to the surroundings that is left after an interval."""
+        return np.exp(-np.asarray(self.cooling) * self.interval / self.capacity)
+
+
+@dataclass(frozen=True)
+class Fade(Result):
+    """Stops that follow each other; arrays have the stop as their first axis, then one entry per case.
+
+    Attributes
+    ----------
+    duty : Duty
+        What is stopped, and warmed.
+    status : str or ndarray of str
+        ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load; ``"too hot"`` past
+        the last temperature of the curve: the numbers from that stop on are nan.
+    start, end : ndarray
+        Temperature before and after each stop [K].
+    end_friction : ndarray
+        Friction at the end of each stop.
+    angle : ndarray
+        Angle of each stop [rad].
+    heat : ndarray
+        Heat of each stop [J].
+    hottest, first_angle, last_angle, first_friction, last_friction, energy : ndarray
+        Largest rise above the surroundings [K], angles of the first and last stop [rad], friction at the
+        start of the first and at the end of the last, heat of the last [J], of each case.
+    settled : ndarray
+        Rise above the surroundings at the end of a stop after very many of them [K]; inf without cooling, nan
+        with a load.
+    pv : ndarray
+        Largest pressure times rubbing speed, before the first stop [W/m2].
+    error : ndarray
+        Estimate of the relative error of the angles, by a quadrature of fewer nodes.
+
+    Examples
+    --------
+    >>> duty = drum.Duty(20.0, 50.0, 5.0, stops=3, friction_curve=[[293.15, 0.4], [333.15, 0.3]])
+    >>> found = drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction)
+    >>> found.angle.round(3)  # rad: each stop is longer
+    array([64.539, 68.993, 74.108])
+    """
+
+    duty: Duty
+    status: Any
+    start: Numbers
+    end: Numbers
+    end_friction: Numbers
+    angle: Numbers
+    heat: Numbers
+    hottest: Annotated[Numbers, Meaning("K", "hottest, above the surroundings")]
+    first_angle: Annotated[Numbers, Meaning("rad", "angle of the first stop")]
+    last_angle: Annotated[Numbers, Meaning("rad", "angle of the last stop")]
+    first_friction: Annotated[Numbers, Meaning("", "friction at the start of the first stop")]
+    last_friction: Annotated[Numbers, Meaning("", "friction at the end of the last stop")]
+    energy: Annotated[Numbers, Meaning("J", "heat of the last stop")]
+    settled: Annotated[Numbers, Meaning("K", "above the surroundings after very many stops")]
+    pv: Annotated[Numbers, Meaning("W/m2", "largest pressure times rubbing speed, before the first stop")]
+    error: Annotated[Numbers, Meaning("", "estimate of the relative error of the angles")]
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield f"hottest {spanned(self.hottest, 'K')} above the surroundings"
+        yield warned(self.warnings)
+
+    @property
+    def refusals(self) -> tuple[str, ...]:
+        """A sentence if a stop does not end, or is hotter than the curve says."""
+        found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
+        if np.ndim(self.status) == 0:
+            return tuple(words for _, words in found)
+        return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence if pressure times speed is above its limit."""
+        most = self.duty.most_pv
+        if most is None or not np.any(self.pv > np.asarray(most)):
+            return ()
+        highest, least = float(np.nanmax(self.pv)), float(np.min(most))
+        said = f"pressure times rubbing speed of the lining reaches {highest:.4g} W/m2"
+        return (f"{said}, above most_pv = {least:.4g} W/m2",)
+
+
+_WORDS = {
+    "never stops": "the brake gives less than load_torque, at once or as its lining fades: it never stops",
+    "too hot": "a stop gets hotter than the last temperature of friction_curve: give more of the curve",
+}
+TorqueAt = Callable[[Numbers], Numbers]
+
+
+def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers = np.nan) -> Fade:
+    """Compute stops that follow each other, at a constant actuating force.
+
+    Parameters
+    ----------
+    duty : Duty
+        What is stopped, how often, and what is warmed.
+    friction : float or ndarray
+        Friction where the duty has no curve.
+    torque_at : callable
+        Torque [N m] at a friction of shape (..., cases); it increases with the friction, and is nan where the
+        brake locks.
+    pv : float or ndarray, optional
+        Largest pressure times rubbing radius, times the speed before a stop [W/m2].
+
+    Returns
+    -------
+    Fade
+        Complete result. A stop that does not end is a status, not an error.
+
+    Raises
+    ------
+    ValueError
+        If the brake locks at a friction of the curve.
+
+    References
+    ----------
+    Standard (conservation of energy), as in the docstring of the module.
+
+    Examples
+    --------
+    >>> duty = drum.Duty(inertia=20.0, speed=50.0, heated_mass=5.0, stops=2)
+    >>> float(drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest)  # K
+    20.0
+    """
+    path = _Path(duty, friction, torque_at)
+    start, stops = duty.surroundings + path.cases, []
+    status = np.full(start.shape, "stops", dtype="U11")
+    for k in range(int(np.max(duty.stops))):
+        end, how = _end_of_stop(path, start)
+        status = np.where((status == "stops") & (k < np.asarray(duty.stops)), how, status)
+        stops.append((start, end, path.friction(end), path.angle(start, end), path.angle(start, end, _FEWER)))
+        start = duty.surroundings + (end - duty.surroundings) * duty.kept
+    begun, ended, last, angle, rougher = (np.stack(each) for each in zip(*stops, strict=True))
+    count = np.broadcast_to(duty.stops, status.shape).astype(int)
+
+    def at_last(each: np.ndarray) -> np.ndarray:
+        """The value of the last stop of each case."""
+        return np.take_along_axis(each, count[None] - 1, axis=0)[0]
+
+    heat, kept = duty.capacity * (ended - begun), np.asarray(duty.kept)
+    with np.errstate(divide="ignore"):
+        settled = np.where(np.asarray(duty.load_torque) > 0, np.nan, duty.rise_of_a_stop / (1 - kept))
+    return Fade(
+        duty=duty,
+        status=status[()],
+        start=begun,
+        end=ended,
+        end_friction=last,
+        angle=angle,
+        heat=heat,
+        hottest=(at_last(np.maximum.accumulate(ended)) - duty.surroundings)[()],
+        first_angle=angle[0],
+        last_angle=at_last(angle),
+        first_friction=path.friction(begun[0]),
+        last_friction=at_last(last),
+        energy=at_last(heat),
+        settled=(settled + path.cases)[()],
+        pv=(pv + path.cases)[()],
+        error=(_EPS * 8 + at_last(np.maximum.accumulate(np.abs(rougher / angle - 1))))[()],
+    )
+
+
+def _end_of_stop(path: _Path, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Temperature after a stop, nan if it does not end, and its status."""
+    duty, load = path.duty, np.asarray(path.duty.load_torque)
+    low = start + duty.rise_of_a_stop
+    with np.errstate(divide="ignore", invalid="ignore"):
+        most = start + duty.rise_of_a_stop / np.maximum(1 - load / path.least(start), _EPS)
+    high = np.where(np.isfinite(path.last), path.last, most)
+
+    def over(end: np.ndarray) -> np.ndarray:
+        """Whether a stop has ended, or the lining faded to the load, before a temperature."""
+        return path.stopped(start, end) | (path.least(start, end) <= load)
+
+    hot = (low > high) | ~over(high)
+    high = np.where(hot | over(low), low, high)
+    while np.any(high - low > 2 * _EPS * high):
+        middle = (low + high) / 2
+        done = over(middle)
+        low, high = np.where(done, low, middle), np.where(done, middle, high)
+    faded = ~hot & (path.least(start, high) <= load)
+    status = np.select([~np.isfinite(start), hot, faded], ["stops", "too hot", "never stops"], "stops")
+    return np.where(status == "stops", high, np.nan), status
+
+
+class _Path:
+    """Friction and torque over the temperature, and their integrals."""
+
+    def __init__(self, duty: Duty, friction: Numbers, torque_at: TorqueAt) -> None:
+        self.duty, self.given, self.torque_at = duty, friction, torque_at
+        curve = duty.friction_curve
+        self.knots = None if curve is None else np.asarray(curve)
+        self.last = np.inf if self.knots is None else self.knots[-1, 0]
+        if self.knots is not None:
+            values = self.knots[:, 1]
+            locks = np.isnan(self.torque(self._along(values)))
+            first = values[locks.argmax(axis=0)]
+            refuse(locks.any(axis=0), "friction_curve", first, "", "at this friction the brake locks")
+
+    @cached_property
+    def cases(self) -> np.ndarray:
+        """Zeros, one for each case."""
+        given = [x for name, x in vars(self.duty).items() if x is not None and name != "friction_curve"]
+        return 0 * sum(given, np.asarray(self.given)) + 0 * self.torque(self.given)
+
+    def _along(self, values: np.ndarray) -> np.ndarray:
+        """Values along a first axis before that of the cases."""
+        return values.reshape(-1, *(1,) * self.cases.ndim) + 0 * self.cases
+
+    def torque(self, friction: Numbers) -> np.ndarray:
+        """Torque at frictions; nan stays."""
+        known = np.isfinite(friction)
+        return np.where(known, self.torque_at(np.where(known, friction, 0.0)), np.nan)
+
+    def friction(self, temperature: Numbers) -> Numbers:
+        """Friction at temperatures."""
+        if self.knots is None:
+            return self.given + 0 * np.asarray(temperature)
+        return np.interp(temperature, *self.knots.T) + 0 * np.asarray(temperature)  # nan stays
+
+    def least(self, start: Numbers, end: Numbers | None = None) -> np.ndarray:
+        """Least torque between two temperatures: at either, or at a knot between, as it follows friction."""
+        ends = (start,) if end is None else (start, end)
+        found = [self.friction(each) for each in ends]
+        if self.knots is not None and end is not None:
+            found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]
+        return self.torque(np.min(np.broadcast_arrays(*found), axis=0))
+
+    def angle(self, start: Numbers, end: Numbers, nodes: int = _NODES) -> np.ndarray:
+        """Angle of a stop between two temperatures, C int dT / M [rad], knot by knot."""
+        if self.knots is None:
+            return self.duty.capacity * (end - start) / self.least(start)
+        x, weights = np.polynomial.legendre.leggauss(nodes)
+        bounds = [np.clip(at, start, end) for at, _ in self.knots]
+        low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
+        half, middle = (high - low) / 2, (high + low) / 2
+        each = x.reshape(-1, *(1,) * half.ndim)  # nodes, parts of the curve, cases
+        slowness = 1 / self.torque(self.friction(middle + half * each))
+        return self.duty.capacity * (np.tensordot(weights, slowness, 1) * half).sum(axis=0)
+
+    def stopped(self, start: Numbers, end: Numbers) -> np.ndarray:
+        """Whether the heat up to a temperature is that of the whole stop."""
+        driven = self.duty.load_torque * self.angle(start, end) / self.duty.capacity
+        return end - start >= (self.duty.rise_of_a_stop + driven) * (1 - 2 * _EPS)

@@ -1,0 +1,27 @@
+"""The table [heat] of files: what a brake stops again and again, and what it warms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from beamdyn.common.edge.config import CoreSection
+from beamdyn.common.edge.described_tables import section_of
+from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.units import InvalidInput, quantity
+from brakes.common.heat import Duty, FrictionCurve
+
+
+class CurveQuantity(Quantity):
+    """Rows of a temperature and a friction."""
+
+    def parse(self, given: object) -> Any:
+        """Rows of temperatures [K] and frictions."""
+        if not isinstance(given, list) or any(not isinstance(row, list) or len(row) != 2 for row in given):
+            raise InvalidInput("", given, 'give rows such as [["20 degC", 0.4], ["300 degC", 0.3]]')
+        return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)
+
+
+if TYPE_CHECKING:
+    HeatInput = CoreSection
+else:
+    HeatInput = section_of(Duty, tables={FrictionCurve: CurveQuantity})

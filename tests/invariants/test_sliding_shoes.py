@@ -1,0 +1,111 @@
+"""Sliding shoes: contact on one side only, equilibrium by quadrature, and the only solution."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from brakes import machines
+
+R, WIDTH, B, C, A = 0.138, 0.05, 0.02, 0.11, 0.115
+BRAKE = machines.Sliding(R, WIDTH, np.radians(30.0), np.radians(130.0), B, C, A, shoes="single")
+
+
+def solved(brake, friction, *, reverse=False):
+    found = machines.solve_brake(brake, friction=friction, force=1000.0, reverse=reverse)
+    return found, found.linings[0], float(brake.zero(np.asarray(friction), not reverse))
+
+
+def quadrature(brake, delta):
+    """Angles and weights over the lining, on both sides of where the pressure begins or ends."""
+    inside = (x for x in (delta, delta + np.pi) if brake.lining_start < x < brake.lining_end)
+    ends = sorted((brake.lining_start, *inside, brake.lining_end))
+    x, w = np.polynomial.legendre.leggauss(30)
+    parts = [((low + high) / 2 + (high - low) / 2 * x, (high - low) / 2 * w) for low, high in pairwise(ends)]
+    return np.concatenate([at for at, _ in parts]), np.concatenate([w for _, w in parts])
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+@pytest.mark.parametrize("psi", [-0.2, 0.0, 0.3])
+@pytest.mark.parametrize("friction", [0.05, 0.2, 0.35])
+def test_the_free_body_of_a_shoe_is_in_equilibrium(friction, psi, reverse):
+    """Pressure, friction, force and abutment, point by point, with the pressure's own integral."""
+    brake = replace(BRAKE, abutment_angle=psi)
+    found, lining, delta = solved(brake, friction, reverse=reverse)
+    alpha, weight = quadrature(brake, delta)
+    p = float(lining.peak_pressure) * brake.pressure_on(0, alpha, friction, reverse) * WIDTH * R * weight
+    s = 1.0 if reverse else -1.0
+    out = np.stack([np.sin(alpha), -np.cos(alpha)])
+    along = np.stack([np.cos(alpha), np.sin(alpha)])
+    on_shoe = -p * out + s * friction * p * along
+    at = R * out
+    abutment = float(lining.reactions["abutment"]) * np.array([np.cos(psi), np.sin(psi)])
+    force = on_shoe.sum(axis=1) + np.array([1000.0, 0.0]) + abutment
+    np.testing.assert_allclose(force / 1000.0, 0, atol=1e-12)
+    moment = (at[0] * on_shoe[1] - at[1] * on_shoe[0]).sum() - A * 1000.0 + B * abutment[1] + C * abutment[0]
+    assert abs(moment) < 1e-12 * 1000.0 * (A + C)
+    assert found.torque == pytest.approx(friction * p.sum() * R, rel=1e-12)
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_pressure_and_gap_exclude_each_other(reverse):
+    """The pressure is nowhere negative; where it is zero the lining has moved away from the drum."""
+    for friction in (0.1, 0.35):
+        _, _, delta = solved(BRAKE, friction, reverse=reverse)
+        alpha = np.linspace(BRAKE.lining_start, BRAKE.lining_end, 1001)
+        pressure, moved = BRAKE.pressure_on(0, alpha, friction, reverse), np.sin(alpha - delta)
+        assert (pressure >= 0).all()
+        assert ((pressure > 0) == (moved > 0)).all()
+    assert (pressure == 0).any() == reverse  # the trailing shoe lifts
+
+
+def test_a_lining_in_full_contact_is_a_linear_problem():
+    """p = X sin + Y cos and the abutment's force from three equations, without a search."""
+    found, lining, delta = solved(BRAKE, 0.35)
+    alpha, weight = quadrature(BRAKE, delta)
+    out, along = np.stack([np.sin(alpha), -np.cos(alpha)]), np.stack([np.cos(alpha), np.sin(alpha)])
+    columns = []
+    for shape in (np.sin(alpha), np.cos(alpha)):
+        each = (-out - 0.35 * along) * shape * WIDTH * R * weight
+        columns.append([*each.sum(axis=1), R * (out[0] * each[1] - out[1] * each[0]).sum()])
+    columns.append([1.0, 0.0, C])
+    x, y, abutment = np.linalg.solve(np.array(columns).T, [-1000.0, 0.0, A * 1000.0])
+    assert abutment == pytest.approx(lining.reactions["abutment"], rel=1e-11)
+    assert np.arctan2(-y, x) == pytest.approx(delta, abs=1e-12)
+    assert 0.35 * R * WIDTH * R * weight @ (x * np.sin(alpha) + y * np.cos(alpha)) == pytest.approx(
+        found.torque
+    )
+
+
+def test_there_is_one_solution_where_the_weight_changes_sign():
+    """R over a thousand zeros of the pressure, of random brakes: one change of sign, as the proof says."""
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        start = rng.uniform(0.1, 1.2)
+        brake = machines.Sliding(R, WIDTH, start, start + rng.uniform(0.6, 1.8), rng.uniform(-0.04, 0.05),
+                                 rng.uniform(0.08, 0.13), A, rng.uniform(-0.5, 0.5))  # fmt: skip
+        mu, s = rng.uniform(0, 0.8), rng.choice([-1.0, 1.0])
+        zeros = np.linspace(brake.lining_start - np.pi + 1e-3, brake.lining_end - 1e-3, 1001)
+        values = brake._residual(zeros, mu, s)
+        held = brake._weight(brake.lining_start, mu, s) * brake._weight(brake.lining_end, mu, s) < 0
+        if held:
+            assert (values[:-1] * values[1:] < 0).sum() == 1
+        assert np.isfinite(brake.zero(np.asarray(mu), s < 0)) == held
+
+
+def test_it_locks_where_it_says():
+    for shoes, reverse in (("single", False), ("single", True), ("simplex", False)):
+        brake = replace(BRAKE, shoes=shoes)
+        limit = float(machines.solve_brake(brake, friction=0.1, force=1.0, reverse=reverse).locking_friction)
+        for part, locks in ((1 - 1e-6, False), (1 + 1e-6, True)):
+            found = machines.solve_brake(brake, friction=part * limit, force=1.0, reverse=reverse)
+            assert bool(found.locked) == locks
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_the_slope_of_the_factor_counts_how_the_contact_moves(reverse):
+    step = 1e-5
+    low, high = (solved(BRAKE, 0.3 + k * step, reverse=reverse)[0].c_star for k in (-1, 1))
+    slope = solved(BRAKE, 0.3, reverse=reverse)[0].c_star_slope
+    assert slope == pytest.approx((high - low) / (2 * step), rel=1e-8)  # of differences over 2e-5
