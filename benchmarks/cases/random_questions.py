@@ -74,7 +74,7 @@ def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Ask
     text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))
     design = brake.read(tables, name)
-    inputs = brake.sweep_inputs(design, tables)
+    inputs = [each for each in brake.sweep_inputs(design, tables) if part_at(design, each.path)]
     given = ((each, part_at(tables, each.path)) for each in inputs if not each.choices)
     entries = [each for each, value in given if isinstance(value, str | float)]  # no counts, no whole shares
     values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
