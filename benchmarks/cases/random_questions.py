@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,11 +58,11 @@ class Asked(NamedTuple):
         return float(np.min(np.abs(self.found.values / self.value - 1), initial=np.inf))
 
 
-def questions(count: int, seed: int = 34) -> Iterator[Asked]:
-    """Draw questions, as many of each type of brake."""
+def questions(count: int, seed: int = 34, names: Sequence[str] = tuple(TYPES)) -> Iterator[Asked]:
+    """Draw questions, as many of each of the types of brakes with these names."""
     rng, made = np.random.default_rng(seed), 0
     while made < count:
-        name = [*TYPES][made % len(TYPES)]
+        name = names[made % len(names)]
         asked = _question(TYPES[name], name, rng)
         if asked is not None:
             made += 1
