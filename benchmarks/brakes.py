@@ -11,12 +11,14 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.cases import mechanisms
+from benchmarks.cases.random_questions import questions
 from benchmarks.rows import Row, best_time, show
-from brakes import calipers, forklift
+from brakes import calipers, chain, forklift
 from brakes.forklift import Levers, Truck, internal_forces
 from brakes.planar import solve, stroke
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
+DESIGNS, QUESTIONS = 100_000, 1000
 
 
 def check_planar() -> Iterator[Row]:
@@ -64,9 +66,29 @@ def draw_levers(rng: np.random.Generator) -> Levers:
 def run_trucks() -> forklift.Procedure:
     """Random trucks through all three stages."""
     rng = np.random.default_rng(10_000)
+    truck, conditions = draw_stops(rng, TRUCKS)
+    motion = forklift.BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, TRUCKS))
+    return forklift.brake_procedure(truck, conditions, motion, piston_force=rng.uniform(1e4, 1.3e4, TRUCKS))
+
+
+def run_chain() -> chain.Heat:
+    """Random trucks from the pedal's force through brakes and stop to the heat of the drums."""
+    rng = np.random.default_rng(34)
+    truck, conditions = draw_stops(rng, DESIGNS)
+    motion = forklift.BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, DESIGNS))
+    unit = internal_forces(motion, piston_force=1.0, friction=rng.uniform(0.2, 0.4, DESIGNS))
+    pedal = chain.Pedal(rng.uniform(4, 6, DESIGNS), rng.uniform(200, 450, DESIGNS), booster=3.0)
+    line = chain.HydraulicLine(rng.uniform(0.02, 0.024, DESIGNS), rng.uniform(0.03, 0.035, DESIGNS))
+    braked = chain.brake_from_pedal(truck, conditions, pedal, line, unit.torque)
+    pressed = (unit.A + unit.C) * braked.stop.torque_per_brake / unit.torque
+    return chain.heat_of_stop(braked.stop, chain.Drums(18.0, 0.05), pressed, unit.levers.drum_radius)
+
+
+def draw_stops(rng: np.random.Generator, count: int) -> tuple[Truck, forklift.StopConditions]:
+    """Random trucks, and the conditions of their stops."""
 
     def between(low: float, high: float) -> np.ndarray:
-        return rng.uniform(low, high, TRUCKS)
+        return rng.uniform(low, high, count)
 
     truck = Truck(
         empty_mass=between(5000, 6500),
@@ -83,11 +105,35 @@ def run_trucks() -> forklift.Procedure:
         reaction_time=0.5,
         rise_time=0.3,
     )
-    piston_force, motion = between(1e4, 1.3e4), forklift.BENDIX_12_5.move_shoes(between(0.005, 0.021))
-    return forklift.brake_procedure(truck, conditions, motion, piston_force=piston_force)
+    return truck, conditions
 
 
-PARTS = check_planar, check_duo_servo
+def check_backwards() -> Iterator[Row]:
+    """Random brakes and vehicles forwards, and backwards from one result to one input."""
+    asked = [*questions(QUESTIONS)]
+    worst = max(each.residual for each in asked)
+    yield (
+        f"{QUESTIONS} random vehicles and brakes backwards: largest relative residual",
+        f"{worst:.1e}",
+        "1e-10",
+    )
+    yield (
+        "... the known input from the nearest found, relative",
+        f"{max(q.distance for q in asked):.1e}",
+        "1e-10",
+    )
+    several = sum(len(each.found.values) > 1 for each in asked)
+    yield "... questions with more than one answer", str(several), ""
+
+
+def check_chain() -> Iterator[Row]:
+    """Designs from pedal to heat, beside those through the forklift's three stages."""
+    whole, stages = best_time(run_chain, 5) / DESIGNS, best_time(run_trucks) / TRUCKS
+    name = f"{DESIGNS} designs from pedal to heat: time of one over that of {TRUCKS} through three stages"
+    yield name, f"{whole / stages:.2f}", "1"
+
+
+PARTS = check_planar, check_duo_servo, check_chain, check_backwards
 
 
 def main() -> None:

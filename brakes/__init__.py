@@ -1,5 +1,24 @@
 """Statics of brake mechanisms."""
 
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from beamdyn.common.results.shown_by import SHOWN_BY
 
+if TYPE_CHECKING:
+    from brakes.common.finding import find
+    from brakes.common.solutions import Solutions
+
+__all__ = ["Solutions", "find"]
+
 SHOWN_BY["brakes"] = "brakes.views"
+_MODULES = {"find": "finding", "Solutions": "solutions"}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is used: what commands do not need stays unloaded."""
+    if name not in _MODULES:
+        raise AttributeError(f"module 'brakes' has no attribute {name!r}")
+    return getattr(import_module(f"brakes.common.{_MODULES[name]}"), name)

@@ -8,19 +8,44 @@ from __future__ import annotations
 from rich.console import Group
 
 from beamdyn.common.edge.input_sweep import sweep_csv
+from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
 from beamdyn.common.plots.curves import sweep_figure
+from beamdyn.common.results.columns import Column, Columns
 from brakes.answers.base import Answer, BrakeSweep
 from brakes.answers.planar import MechanismFriction
 from brakes.answers.tables import sweep_table
+from brakes.common.solutions import Solutions
 
 
 def _answer_tables(answer: Answer) -> Group:
     return Group(*answer.tables())
 
 
+def _solution_tables(found: Solutions) -> Group:
+    """The answer in a sentence, and the pieces that show that there is no other."""
+    heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
+    columns = (f"{found.input} from", "to", found.output, "from", "to")
+    ends = ([f"{each:.6g}" for each in (p.start, p.end, p.first, p.last)] for p in found.pieces)
+    courses = ([a, b, p.course, c, d] for p, (a, b, c, d) in zip(found.pieces, ends, strict=True))
+    gaps = ([f"{gap.start:.6g}", f"{gap.end:.6g}", "none", "-", "-"] for gap in found.gaps)
+    title = f"Course of {heads[1]} over {heads[0]}, by {len(found.samples)} samples"
+    rows = sorted((*courses, *gaps), key=lambda row: float(row[0]))
+    more = found.lacking if found.values.size else ()
+    return Group(found.message, table(title, columns, rows, (2,), 2), *more)
+
+
+def _solution_columns(found: Solutions) -> Columns:
+    """The solutions, and what is left at each of the difference to the wanted value."""
+    name = found.input.replace(".", "_")
+    return Columns(
+        Column(name, found.values, found.unit), Column("residual", found.residuals, found.output_unit)
+    )
+
+
 VIEWS = {
     Answer.__name__: View(_answer_tables, lambda answer: answer.rows(), 0, lambda answer: answer.figure()),
     MechanismFriction.__name__: View(MechanismFriction.table),
+    Solutions.__name__: View(_solution_tables, _solution_columns),
     BrakeSweep.__name__: View(sweep_table, sweep_csv, 0, sweep_figure),
 }

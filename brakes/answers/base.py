@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
 from types import MappingProxyType
@@ -32,7 +32,7 @@ from beamdyn.common.edge.input_sweep import (
 )
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
-from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.array_checks import solve_possible
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.common.inputs.paths import with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
@@ -203,7 +203,7 @@ class BrakeType(ABC, Generic[FileModel]):
        exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
     6. An `Output` takes its number, in SI, from the `Answer`; if the design has arrays, an array.  A field of
        a result that is annotated by `Meaning` says its words and unit itself: `take_fields`.
-    7. ``brakes/app/bases/name.toml`` is the example with which the screen opens.
+    7. ``examples/name.toml``, or ``brakes/app/bases/name.toml``, is the example with which the screen opens.
     8. A line in `brakes.answers.STANDARD` adds the command and the screen.
 
     Attributes
@@ -286,6 +286,11 @@ class BrakeType(ABC, Generic[FileModel]):
     @abstractmethod
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
         """Inputs of the form, for tables as far as they are filled in."""
+
+    @property
+    def optional(self) -> Collection[str]:
+        """Tables of the file that may be left out."""
+        return ()
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
         """Paths of inputs that have no effect beside these entries; see `Document`."""
@@ -399,29 +404,29 @@ class ArrayBrakeType(BrakeType[FileModel]):
         """Inputs of the form: those of the model."""
         return describe(self.model)
 
+    @property
+    def optional(self) -> Collection[str]:
+        """Tables of the model that it does not require."""
+        return [name for name, field in self.model.model_fields.items() if not field.is_required()]
+
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers in those tables that the design has; what has neither unit nor symbol is a choice."""
+        """Numbers in those tables that the design has, and choices, which are refused by their names."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
-        return [entry for entry in there if entry.quantity.unit or entry.quantity.symbol]
+        return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Results from one answer whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
-        columns, rows, refused = in_si.columns(), np.arange(designs.count), dict[int, str]()
-        values, answer = np.full((len(outputs), designs.count), np.nan), None
-        while rows.size and answer is None:
-            try:
-                given = {name: values[rows] for name, values in columns.items()}
-                answer = self.solve(with_parts(asked.design, given))
-            except InvalidValue as error:
-                bad = error.by_case()
-                if error.cases is None or error.cases.bad.shape != rows.shape:
-                    raise  # it is not about some of the designs
-                paths = [entry.path for entry in describe(type(asked.design))]
-                key = path_of(error, paths) or error.field
-                refused.update((int(rows[i]), said_of(each, key, None)) for i, each in bad.items())
-                rows = rows[~error.cases.bad]
+        columns, paths = in_si.columns(), [entry.path for entry in describe(type(asked.design))]
+        answer, rows, errors = solve_possible(
+            lambda rows: self.solve(with_parts(asked.design, {name: x[rows] for name, x in columns.items()})),
+            designs.count,
+        )
+        values = np.full((len(outputs), designs.count), np.nan)
+        refused = {
+            row: said_of(each, path_of(each, paths) or each.field, None) for row, each in errors.items()
+        }
         if answer is None:
             made = swept(designs, outputs, [*values], (), refused)
             return made, made.warnings

@@ -58,9 +58,11 @@ class DrumAnswer(RubbingAnswer):
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
         names = [f"shoe {i}, {'leading' if s.leading else 'trailing'}" for i, s in enumerate(shoes, 1)]
+        doubtful = [*self.doubtful()]
+        of_shoes = [*zip(*(each.shoes for each in doubtful), strict=True)]
         return [
-            outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake),
-            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes), (0, len(names) + 1)),
+            outputs_table(f"Drum brake, {direction}, friction {brake.friction:g}", _WHOLE, brake, doubtful),
+            table(title, ("", *names, "unit"), list_outputs(_SHOE, shoes, of_shoes), (0, len(names) + 1)),
             *self.further_tables(),
         ]
 

@@ -86,9 +86,14 @@ class MachineAnswer(RubbingAnswer):
         title = f"{self.design.title}, {direction}, friction {result.friction:g}"
         names, parts = [each.name for each in result.linings], _of_lining(result.brake)
         heads = ("", *laws, "unit"), ("", *names, "unit")
+        doubtful = [*self.doubtful()]
+        of_laws, of_linings = (
+            [doubtful] * len(laws),
+            [*zip(*(each.linings for each in doubtful), strict=True)],
+        )
         return [
-            table(title, heads[0], list_outputs(_WHOLE, [*laws.values()]), (0, len(laws) + 1)),
-            table("Linings", heads[1], list_outputs(parts, result.linings), (0, len(names) + 1)),
+            table(title, heads[0], list_outputs(_WHOLE, [*laws.values()], of_laws), (0, len(laws) + 1)),
+            table("Linings", heads[1], list_outputs(parts, result.linings, of_linings), (0, len(names) + 1)),
             *self.further_tables(),
         ]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -112,14 +113,22 @@ class RubbingAnswer(Answer):
 
     def by_other_laws(self) -> Iterator[tuple[str, float]]:
         """Words and torque of the other laws of the pressure, with the same force."""
+        return ((words, self.again(brake).torque) for words, brake in self._other_laws())
+
+    def doubtful(self) -> Iterator[Any]:
+        """Results of the same load with less and more friction, and under other laws of the pressure."""
+        result, given = self.result, self.design.load.given | {"reverse": self.result.reverse}
+        for part in (1 - _PART, 1 + _PART):
+            yield type(self).solver(result.brake, friction=part * result.friction, **given)
+        for _, brake in self._other_laws():
+            yield type(self).solver(brake, friction=result.friction, **given)
+
+    def _other_laws(self) -> Iterator[tuple[str, Any]]:
+        """Words of the other laws of the pressure, and the brake under each, where there can be one."""
         brake = self.result.brake
-        for law, words in brake.laws.items():
-            try:
-                other = brake.with_law(law)
-            except InvalidValue:
-                continue
-            if law != brake.law:
-                yield words, self.again(other).torque
+        for law in (each for each in brake.laws if each != brake.law):
+            with suppress(InvalidValue):
+                yield brake.laws[law], brake.with_law(law)
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""

@@ -79,8 +79,8 @@ def spread_of_brake(
     return solve_spread(named, given, used, check_seed(seed), answers, cautions=cautions)
 
 
-def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
-    """The value of an input in a design, and its SI unit.
+def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, str]:
+    """The value of an input in a design, and its SI unit; an option that asks for it is named in messages.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def nominal_of(design: Any, entry: Input) -> tuple[float, str]:
     """
     value = part_at(design, entry.path)
     if not isinstance(value, int | float):
-        raise InvalidValue(SPREAD, entry.path, "the file gives it no value", "give it one, or leave it out")
+        raise InvalidValue(option, entry.path, "the file gives it no value", "give it one, or leave it out")
     return float(value), "rad" if isinstance(value, Angle) else entry.quantity.unit
 
 

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import groupby
 from math import inf, pi
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from rich.console import Group
+from rich.text import Text
 
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.results.meanings import meanings
 
 _SHOWN = 24  # rows of a sweep
+_ROUNDING = 1e-12  # relative difference of two answers that is none
 SCALES = {"mm": 1e-3, "deg": pi / 180, "kN": 1e3, "MPa": 1e6}  # sizes in SI of units that people see
 
 
@@ -41,14 +45,30 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
     )
 
 
-def list_outputs(outputs: Iterable[Output], results: Sequence[Any]) -> list[list[str]]:
-    """Rows of a table: what each output is, its value in each result, its unit."""
-    return [[o.words, *(format_number(o.shown(result)) for result in results), o.unit] for o in outputs]
+def list_outputs(
+    outputs: Iterable[Output], results: Sequence[Any], doubtful: Sequence[Sequence[Any]] = ()
+) -> list[list[str | Text]]:
+    """Rows of a table: what each output is, its value in each result, its unit.
+
+    Digits of a result in which doubtful ones of it differ (the same with other friction, say) are dimmed.
+    """
+    doubted = doubtful or [()] * len(results)
+    each = [*zip(results, doubted, strict=True)]
+    return [[o.words, *(_doubted(o, *one) for one in each), o.unit] for o in outputs]
 
 
-def outputs_table(title: str, outputs: Iterable[Output], result: Any) -> Group:
+def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
+    """An output of a result, its digits dimmed in which it differs in doubtful ones; nan counts as equal."""
+    value = float(output.shown(result))
+    changes = [abs(float(output.shown(other)) - value) for other in doubtful]
+    change = float(np.fmax.reduce([0.0, *changes]))
+    text = format_number(value)
+    return set_apart(text, change) if change > _ROUNDING * abs(value) else text
+
+
+def outputs_table(title: str, outputs: Iterable[Output], result: Any, doubtful: Sequence[Any] = ()) -> Group:
     """A table of a result's outputs."""
-    return table(title, ("", "value", "unit"), list_outputs(outputs, [result]), (0, 2))
+    return table(title, ("", "value", "unit"), list_outputs(outputs, [result], [doubtful]), (0, 2))
 
 
 def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[object]]:
@@ -56,6 +76,28 @@ def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[
     yield "result", *results, "unit"
     for output in outputs:
         yield output.name, *(float(output.shown(result)) for result in results.values()), output.unit
+
+
+def keys_tables(inputs: Iterable[Input], optional: Collection[str]) -> Iterator[Group]:
+    """Tables of the keys of a file: what each means with unit, bounds and choices, and its default.
+
+    Optional are tables that may be left out.
+    """
+    for place, entries in groupby(inputs, key=lambda entry: entry.path.rpartition(".")[0]):
+        rows = ((each.name, ": ".join([each.help, *_choices(each)]), _default(each)) for each in entries)
+        title = f"[{place}]{', which may be left out' * (place in optional)}" if place else "At the top"
+        yield table(title, ("key", "what", "if not given"), rows, (0, 1, 2))
+
+
+def _choices(entry: Input) -> list[str]:
+    return [", ".join(map(str, entry.choices))] if entry.choices else []
+
+
+def _default(entry: Input) -> str:
+    """What a key has that is not given, as a file would say it."""
+    if entry.required:
+        return "required"
+    return "" if entry.default in (None, [], ()) else f"{entry.default} {entry.quantity.unit}".rstrip()
 
 
 def sweep_table(sweep: InputSweep) -> Group:

@@ -36,9 +36,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _AXLES: tuple[Axle, Axle] = ("front", "rear")
-_HOLDING = take_fields(
-    Holding,
-    "largest_slope slipping_slope tipping_slope rolling_slope needed_force front_load rear_load",
+_HOLDING = (
+    Output("holds", "holds on the slope: 1, else 0", lambda holding: np.equal(holding.status, "holds") * 1.0),
+    *take_fields(
+        Holding,
+        "largest_slope slipping_slope tipping_slope rolling_slope needed_force braking_force "
+        "front_load rear_load",
+    ),
 )
 _BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
 _SLOWING = take_fields(
@@ -191,13 +195,11 @@ class VehicleAnswer(Answer):
 
 
 def _failures(way: OneDirection) -> list[str]:
-    """A sentence if it does not hold, and one if it does not stop; of many cases how many."""
+    """A sentence if one vehicle does not hold (of many, `holds` says which), and one if it does not stop."""
     holding, slowing = way.holding, way.slowing
     said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
-    if np.ndim(holding.status):
-        short = int(np.sum(holding.status != "holds"))
-        return [f"it does not hold in {short} of {holding.status.size} cases", *said] if short else said
-    return said if holding.status == "holds" else [holding.message, *said]
+    alone = np.ndim(holding.status) == 0 and holding.status != "holds"
+    return [holding.message, *said] if alone else said
 
 
 class ParkingType(ArrayBrakeType[VehicleInput]):
@@ -212,8 +214,8 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     error_from = "rounding of inputs and sums"
     model = VehicleInput
     sections = needs = ("truck", "vehicle", "road", "braking", "stop", "lever", "cable", "line", "brakes")
-    example_sweep = "road.friction=0.4:0.9:26"
-    sweep_results = "largest_slope_front,largest_slope_rear"
+    example_sweep = "road.slope=1:35:35 deg"
+    sweep_results = "holds_front,holds_rear,braking_force_front,braking_force_rear"
     key_results = (
         ("largest slope, front axle downhill", "largest_slope_front"),
         ("largest slope, rear axle downhill", "largest_slope_rear"),

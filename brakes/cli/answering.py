@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +17,7 @@ from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.outputs import Outputs, write
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.tables import show
-from beamdyn.common.edge.varying import OPTION, SPREAD, SpreadOptions, VaryOptions
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
     from brakes.answers.base import Answer, BrakeType
@@ -42,7 +43,83 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return exit_codes.run(app, arguments)
 
 
-What = Annotated[str | None, Parameter(name="--what")]
+@Parameter(name="*")
+@dataclass(frozen=True)
+class FindOptions:
+    """The question backwards.
+
+    Parameters
+    ----------
+    find : str, optional
+        An input whose values are sought, such as "brake.friction", from a tenth to ten times its value in the
+        file; or from bounds and a number of samples to others, such as "brake.friction=0.1:0.6:51".
+    so_that : str, optional
+        The result that they are to give, such as "torque = 300 N m"; a wrong name lists all.
+    """
+
+    find: Annotated[str | None, Parameter(show_default=False)] = None
+    so_that: Annotated[str | None, Parameter(show_default=False)] = None
+
+    @property
+    def options(self) -> dict[str, object]:
+        """The options that are given, for the head of a report."""
+        return {"find": self.find, "so_that": self.so_that}
+
+    def check(self, **others: object) -> None:
+        """Refuse one of them without the other, and beside an option that asks for many designs."""
+        if (self.find is None) != (self.so_that is None):
+            raise ValueError(
+                "--find and --so-that go together: the input that is sought, and what it is to give"
+            )
+        for name, given in others.items():
+            if self.find is not None and given:
+                raise ValueError(f"--{name} does not go with --find: give one of them")
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of many designs, or of one if nothing is.
+
+    Parameters
+    ----------
+    varying : VaryOptions
+        Inputs that are varied.
+    spreading : SpreadOptions
+        Inputs that have a tolerance.
+    finding : FindOptions
+        The input that is sought.
+    what : str, optional
+        Results with --vary or --spread, separated by commas; the file of --csv without them lists all names.
+    """
+
+    varying: VaryOptions = NOTHING_VARIED
+    spreading: SpreadOptions = NO_SPREAD
+    finding: FindOptions = field(default_factory=FindOptions)
+    what: Annotated[str | None, Parameter(show_default=False)] = None
+
+    @property
+    def options(self) -> dict[str, object]:
+        """The options that are given, for the head of a report."""
+        return self.varying.options | self.spreading.options | self.finding.options | {"what": self.what}
+
+    @property
+    def many(self) -> str:
+        """The option that asks for many designs; "" if there is one design."""
+        given = {OPTION: self.varying.vary, SPREAD: self.spreading.spread, "--find": self.finding.find}
+        return next((option for option, value in given.items() if value), "")
+
+    def check(self) -> None:
+        """Refuse what does not go together, or says nothing."""
+        self.finding.check(vary=self.varying.vary, spread=self.spreading.spread, what=self.what)
+        self.spreading.check(self.varying)
+        if not self.spreading.spread:
+            self.varying.check()
+        if not self.many and self.what is not None:
+            raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
+
+
+ONE_DESIGN = Asked()
 Files = Mapping[str, tuple[Path | None, Callable[["Answer", Path], object]]]
 
 
@@ -50,9 +127,7 @@ def run_command(
     brake: BrakeType[Any],
     command: str,
     file: str,
-    varying: VaryOptions,
-    spreading: SpreadOptions,
-    what: str | None,
+    asked: Asked,
     outputs: Outputs,
     further: Files | None = None,
     **options: object,
@@ -67,12 +142,8 @@ def run_command(
         Name of the command.
     file : str
         The file.
-    varying : VaryOptions
-        Inputs that are varied.
-    spreading : SpreadOptions
-        Inputs that have a tolerance.
-    what : str, optional
-        Names of the results of these.
+    asked : Asked
+        What is asked of many designs.
     outputs : Outputs
         Files to write.
     further : mapping, optional
@@ -93,19 +164,15 @@ def run_command(
     written = {option: path for option, (path, _) in (further or {}).items()}
     outputs.check(file, **written)
     tables, text = brake.open(file)
-    given = varying.options | spreading.options
-    question = Question.of(f"brakes {command}", file, text, **options, **given, what=what)
-    spreading.check(varying)
-    many = OPTION if varying.vary else SPREAD if spreading.spread else ""
+    if not tables:
+        raise ValueError(f"{file}: it has no tables yet; `brakes keys {command}` lists them with their keys")
+    question = Question.of(f"brakes {command}", file, text, **options, **asked.options)
+    asked.check()
     for option, path in written.items():
-        if many and path is not None:
-            raise ValueError(f"--{option} = {path}: it is of one design; leave {many} out")
-    if not spreading.spread:
-        varying.check()
-    if not many and what is not None:
-        raise ValueError(f"--what goes with --vary or {SPREAD}: without them, all results are shown")
-    if many:
-        made, warnings, none = _answer_many(brake, tables, file, varying, spreading, what)
+        if asked.many and path is not None:
+            raise ValueError(f"--{option} = {path}: it is of one design; leave {asked.many} out")
+    if asked.many:
+        made, warnings, none = _answer_many(brake, tables, file, asked)
         said, more = warnings, ()
     else:
         made = brake.answer(tables, file)
@@ -131,27 +198,28 @@ def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callab
 
 
 def _answer_many(
-    brake: BrakeType[Any],
-    tables: Mapping[str, Any],
-    file: str,
-    varying: VaryOptions,
-    spreading: SpreadOptions,
-    what: str | None,
+    brake: BrakeType[Any], tables: Mapping[str, Any], file: str, asked: Asked
 ) -> tuple[Any, Sequence[str], str]:
-    """A sweep, or a spread over tolerances of inputs; warnings, and that none has an answer if so."""
+    """A sweep, a spread, or a question backwards; warnings, and that there is no answer if so."""
     import numpy as np
 
+    from brakes.answers.finding import find_in_file
     from brakes.answers.spread import spread_of_brake
 
+    if asked.finding.find and asked.finding.so_that:
+        made = find_in_file(brake, tables, file, asked.finding.find, asked.finding.so_that)
+        return made, made.warnings, "" if made.values.size else made.message
+    varying, spreading = asked.varying, asked.spreading
     with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)
         if spreading.spread:
             how = spreading.samples, spreading.seed, run
-            made = spread_of_brake(brake, tables, file, spreading.spread, what, *how)
+            made = spread_of_brake(brake, tables, file, spreading.spread, asked.what, *how)
             answered, warnings = not (made.scatter.no_answer == 1).all(), made.warnings
             none = f"none of {made.designs} random designs has an answer"
         else:
-            made, warnings = brake.sweep(tables, file, varying.vary, what, combine=varying.combine, run=run)
+            how = {"combine": varying.combine, "run": run}
+            made, warnings = brake.sweep(tables, file, varying.vary, asked.what, **how)
             answered = any(np.isfinite(values).any() for values in made.found)
             none = f"at none of {made.designs.count} values is there an answer"
     return made, warnings, "" if answered else none

@@ -11,11 +11,11 @@ from cyclopts import Parameter
 from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.tables import console, show
-from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, SomeFolder, SpreadOptions, VaryOptions
+from beamdyn.common.edge.varying import SomeFolder
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
-from brakes.cli.answering import What, app, run_command
+from brakes.cli.answering import ONE_DESIGN, Asked, app, run_command
 
 if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program
@@ -31,7 +31,7 @@ StageChoice = Literal["vehicle", "kinematics", "forces", "all"]
     help_epilogue=examples(
         "brakes caliper v-brake --plot v_brake.png",
         'brakes caliper dual-pivot --vary "dimensions.side_pivot.x=22:32:3 mm"',
-        "brakes caliper examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+        "brakes caliper examples/calipers/eebrake.toml --free-bodies bodies.png",
     ),
 )
 def caliper(
@@ -40,13 +40,11 @@ def caliper(
     *,
     free_bodies: Path | None = None,
     animation: Path | None = None,
-    varying: VaryOptions = NOTHING_VARIED,
-    spreading: SpreadOptions = NO_SPREAD,
-    what: What = None,
+    asked: Asked = ONE_DESIGN,
     list_: Annotated[Flag, Parameter(name="--list")] = False,
     outputs: Outputs = NO_FILES,
 ) -> None:
-    """Forces, travels and mechanical advantage of a caliper, or of any planar mechanism.
+    """Forces, travels and mechanical advantage of a caliper.
 
     With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
     statics does not determine and which contacts open, and then ends with code 1.
@@ -60,23 +58,18 @@ def caliper(
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
         Write an animation of the stroke: .gif.
-    varying
-        Inputs that are varied, e.g. --vary "clearance=1:2:11 mm" --vary "dimensions.pad.y=-55:-45:11 mm".
-    spreading
-        Inputs that have a tolerance, e.g. --spread "clearance=+-0.1 mm": ranges of results.
-    what
-        Results with --vary or --spread, separated by commas, such as "finger_travel,right_advantage"; a
-        wrong name lists all.
+    asked
+        What is asked of many designs.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
         Files to write.
     """
-    from brakes.answers.caliper import MECHANISM, names_tables
+    from brakes.answers.caliper import names_tables
 
     if list_:
         files = vars(outputs) | {"free-bodies": free_bodies, "animation": animation, "force": None}
-        options = files | varying.options | spreading.options | {"what": what}
+        options = files | asked.options
         given = {"MECHANISM": mechanism} | {f"--{name}": value for name, value in options.items()}
         for name, value in given.items():
             if value:
@@ -85,17 +78,63 @@ def caliper(
                 raise ValueError(f"{name} = {text}: {says}")
         show(names_tables())
         return
+    _run_planar("caliper", mechanism, free_bodies, animation, asked, outputs)
+
+
+@app.command(
+    help_epilogue=examples(
+        "brakes mechanism examples/block_brake.toml",
+        "brakes mechanism examples/calipers/toggle-clamp.toml --free-bodies bodies.png",
+    )
+)
+def mechanism(
+    file: Annotated[Path, Parameter(name="MECHANISM.toml")],
+    /,
+    *,
+    free_bodies: Path | None = None,
+    animation: Path | None = None,
+    asked: Asked = ONE_DESIGN,
+    outputs: Outputs = NO_FILES,
+) -> None:
+    """Every force in a planar mechanism of bodies, joints and loads, as drawn and over a stroke.
+
+    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
+    statics does not determine and which contacts open, and then ends with code 1.
+
+    Parameters
+    ----------
+    file
+        The mechanism, part by part, or a caliper; `brakes keys mechanism` lists all keys.
+    free_bodies
+        Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
+    animation
+        Write an animation of the stroke: .gif.
+    asked
+        What is asked of many designs.
+    outputs
+        Files to write.
+    """
+    _run_planar("mechanism", str(file), free_bodies, animation, asked, outputs)
+
+
+def _run_planar(
+    command: str, name: str, free_bodies: Path | None, animation: Path | None, asked: Asked, outputs: Outputs
+) -> None:
+    """Answer a caliper or a mechanism, with the pictures that others do not have."""
+    from brakes.answers.caliper import MECHANISM
+
     further = {
         "free-bodies": (free_bodies, lambda a, path: save_figure(a.free_bodies(), path, outputs.force)),
         "animation": (animation, lambda a, path: a.animate(path, outputs.force)),
     }
-    run_command(MECHANISM, "caliper", mechanism, varying, spreading, what, outputs, further)
+    run_command(MECHANISM, command, name, asked, outputs, further)
 
 
 @app.command(
     help_epilogue=examples(
         "brakes forklift examples/forklift.toml --plot forklift.png",
         'brakes forklift examples/forklift.toml --vary "stop.speed=10:30:3 km/h"',
+        'brakes forklift examples/forklift.toml --find friction --so-that "distance=9 m"',
     )
 )
 def forklift(
@@ -103,9 +142,7 @@ def forklift(
     /,
     *,
     stage: StageChoice = "all",
-    varying: VaryOptions = NOTHING_VARIED,
-    spreading: SpreadOptions = NO_SPREAD,
-    what: What = None,
+    asked: Asked = ONE_DESIGN,
     outputs: Outputs = NO_FILES,
 ) -> None:
     """Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part.
@@ -113,23 +150,39 @@ def forklift(
     Parameters
     ----------
     file
-        The truck, the stop, and one of its brakes.
+        The truck, the stop, and one of its brakes; `brakes keys forklift` lists all keys.
     stage
         What to show; what comes before it is computed where it is needed.
-    varying
-        Inputs that are varied, e.g. --vary "stop.speed=10:30:9 km/h".
-    spreading
-        Inputs that have a tolerance, e.g. --spread "stop.friction=+-10%": ranges of results.
-    what
-        Results with --vary or --spread, separated by commas, such as "distance,A"; the file of --csv
-        without them lists all names.
+    asked
+        What is asked of many designs.
     outputs
         Files to write.
     """
     from brakes.answers.forklift import FORKLIFT, TYPES
 
     brake = FORKLIFT if stage == "all" else TYPES[stage]
-    run_command(brake, "forklift", str(file), varying, spreading, what, outputs, stage=stage)
+    run_command(brake, "forklift", str(file), asked, outputs, stage=stage)
+
+
+@app.command(help_epilogue=examples("brakes keys disc"))
+def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
+    """List the tables and keys of a file from which to begin: meaning, unit, bounds and default of each.
+
+    Parameters
+    ----------
+    brake
+        The command that takes the file, such as drum, disc, vehicle, forklift, caliper or mechanism.
+    """
+    from beamdyn.common.inputs.checks import one_of
+    from brakes.answers.caliper import CALIPER, MECHANISM
+    from brakes.answers.forklift import FORKLIFT
+    from brakes.answers.tables import keys_tables
+
+    others = {each.name: each for each in (FORKLIFT, CALIPER, MECHANISM)}
+    one_of("COMMAND", brake, [*STANDARD, *others])
+    found = others.get(brake) or STANDARD[brake][1]()
+    about = 'A quantity is text with a unit, "50 mm"; a number without a unit and true or false stand bare.'
+    show([*keys_tables(found.inputs({}), found.optional), about])
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
@@ -179,9 +232,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         file: BrakeFile,
         /,
         *,
-        varying: VaryOptions = NOTHING_VARIED,
-        spreading: SpreadOptions = NO_SPREAD,
-        what: What = None,
+        asked: Asked = ONE_DESIGN,
         outputs: Outputs = NO_FILES,
     ) -> None:
         """Answer a file.
@@ -189,18 +240,13 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         Parameters
         ----------
         file
-            The TOML file that describes the brake.
-        varying
-            Inputs that are varied, e.g. --vary "friction=0.1:0.6:11" --vary "shoe.lining_end=50:120:15 deg".
-        spreading
-            Inputs that have a tolerance, e.g. --spread "friction=+-10%": ranges of results.
-        what
-            Results with --vary or --spread, separated by commas, such as "torque,pin_1"; the file of --csv
-            without them lists all names.
+            The TOML file that describes the brake; `brakes keys` lists its keys.
+        asked
+            What is asked of many designs.
         outputs
             Files to write.
         """
-        run_command(load(), name, str(file), varying, spreading, what, outputs)
+        run_command(load(), name, str(file), asked, outputs)
 
 
 for _name, (_help, _load) in STANDARD.items():

@@ -183,7 +183,8 @@ class Sliding(Machine):
         def holds(mu: np.ndarray) -> np.ndarray:
             return self._force(mu, leads) > 0
 
-        shape = np.shape(self.arm + self.lining_start + self.lining_end + self.abutment_offset)
+        numbers = (value for value in vars(self).values() if not isinstance(value, str | Mapping))
+        shape = np.broadcast_shapes(*map(np.shape, numbers))
         grid = _FRICTIONS.reshape(-1, *(1,) * len(shape)) + np.zeros(shape)
         free = np.logical_and.accumulate(holds(grid), axis=0)
         last = np.maximum(free.sum(axis=0) - 1, 0)

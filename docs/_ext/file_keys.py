@@ -9,11 +9,13 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from importlib import import_module
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.edge.inputs import Input, Section, describe
 from brakes.answers import STANDARD
+from brakes.answers.machine import MachineType
 
 MARK = re.compile(r"^<!-- keys of (\S+):(\w+)(?: \[(\w+)\])? -->$", re.MULTILINE)
 _BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
@@ -93,8 +95,31 @@ def rows_of_brakes() -> str:
     return "\n".join(rows)
 
 
+def keys_of_machines() -> str:
+    """Tables of the brakes pressed by one force: the one that they share, and that of each."""
+    brakes = [brake for brake in (load() for _, load in STANDARD.values()) if isinstance(brake, MachineType)]
+    shared = tables_of(brakes[0], "brake")
+    return "\n\n".join([shared, *(tables_of(brake, brake.name) for brake in brakes)])
+
+
+def list_of_examples() -> str:
+    """Each example with the first sentence of its comment."""
+    folder = Path(__file__).parents[2] / "examples"
+    files = (*sorted(folder.glob("*.toml")), *sorted(folder.glob("*/*.toml")))
+    each = ((file.relative_to(folder), first_sentence(file.read_text(encoding="utf-8"))) for file in files)
+    return "\n".join(f"- [{name}](../examples/{name}): {said}" for name, said in each)
+
+
+def first_sentence(text: str) -> str:
+    """The first sentence of the comment that a file begins with, without the command that may follow it."""
+    comment = takewhile(lambda line: line.startswith("#"), text.splitlines())
+    whole = " ".join(line[1:].strip() for line in comment)
+    return re.split(r"\.(?=\s+[A-Z`]|$)|: beamdyn ", whole)[0]
+
+
 def write_tables(app, docname: str, source: list[str]) -> None:
     source[0] = source[0].replace("<!-- standard brakes -->", rows_of_brakes())
+    source[0] = source[0].replace("<!-- list of examples -->", list_of_examples())
     if not MARK.search(source[0]):
         return
     source[0] = with_tables(source[0])
@@ -102,6 +127,7 @@ def write_tables(app, docname: str, source: list[str]) -> None:
 
 def with_tables(text: str) -> str:
     """A page with the tables in place of its marks."""
+    text = text.replace("<!-- keys of brakes pressed by one force -->", keys_of_machines())
     return MARK.sub(lambda mark: tables_of(getattr(import_module(mark[1]), mark[2]), mark[3]), text)
 
 

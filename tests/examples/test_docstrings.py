@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+import brakes
 from brakes import calipers, chain, drum, forklift, machines, planar, vehicle
 
 ROOT = Path(__file__).parents[2]
-MODULES = (bd, calipers, chain, drum, forklift, machines, planar, vehicle)
+MODULES = (bd, brakes, calipers, chain, drum, forklift, machines, planar, vehicle)
 KNOWN = {"np": np, **{module.__name__.rpartition(".")[2]: module for module in MODULES[1:]}, "bd": bd}
 NEED = {"beamdyn.count_cycles": "rainflow", "beamdyn.LoadCycles": "rainflow"}  # extras
 CHECKED = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["numpydoc_validation"]

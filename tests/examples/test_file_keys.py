@@ -39,6 +39,14 @@ def test_the_page_has_the_tables_of_all_files() -> None:
         assert heading in source[0]
 
 
+def test_the_page_of_examples_lists_each_with_what_it_is() -> None:
+    source = [(ROOT / "docs" / "examples.md").read_text(encoding="utf-8")]
+    extension().write_tables(None, "examples", source)
+    for file in (ROOT / "examples").glob("**/*.toml"):
+        assert f"({Path('..') / file.relative_to(ROOT)}): " in source[0]
+    assert "Yoo et al. (1997), which reverses down a slope with its load and stops with locked" in source[0]
+
+
 @pytest.mark.parametrize(
     ("section", "file"),
     [

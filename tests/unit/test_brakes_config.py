@@ -319,7 +319,7 @@ def test_short_keys_mean_the_input_that_must_be_given(key: str, path: str) -> No
     "text, parts",
     [
         ("frictoin=0:1:3", ["frictoin", "did you mean friction?"]),
-        ("pressure_zero=0:1:3", ["unknown name"]),
+        ("pressure_zero=0:1:3", ["it is a choice (pivot, axis)"]),
         ("friction=0.1:0.5", ["start:stop:count", "brake.friction=1:2:11"]),
         ("friction", ["start:stop:count"]),
         ("friction=0.1:0.5:1", ["count from 2"]),

@@ -80,6 +80,26 @@ def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
     assert "230.54 N m (-12.3 %), 298.00 N m (+13.3 %)" in " ".join(out.split())
 
 
+@pytest.mark.parametrize(
+    ("name", "words", "dimmed"),
+    [
+        ("drum", "torque of the brake", "62.96"),  # 13 % of 263 N m
+        ("drum", "force on each shoe", ""),  # it is given
+        ("band", "friction at self-locking", ""),  # of the geometry alone
+        ("cone", "torque of the brake", ""),  # it is given
+        ("cone", "actuating force", "416.9"),
+        ("disc", "radius that C* refers to", "0.00"),  # by the law of the pressure
+    ],
+)
+def test_digits_that_friction_or_law_of_the_pressure_change_are_dimmed(name, words, dimmed):
+    brake = STANDARD[name][1]()
+    tables, _ = brake.open(str(EXAMPLES / f"{name}.toml"))
+    shown = brake.answer(tables, name).tables()[0].renderables[1]
+    rows = dict(zip(*([*column.cells] for column in shown.columns[:2]), strict=True))
+    cell = rows[words]
+    assert (cell.plain[cell.spans[-1].start :] if getattr(cell, "spans", ()) else "") == dimmed
+
+
 def test_reverse_turns_leading_into_trailing(answer):
     _, out, _ = answer("band", '"forward"', '"reverse"')
     assert "reverse" in out and "never" in out

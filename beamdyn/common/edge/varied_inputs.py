@@ -149,7 +149,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     Parameters
     ----------
     inputs : sequence of Input
-        Those in question.
+        Those in question, and choices, which are no numbers.
     key : str
         The key.
     words : str
@@ -158,15 +158,19 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     Raises
     ------
     ValueError
-        If no input has this key, or several have.
+        If no input has this key, several have, or it is a choice.
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
         matches = [i for i in matches if i.required] or matches  # the others follow it, as a second shoe does
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
+    numbers = [i for i in inputs if not i.choices]
     if not matches:
-        raise ValueError(f"{words}: {unknown(key, [i.path for i in inputs], [i.name for i in inputs])}")
+        raise ValueError(f"{words}: {unknown(key, [i.path for i in numbers], [i.name for i in numbers])}")
+    if choices := matches[0].choices:
+        says = f"it is a choice ({', '.join(map(str, choices))}): give each a file; numbers are"
+        raise ValueError(f"{words}: {matches[0].path}: {says} {', '.join(i.path for i in numbers)}")
     return matches[0]
 
 

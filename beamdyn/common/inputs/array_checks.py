@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import NoneType
-from typing import Any, Literal, get_origin
+from typing import Any, Literal, TypeVar, get_origin
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from beamdyn.common.inputs.checks import InvalidValue, as_floats, in_unit, refus
 from beamdyn.common.inputs.described import described_hints, description, kinds_of
 
 Numbers = Any  # a float, or an array of floats: one value a case
+Solved = TypeVar("Solved")
 
 
 def numbers(name: str, value: Any, unit: str = "") -> Numbers:
@@ -75,3 +77,41 @@ def together(**values: Any) -> None:
     except ValueError:
         listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
         raise ValueError(f"shapes do not broadcast: {listed}; give numbers, or arrays of one shape") from None
+
+
+def solve_possible(
+    solve: Callable[[np.ndarray], Solved], count: int
+) -> tuple[Solved | None, np.ndarray, dict[int, InvalidValue]]:
+    """Solve those of many cases that are not refused.
+
+    Parameters
+    ----------
+    solve : callable
+        ``solve(rows)``: what is found of the cases of these rows, together.
+    count : int
+        Number of cases.
+
+    Returns
+    -------
+    found : object
+        What is found; None if all cases are refused.
+    rows : ndarray of int
+        Rows of the cases that are solved.
+    refused : dict of int to InvalidValue
+        Why each of the others is refused, by its row.
+
+    Raises
+    ------
+    InvalidValue
+        If it is not about some of the cases.
+    """
+    rows, refused = np.arange(count), dict[int, InvalidValue]()
+    while rows.size:
+        try:
+            return solve(rows), rows, refused
+        except InvalidValue as error:
+            if error.cases is None or error.cases.bad.shape != rows.shape:
+                raise
+            refused |= {int(rows[i]): each for i, each in error.by_case().items()}
+            rows = rows[~error.cases.bad]
+    return None, rows, refused

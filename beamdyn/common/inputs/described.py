@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass
@@ -77,6 +78,13 @@ class Described:
     def is_within_bounds(self, value: float) -> bool:
         """Whether a value [unit] keeps all bounds."""
         return not any(refuses(value, bound) for _, bound, refuses in self._limits())
+
+    def nearest_within(self, value: float) -> float:
+        """The value within all bounds that is nearest to a value [unit]."""
+        least = [self.least] if self.above is None else [self.least, math.nextafter(self.above, math.inf)]
+        most = [self.most] if self.below is None else [self.most, math.nextafter(self.below, -math.inf)]
+        value = max([value, *(bound for bound in least if bound is not None)])
+        return min([value, *(bound for bound in most if bound is not None)])
 
     def refuse_out_of_bounds(self, name: str, values: Any) -> None:
         """Refuse a number or an array of numbers [unit] of which any is out of bounds.

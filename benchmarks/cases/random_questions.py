@@ -1,0 +1,98 @@
+"""Random questions backwards: of a brake or vehicle near its example, one input and one result."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beamdyn.common.edge.exit_codes import NoAnswer
+from beamdyn.common.inputs.paths import part_at, with_parts
+from brakes.answers import STANDARD
+from brakes.answers.base import BrakeType
+from brakes.answers.finding import find_in_file
+from brakes.answers.forklift import FORKLIFT
+from brakes.app.bases import base
+from brakes.common.solutions import Solutions
+
+PEDAL = """
+[pedal]
+ratio = 5
+force = "300 N"
+[line]
+master_bore = "22.22 mm"
+cylinder_bore = "31.75 mm"
+"""
+TYPES = {name: load() for name, (_, load) in STANDARD.items()} | {"forklift": FORKLIFT}
+ROUNDING = ("error", "closure")  # results that are nothing but rounding
+SPREAD, SOUGHT = 1.3, 1.5  # factors: of each number of a design, and of the bounds of the search
+
+
+class Asked(NamedTuple):
+    """A question whose answer is known.
+
+    Parameters
+    ----------
+    what : str
+        Brake, input and result.
+    value : float
+        The input's value, which gave the result [unit of the search].
+    found : Solutions
+        What the search finds.
+    """
+
+    what: str
+    value: float
+    found: Solutions
+
+    @property
+    def residual(self) -> float:
+        """Largest difference of the results from the wanted one, over that."""
+        return float(np.max(np.abs(self.found.residuals), initial=0.0)) / abs(self.found.target)
+
+    @property
+    def distance(self) -> float:
+        """Relative difference of the known value from the nearest that is found; inf if none is."""
+        return float(np.min(np.abs(self.found.values / self.value - 1), initial=np.inf))
+
+
+def questions(count: int, seed: int = 34, names: Sequence[str] = tuple(TYPES)) -> Iterator[Asked]:
+    """Draw questions, as many of each of the types of brakes with these names."""
+    rng, made = np.random.default_rng(seed), 0
+    while made < count:
+        name = names[made % len(names)]
+        asked = _question(TYPES[name], name, rng)
+        if asked is not None:
+            made += 1
+            yield asked
+
+
+def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
+    """A question; None where the design has no answer, or the result does not depend on the input."""
+    text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
+    tables = tomllib.loads(text + PEDAL * (name == "forklift"))
+    design = brake.read(tables, name)
+    inputs = [each for each in brake.sweep_inputs(design, tables) if part_at(design, each.path)]
+    given = ((each, part_at(tables, each.path)) for each in inputs if not each.choices)
+    entries = [each for each, value in given if isinstance(value, str | float)]  # no counts, no whole shares
+    values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
+    written = {e.path: f"{values[e.path]!r} {e.quantity.unit}" for e in entries if e.quantity.unit}
+    tables = with_parts(tables, values | written)
+    outputs = [each for each in brake.outputs(design) if not each.name.startswith(ROUNDING)]
+    entry, output = entries[rng.integers(len(entries))], outputs[rng.integers(len(outputs))]
+    value = float(values[entry.path])
+    try:
+        target = float(output.shown(brake.answer(tables, name)))
+    except (ValueError, NoAnswer):
+        return None
+    if not target or not np.isfinite(target):
+        return None
+    bounds = sorted(entry.quantity.nearest_within(end) for end in (value / SOUGHT, value * SOUGHT))
+    low, high = (repr(float(end)) for end in bounds)
+    sought = f"{entry.path}={low}:{high}:33 {entry.quantity.unit}"
+    found = find_in_file(brake, tables, name, sought, f"{output.name} = {target!r} {output.unit}")
+    if any(piece.course == "is level" for piece in found.pieces):
+        return None
+    return Asked(f"{name}: {entry.path} for {output.name}", value, found)

@@ -1,0 +1,154 @@
+"""Questions backwards on a file: the values of an input with which a result is what is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.edge.exit_codes import NoAnswer
+from beamdyn.common.edge.input_sweep import MOST_ONE_BY_ONE, Output, chosen
+from beamdyn.common.edge.inputs import Quantity, SlopeQuantity, WholeNumber
+from beamdyn.common.edge.units import unit_as_written
+from beamdyn.common.edge.varied_inputs import Axis, find_input, parse_axis
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.paths import part_at
+from beamdyn.common.results.result import Provenance
+from brakes.answers.base import ERROR, BrakeType, SweepRequest
+from brakes.answers.spread import nominal_of
+from brakes.answers.tables import SCALES
+from brakes.common.finding import find
+from brakes.common.solutions import Solutions
+
+FIND, SO_THAT = "--find", "--so-that"
+_USUAL = {"m": "mm", "rad": "deg"}  # units that people see where the file has none
+_TIMES = 10.0  # from a part of the file's value to this multiple of it, if no bounds are given
+_TOGETHER, _ONE_BY_ONE = 129, 17  # samples at the start
+
+
+def find_in_file(
+    brake: BrakeType[Any], tables: Mapping[str, Any], source: str, input: str, so_that: str
+) -> Solutions:
+    """Find all values of an input with which a result of a brake is what is wanted.
+
+    Parameters
+    ----------
+    brake : BrakeType
+        Its type.
+    tables : mapping
+        Tables of the design's file.
+    source : str
+        Their origin, for messages.
+    input : str
+        The input, such as "brake.friction", which is sought from a tenth to ten times its value in the file;
+        or with other bounds and the number of samples, as an input is varied: "brake.friction=0.1:0.6:51".
+    so_that : str
+        The result and its value, such as "torque = 300 N m".
+
+    Returns
+    -------
+    Solutions
+        The values, in the unit of the bounds or of the file.
+
+    Raises
+    ------
+    ValueError
+        If input or result are not known, or their values are of another kind.
+    """
+    start, design = perf_counter(), brake.read(tables, source)
+    output, target = _wanted(brake.outputs(design), so_that)
+    axis = _axis(brake, design, tables, input)
+    answers = _Designs(brake, SweepRequest(design, tables, (), "zip", None), axis, output)
+    found = find(answers, target, np.unique(axis.given), answers.reason)
+    how = "samples doubled until the pieces stay the same; roots by algorithm 748"
+    return replace(
+        found,
+        input=axis.input.path,
+        unit=axis.unit,
+        output=output.name,
+        output_unit=output.unit,
+        provenance=Provenance(__version__, brake.method, how, perf_counter() - start),
+    )
+
+
+@dataclass(frozen=True)
+class _Designs:
+    """A result of designs that differ in one input."""
+
+    brake: BrakeType[Any]
+    asked: SweepRequest
+    axis: Axis
+    output: Output
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """The result at values of the input [the axis' unit]; nan where there is none."""
+        try:
+            return self._sweep(x).found[0]
+        except NoAnswer:
+            return np.full(len(x), np.nan)
+
+    def reason(self, x: float) -> str:
+        """Why there is no result at a value of the input."""
+        try:
+            made = self._sweep(np.array([x]))
+        except NoAnswer as error:
+            return str(error).partition(": ")[2] or str(error)
+        said = dict((*made.refused, *made.unanswered)).get(0)
+        return said or f"{self.output.name} is not finite"
+
+    def _sweep(self, x: np.ndarray) -> Any:
+        axis = self.axis
+        values = np.array([_in_si(axis.input.quantity, each, axis.unit) for each in x.tolist()])
+        asked = replace(self.asked, axes=[replace(axis, given=x, values=values)])
+        return self.brake.sweep_cases(asked, [self.output, ERROR])[0]
+
+
+def _in_si(quantity: Quantity, value: float, unit: str) -> float:
+    return quantity.convert(f"{value!r} {unit}" if unit else value)
+
+
+def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float]:
+    """A result, and the value that it is to have [its unit]."""
+    name, equals, amount = (part.strip() for part in text.partition("="))
+    output, *more = chosen(outputs, name, SO_THAT)
+    form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'
+    if not equals or more:
+        raise ValueError(f'{SO_THAT} = "{text}": {form}')
+    try:
+        return output, _amount(amount, output.unit)
+    except ValueError as error:
+        said = error.advice(str) if isinstance(error, InvalidValue) else "give a plain number"
+        raise ValueError(f'{SO_THAT} = "{text}": {said}; {form}') from None
+
+
+def _amount(text: str, unit: str) -> float:
+    """A number with a unit in another unit; an angle may be given by its rise in %."""
+    if unit == "deg":
+        return SlopeQuantity("rad").convert(text) / SCALES["deg"]
+    return Quantity(unit).convert(text if unit else float(text))
+
+
+def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
+    """The input that is sought, and where the search begins: as given, or about its value in the file."""
+    inputs = brake.sweep_inputs(design, tables)
+    entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
+    value, _ = nominal_of(design, entry, FIND)
+    if isinstance(entry.quantity, WholeNumber):
+        remedy = f'try each, such as --vary "{entry.path}=1:10:10"'
+        raise InvalidValue(FIND, entry.path, "it is a whole number", remedy)
+    if "=" in text:
+        return parse_axis(inputs, text, FIND)
+    if not value:
+        example = f"{entry.path}=0:1:{_TOGETHER} {entry.quantity.unit}".rstrip()
+        raise InvalidValue(FIND, entry.path, "the file's value is 0", f'give bounds, such as "{example}"')
+    written, si = part_at(tables, entry.path), entry.quantity.unit
+    has_unit = isinstance(written, str) and "%" not in written
+    unit, in_unit = unit_as_written(written if has_unit else f"1 {_USUAL.get(si, si)}", si)
+    count = _TOGETHER if brake.most_cases > MOST_ONE_BY_ONE else _ONE_BY_ONE
+    low, high = sorted(entry.quantity.nearest_within(end) for end in (value / _TIMES, value * _TIMES))
+    values = np.geomspace(low, high, count)
+    return Axis(entry, unit, np.array([in_unit(each) for each in values.tolist()]), values)

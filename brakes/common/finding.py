@@ -1,0 +1,259 @@
+"""Backwards: all inputs between two bounds at which an answer has a wanted value.
+
+The answer is sampled, each time twice as densely, until the pieces over which it rises, falls or is level
+stay the same. The end of a piece (a turning point, or where there is no answer any more) is found by sampling
+around it again and again. A rising or falling piece has the wanted value once if that lies between those at
+its ends, else nowhere.
+
+References
+----------
+Alefeld, Potra, Shi (1995), Algorithm 748: enclosing zeros of continuous functions, ACM Transactions on
+Mathematical Software 21.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.inputs.array_checks import solve_possible
+from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
+from brakes.common.solutions import Gap, Piece, Solutions, step
+
+_EPS = np.finfo(float).eps
+_SURE = 1e-13  # relative difference from the wanted value that is rounding
+_JUMP = 1e-6  # part of a bracket's height that the answer at a root of a continuous function has not left
+_TURN = 1e-9  # relative width of the place of a turning point: its height is known to the square
+_EDGE = 1e-13  # relative width of the place past which there is no answer
+_PARTS, _FEW_PARTS = 16, 4  # into which such a place is divided when it is sampled again
+_DOUBLED = 4  # times at most that the samples are doubled
+
+Answer = Callable[[np.ndarray], Any]
+Curve = tuple[np.ndarray, np.ndarray]  # inputs, and answers: both (n,)
+
+
+def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str] | None = None) -> Solutions:
+    """Find all inputs between two bounds at which an answer has a wanted value.
+
+    Parameters
+    ----------
+    answer : callable
+        ``answer(x)``: the answers to an array of inputs (n,), nan where there is none.  Inputs for which the
+        functions of this package refuse it have none either.
+    target : float
+        The wanted value [unit of the answer].
+    samples : array_like, shape (n,)
+        Inputs in ascending order, where the search begins: it ends at the first and at the last of them.
+    why : callable, optional
+        ``why(x)``: why there is no answer at an input, in a sentence.
+
+    Returns
+    -------
+    Solutions
+        The inputs, or why there is none; names and units are added by ``dataclasses.replace``.
+
+    Raises
+    ------
+    ValueError
+        If the samples are not in ascending order, or fewer than two.
+
+    References
+    ----------
+    Standard (intermediate values on pieces that rise or fall); roots by Alefeld, Potra and Shi (1995).
+
+    Examples
+    --------
+    >>> band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1)
+    >>> def torque(friction):
+    ...     return machines.solve_brake(band, friction=friction, force=100.0).torque
+    >>> brakes.find(torque, 90.0, np.linspace(0.05, 0.4, 8)).values.round(6)
+    array([0.164578])
+    """
+    function("answer", answer)
+    target, x = real("target", target), ascending("samples", samples)
+    if len(x) < 2:
+        raise InvalidValue("samples", x, "give two inputs or more: the first and the last are the bounds")
+    answers = _Answers(answer, why)
+    (x, y), settled = _settle(answers, x)
+    runs = [*_runs(answers, x, y)]
+    pieces = [piece for run in runs for piece in _pieces(answers, run)]
+    values, jumps = _solve(answers, pieces, target)
+    return Solutions(
+        target=target,
+        values=values,
+        residuals=answers(values) - target,
+        pieces=tuple(Piece(*map(float, (x[0], x[-1], y[0], y[-1]))) for x, y in pieces),
+        gaps=tuple(_gaps(answers, x, runs)),
+        jumps=jumps,
+        samples=x,
+        answers=y,
+        settled=settled,
+    )
+
+
+@dataclass(frozen=True)
+class _Answers:
+    """Answers to inputs, nan where there is none, and the reasons."""
+
+    answer: Answer
+    reason: Callable[[float], str] | None
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """Answers to inputs (n,)."""
+        return self._with_refusals(x)[0]
+
+    def why(self, x: float) -> str:
+        """Why there is no answer at an input."""
+        refused = self._with_refusals(np.array([x]))[1]
+        return refused[0].advice(str) if refused else self.reason(x) if self.reason else "it has no value"
+
+    def _with_refusals(self, x: np.ndarray) -> tuple[np.ndarray, dict[int, InvalidValue]]:
+        found, rows, refused = solve_possible(lambda rows: self.answer(x[rows]), len(x))
+        values = np.full(len(x), np.nan)
+        values[rows] = np.nan if found is None else found
+        return np.where(np.isfinite(values), values, np.nan), refused
+
+
+# Pieces --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Inputs side by side that have answers, and on either side the nearest one without, if there is one."""
+
+    x: np.ndarray
+    y: np.ndarray
+    before: float | None
+    after: float | None
+
+
+def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
+    """Inputs so dense that twice as many show the same pieces, and whether that was reached."""
+    y, settled = answers(x), False
+    for _ in range(_DOUBLED):
+        between, courses = (x[1:] + x[:-1]) / 2, _courses(y)
+        x, y = _joined(x, y, between, answers(between))
+        if settled := _courses(y) == courses:
+            break
+    return (x, y), settled
+
+
+def _joined(x: np.ndarray, y: np.ndarray, more_x: Any, more_y: Any) -> Curve:
+    """A curve with further points."""
+    x, places = np.unique(np.append(x, more_x), return_index=True)
+    return x, np.append(y, more_y)[places]
+
+
+def _courses(y: np.ndarray) -> list[list[float]]:
+    """Signs of the steps of each run of answers, side by side each once."""
+    return [[sign for sign, _ in _courses_of_run(y[run])] for run in _finite(y)]
+
+
+def _finite(y: np.ndarray) -> list[slice]:
+    """Places of the runs of answers."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], np.isfinite(y), [False]]).astype(int)))
+    return [slice(*run) for run in ends.reshape(-1, 2).tolist()]
+
+
+def _courses_of_run(y: np.ndarray) -> list[tuple[float, int]]:
+    """Signs of steps, side by side each once, and the place of the last answer of each.
+
+    A single level step counts to that before it: a turning point may lie within.
+    """
+    signs = step(y[:-1], y[1:])
+    alone = np.flatnonzero((signs[1:-1] == 0) & (signs[:-2] != 0) & (signs[2:] != 0)) + 1
+    signs[alone] = signs[alone - 1]
+    each = ((sign, [*places]) for sign, places in groupby(range(len(signs)), lambda i: float(signs[i])))
+    return [(sign, places[-1] + 1) for sign, places in each]
+
+
+def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
+    """Runs of inputs that have answers, each as far as it goes."""
+    for run in _finite(y):
+        first, last = run.start, run.stop - 1
+        low = _edge(answers, float(x[first]), float(x[first - 1])) if first > 0 else (x[first], None)
+        high = _edge(answers, float(x[last]), float(x[last + 1])) if last + 1 < len(x) else (x[last], None)
+        edges = np.array([low[0], high[0]])
+        yield _Run(*_joined(x[run], y[run], edges, answers(edges)), low[1], high[1])
+
+
+def _edge(answers: _Answers, inside: float, outside: float) -> tuple[float, float]:
+    """The last input with an answer, and the next one without, on the way from one to the other."""
+    width = _EDGE * max(abs(inside), abs(outside))
+    while abs(outside - inside) > width:
+        grid = np.linspace(inside, outside, _FEW_PARTS + 1)
+        there = [True, *np.isfinite(answers(grid[1:-1])), False]
+        k = there.index(False)
+        inside, outside = float(grid[k - 1]), float(grid[k])
+    return inside, outside
+
+
+def _gaps(answers: _Answers, x: np.ndarray, runs: Sequence[_Run]) -> Iterator[Gap]:
+    """Ranges without an answer: before, between and after the runs."""
+    starts = [float(x[0]), *(run.after for run in runs)]
+    ends = [*(run.before for run in runs), float(x[-1])]
+    for k, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        if start is not None and end is not None:
+            yield Gap(start, end, answers.why(end if k == 0 and runs else start))
+
+
+def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
+    """The run, cut at its turning points and where it becomes level."""
+    x, y = run.x, run.y
+    cuts = [
+        _turn(answers, x[last - 1], x[last + 1], sign) if sign * following < 0 else float(x[last])
+        for (sign, last), (following, _) in pairwise(_courses_of_run(y))
+    ]
+    x, y = _joined(x, y, cuts, answers(np.array(cuts)))
+    places = np.searchsorted(x, np.unique([x[0], *cuts, x[-1]]))
+    yield from ((x[i : j + 1], y[i : j + 1]) for i, j in pairwise(places.tolist()))
+
+
+def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
+    """Where answers that rise (sign 1) begin to fall, or where those that fall (-1) begin to rise."""
+    width = _TURN * max(abs(low), abs(high))
+    while high - low > width:
+        grid = np.linspace(low, high, _PARTS + 1)
+        k = int(np.nanargmax(sign * answers(grid)))
+        low, high = float(grid[max(k - 1, 0)]), float(grid[min(k + 1, _PARTS)])
+    return float((low + high) / 2)
+
+
+# Solutions -----------------------------------------------------------------------------------------------
+
+
+def _solve(answers: _Answers, pieces: Sequence[Curve], target: float) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs that give the wanted value, and those at which the answer jumps past it."""
+    found, jumps = list[float](), list[float]()
+    for x, y in pieces:
+        past = y - target
+        ends = [x[i] for i in (0, -1) if abs(past[i]) <= _SURE * abs(target)]
+        if not ends and past[0] * past[-1] < 0:
+            k = int(np.argmax(np.sign(past) != np.sign(past[0])))
+            root, jumped = _root(
+                answers, target, dict(zip(x[k - 1 : k + 1], past[k - 1 : k + 1], strict=True))
+            )
+            (jumps if jumped else found).append(root)
+        found += ends
+    return np.unique(found), np.unique(jumps)
+
+
+def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
+    """Where the answer passes the wanted value between two inputs, and whether it jumps there.
+
+    The differences at both are known: computed alone they may round otherwise, to another sign.
+    """
+    from scipy.optimize import toms748  # here: only a question backwards needs it
+
+    def difference(x: float) -> float:
+        return float(bracket[x] if x in bracket else answers(np.array([x]))[0] - target)
+
+    (low, before), (high, after) = bracket.items()
+    if after == 0:
+        return float(high), False
+    root = toms748(difference, float(low), float(high), xtol=np.finfo(float).tiny, rtol=4 * _EPS)
+    return root, abs(difference(root)) > _JUMP * abs(after - before)

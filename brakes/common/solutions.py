@@ -1,0 +1,182 @@
+"""What a question backwards finds: the inputs at which an answer has a wanted value, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.results.one_line import listed, number
+from beamdyn.common.results.result import Provenance, Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_LEVEL = 1e-12  # relative difference of two answers that is rounding
+
+
+def step(first: np.ndarray | float, last: np.ndarray | float) -> np.ndarray:
+    """Sign of the way from one answer to another; 0 if that is rounding."""
+    size = _LEVEL * np.maximum(np.abs(first), np.abs(last))
+    return np.sign(np.where(np.abs(np.subtract(last, first)) <= size, 0.0, np.subtract(last, first)))
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A range of inputs over which the answer rises, falls or is level.
+
+    Parameters
+    ----------
+    start, end : float
+        Ends of the range.
+    first, last : float
+        Answers at them.
+    """
+
+    start: float
+    end: float
+    first: float
+    last: float
+
+    @property
+    def course(self) -> str:
+        """What the answer does: "rises", "falls" or "is level"."""
+        return ("falls", "is level", "rises")[int(step(self.first, self.last)) + 1]
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A range of inputs without an answer.
+
+    Parameters
+    ----------
+    start, end : float
+        Ends of the range.
+    reason : str
+        Why there is no answer.
+    """
+
+    start: float
+    end: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Solutions(Result):
+    """All inputs between two bounds at which an answer has a wanted value.
+
+    Attributes
+    ----------
+    target : float
+        The wanted value [output_unit].
+    values : ndarray, shape (k,)
+        Inputs that give it [unit], in ascending order; empty if there are none.
+    residuals : ndarray, shape (k,)
+        Answers there, less the wanted value [output_unit].
+    pieces : tuple of Piece
+        Ranges over which the answer rises, falls or is level, which show that there are no other solutions.
+    gaps : tuple of Gap
+        Ranges without an answer.
+    jumps : ndarray, shape (j,)
+        Inputs at which the answer jumps past the wanted value [unit].
+    samples, answers : ndarray, shape (n,)
+        Inputs at which the answer was computed to find the pieces, and the answers; nan where there is none.
+    settled : bool
+        Whether the pieces stayed the same when the samples were last doubled.
+    input, unit, output, output_unit : str
+        Names of input and answer, and their units.
+    provenance : Provenance, optional
+        Version, method and time taken, of a question on a file.
+
+    Examples
+    --------
+    >>> found = brakes.find(lambda x: x * (4 - x), 3.0, np.linspace(0.5, 5.0, 10))
+    >>> found.values
+    array([1., 3.])
+    >>> brakes.find(lambda x: x * (4 - x), 9.0, np.linspace(0.5, 5.0, 10)).message
+    'none from 0.5 to 5: answer is at most 4, at input = 2'
+    """
+
+    target: float
+    values: np.ndarray
+    residuals: np.ndarray
+    pieces: tuple[Piece, ...]
+    gaps: tuple[Gap, ...]
+    jumps: np.ndarray
+    samples: np.ndarray
+    answers: np.ndarray
+    settled: bool
+    input: str = "input"
+    unit: str = ""
+    output: str = "answer"
+    output_unit: str = ""
+    provenance: Provenance | None = None
+
+    def headline(self) -> Iterator[str]:
+        """The result in one line; see `Result.headline`."""
+        yield f"{self.output} {number(self.target, self.output_unit)}"
+        yield f"{self.input} {listed(self.values, self.unit)}" if self.values.size else "none"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence if there may be more solutions."""
+        count = f"the pieces of {self.output} still change with {len(self.samples)} samples"
+        return () if self.settled else (f"{count}: there may be more solutions; give a narrower range",)
+
+    @property
+    def message(self) -> str:
+        """The solutions, or "none" with its reason, in a sentence."""
+        low, high = self.samples[[0, -1]]
+        if not self.values.size:
+            return f"none from {self._input(low)} to {self._input(high)}: {'; '.join(self._reasons())}"
+        where = " and ".join(self._input(each) for each in self.values)
+        return f"{self.output} = {self._output(self.target)} at {self.input} = {where}"
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """Where there is no answer, and why: a sentence each."""
+        return tuple(
+            f"no answer from {self._input(g.start)} to {self._input(g.end)}: {g.reason}" for g in self.gaps
+        )
+
+    def _reasons(self) -> Iterator[str]:
+        """What keeps the answer from the wanted value."""
+        yield from self._extremes() if self.pieces else ()
+        yield from (f"it jumps past at {self.input} = {self._input(each)}" for each in self.jumps)
+        yield from self.lacking if self.pieces else (gap.reason for gap in self.gaps)
+
+    def _extremes(self) -> Iterator[str]:
+        """The answers next to the wanted value, and where they are."""
+        ends = [each for p in self.pieces for each in ((p.first, p.start), (p.last, p.end))]
+        if step(min(ends)[0], max(ends)[0]) == 0:
+            yield f"{self.output} is {self._output(ends[0][0])} whatever {self.input} is"
+            return
+        below, above = ([end for end in ends if sign * (end[0] - self.target) > 0] for sign in (-1, 1))
+        for words, nearest in (("at most", max(below, default=None)), ("at least", min(above, default=None))):
+            if nearest is not None:
+                value, at = nearest
+                yield f"{self.output} is {words} {self._output(value)}, at {self.input} = {self._input(at)}"
+
+    def _input(self, value: float) -> str:
+        return f"{value:.6g} {self.unit}".rstrip()
+
+    def _output(self, value: float) -> str:
+        return f"{value:.6g} {self.output_unit}".rstrip()
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the answer over the input, the wanted value, and the solutions."""
+        from beamdyn.common.plots.axes_and_lines import set_up_axes
+
+        labels = (f"{name} [{unit}]" if unit else name for name, unit in self.named)
+        ax = set_up_axes(ax, *labels)
+        ax.plot(self.samples, self.answers, linewidth=1.8)
+        ax.axhline(self.target, color="0.4", linestyle="--", linewidth=1.2)
+        ax.plot(self.values, self.target + self.residuals, "o", color="black")
+        return ax
+
+    @property
+    def named(self) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Names and units of input and answer."""
+        return (self.input, self.unit), (self.output, self.output_unit)

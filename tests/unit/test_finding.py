@@ -1,0 +1,134 @@
+"""Questions backwards: functions whose inverses are known, what is said where there are none, bad ones."""
+
+import numpy as np
+import pytest
+
+import brakes
+from brakes.cli import main
+
+EXACT = 1e-12  # relative, of roots of functions of a few operations
+SAMPLES = np.linspace(0.5, 5.0, 10)
+
+
+@pytest.mark.parametrize(
+    ("answer", "target", "known"),
+    [
+        (lambda x: x * (4 - x), 3.0, [1.0, 3.0]),
+        (lambda x: (x - 3) ** 2 + (x - 3) ** 3 / 9, 1e-6, None),
+        (lambda x: np.exp(x), np.exp(5.0), [5.0]),
+        (lambda x: np.where(x > 2, np.sqrt(np.abs(x - 2)), np.nan), 1.5, [4.25]),
+        (lambda x: np.where(x < 3.3, 1 / (3.3 - np.minimum(x, 3.2999)), np.nan), 5.0, [3.1]),
+        (lambda x: np.minimum(x, 2.0), 1.2, [1.2]),
+        (
+            lambda x: np.abs(np.mod(x, 1.0) - 0.5),
+            0.2,
+            np.sort(np.ravel(np.arange(5)[:, None] + [0.3, 0.7]))[1:],
+        ),
+    ],
+)
+def test_all_solutions_are_found(answer, target, known):
+    found = brakes.find(answer, target, SAMPLES)
+    assert found.settled
+    if known is None:  # two beside a turning point that is none of the samples
+        assert len(found.values) == 2
+        assert answer(found.values) == pytest.approx(target, rel=1e-9)
+        return
+    assert found.values == pytest.approx(np.array(known), rel=EXACT)
+    assert np.max(np.abs(found.residuals)) <= EXACT * target
+
+
+def test_a_value_that_is_only_touched_is_found():
+    found = brakes.find(lambda x: x * (4 - x), 4.0, SAMPLES)
+    assert found.values == pytest.approx([2.0], rel=1e-7)  # a turning point is sharp to the root of rounding
+
+
+@pytest.mark.parametrize(
+    ("answer", "target", "said"),
+    [
+        (lambda x: x * (4 - x), 4.5, "none from 0.5 to 5: answer is at most 4, at input = 2"),
+        (lambda x: 2 * x, 0.5, "none from 0.5 to 5: answer is at least 1, at input = 0.5"),
+        (lambda x: np.floor(x), 1.5, "it jumps past at input = 2"),
+        (lambda x: 7.0 + 0 * x, 3.0, "none from 0.5 to 5: answer is 7 whatever input is"),
+        (
+            lambda x: np.where(x < 2, x, np.nan),
+            3.0,
+            "answer is at most 2, at input = 2; no answer from 2 to 5",
+        ),
+        (lambda x: np.nan * x, 3.0, "none from 0.5 to 5: it has no value"),
+    ],
+)
+def test_none_says_what_keeps_the_answer_from_it(answer, target, said):
+    found = brakes.find(answer, target, SAMPLES)
+    assert not found.values.size
+    assert said in found.message
+
+
+def test_a_curve_that_never_settles_is_said():
+    found = brakes.find(lambda x: np.sin(1e5 * x**2), 0.5, SAMPLES)
+    assert not found.settled
+    assert "there may be more solutions" in found.warnings[0]
+
+
+@pytest.mark.parametrize("samples", [[1.0], [2.0, 1.0], []])
+def test_bounds_are_checked(samples):
+    with pytest.raises(ValueError, match="samples"):
+        brakes.find(np.sin, 0.5, samples)
+
+
+def run(capsys, *arguments):
+    code = main([*arguments])
+    shown = capsys.readouterr()
+    return code, " ".join(shown.out.split()), " ".join(shown.err.split())
+
+
+def test_command_finds_a_diameter_for_a_torque(capsys):
+    code, out, _ = run(
+        capsys, "disc", "examples/disc.toml", "--find", "disc.outer_radius", "--so-that", "torque = 800 N m"
+    )
+    # C* r is in proportion to the mean radius under uniform wear: 714.549 N m at (80 + 120) / 2 mm
+    radius = 800 / 714.5486 * 200 - 80
+    assert code == 0
+    assert float(out.partition("outer_radius = ")[2].split()[0]) == pytest.approx(
+        radius, rel=1e-5
+    )  # as shown
+
+
+@pytest.mark.parametrize(
+    ("question", "code", "said"),
+    [
+        (("vehicle", "lever.ratio", "largest_slope_front = 45 %"), 1, "at most 15.2447 deg"),
+        (("vehicle", "lever.ratio", "largest_slope_front = 45 %"), 1, "a travel of 300 mm"),
+        (("band", "friction", "torque = 1 N m"), 1, "no answer from 0.330953 to 2: locked"),
+        (("cone", "friction", "torque = 100 N m"), 1, "torque is 200 N m whatever brake.friction is"),
+        (("disc", "load.torque", "torque = 100 N m"), 2, "the file gives it no value"),
+        (("disc", "brake.friction", "torque = 100 MPa"), 2, "a unit of pressure or modulus where moment"),
+        (("disc", "brake.friction", "torque"), 2, 'give RESULT = VALUE, such as "torque = 1 N m"'),
+        (("disc", "brake.friction", "c_star = x"), 2, "give a plain number"),
+        (("disc", "friktion", "c_star = 1"), 2, "did you mean friction?"),
+    ],
+)
+def test_what_cannot_be_had_is_one_sentence(question, code, said, capsys):
+    name, sought, wanted = question
+    found = run(capsys, name, f"examples/{name}.toml", "--find", sought, "--so-that", wanted)
+    assert found[0] == code
+    assert said in found[2]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--find", "friction"), "--find and --so-that go together"),
+        (
+            ("--find", "friction", "--so-that", "torque = 1 N m", "--what", "torque"),
+            "--what does not go with",
+        ),
+        (
+            ("--find", "friction", "--so-that", "torque = 1 N m", "--vary", "friction=0.1:0.2:3"),
+            "--vary does not go with --find",
+        ),
+    ],
+)
+def test_options_that_do_not_go_together(options, said, capsys):
+    code, _, err = run(capsys, "disc", "examples/disc.toml", *options)
+    assert code == 2
+    assert said in err

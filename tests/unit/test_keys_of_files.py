@@ -1,0 +1,39 @@
+"""`brakes keys`: who begins with an empty file learns its tables and keys from the program."""
+
+import pytest
+
+from brakes.answers import STANDARD
+from brakes.answers.caliper import CALIPER, MECHANISM
+from brakes.answers.forklift import FORKLIFT
+from brakes.cli import main
+
+OTHERS = {each.name: each for each in (FORKLIFT, CALIPER, MECHANISM)}
+
+
+@pytest.mark.parametrize("name", [*STANDARD, *OTHERS])
+def test_every_key_is_listed_with_its_unit(name, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    assert main(["keys", name]) == 0
+    out = capsys.readouterr().out
+    brake = OTHERS.get(name) or STANDARD[name][1]()
+    for entry in brake.inputs({}):
+        (first, *_) = [line.split() for line in out.splitlines() if line.split()[:1] == [entry.name]]
+        assert first
+        assert not entry.quantity.unit or f"[{entry.quantity.unit}]" in out
+    assert "required" in out
+
+
+def test_an_empty_file_and_an_unknown_command_say_where_to_begin(capsys, tmp_path):
+    file = tmp_path / "empty.toml"
+    file.touch()
+    assert main(["disc", str(file)]) == 2
+    assert "`brakes keys disc` lists them" in " ".join(capsys.readouterr().err.split())
+    assert main(["keys", "wheel"]) == 2
+    assert "'vehicle', 'forklift', 'caliper' or 'mechanism'" in capsys.readouterr().err
+
+
+def test_tables_that_may_be_left_out_are_said(capsys):
+    main(["keys", "vehicle"])
+    out = capsys.readouterr().out
+    assert "[lever], which may be left out" in out
+    assert "[road]\n" in out
