@@ -24,7 +24,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
-from beamdyn.common.inputs.checks import refuse
+from beamdyn.common.inputs.checks import refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
@@ -117,7 +117,9 @@ class Duty:
         stops = np.asarray(self.stops)
         refuse(stops != np.round(stops), "stops", stops, "", "give a whole number")
         if self.friction_curve is not None:
-            self._check(np.asarray(self.friction_curve))
+            curve = np.asarray(self.friction_curve)
+            self._check(curve)
+            set_fields(self, friction_curve=tuple(map(tuple, curve.tolist())))  # comparable, as an array is not
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
