@@ -28,6 +28,7 @@ from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.screens.screen_parts import Slider
 from beamdyn.common.words import Words
 from brakes.answers.base import Answer, TableBrakeType
+from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.answers.planar import (
     PlanarAnswer,
@@ -183,6 +184,16 @@ class CaliperAnswer(PlanarAnswer):
             return None
         return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))
 
+    def _doubt(self) -> str:
+        """The stopping distance with less and more friction of the pads: the brake may limit."""
+
+        def distance(design: Any) -> float:
+            found = design.stop.with_force(float(self.run.pad_force[-1].mean()))
+            return found.distance if found.status == "stops" else np.nan
+
+        of = "pads and rim: Stopping distance"
+        return hangs_on_friction(self.design, "stop.friction", of, distance, "m", "does not stop")
+
     def tables(self) -> list[RenderableType]:
         """The lever, the stroke, the forces at its end, friction, wear and stop, and the diagnosis."""
         run, pads = self.run, self.run.pad_travel[-1].sum()
@@ -222,6 +233,7 @@ class CaliperAnswer(PlanarAnswer):
                 f"With {run.pad_force[-1].mean():.5g} N on each pad the vehicle {self.stop.message}"
                 f"{self._assumed()}."
             )
+            shown.append(self._doubt())
         return [*shown, f"Hand, {self._verdict}.", self._diagnosis(run.message, run.virtual_work)]
 
     def _assumed(self) -> str:

@@ -18,6 +18,7 @@ from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.pedal import OUTPUTS, FromPedal, solve_pedal
 from brakes.answers.tables import (
@@ -165,6 +166,7 @@ class ForkliftAnswer(Answer):
                     [reduce(lambda said, each: said.replace(*each), rolls, w), *more] for w, *more in rows
                 ]
             tables.append(table("Vehicle", heads, rows, (0, 2)))
+            tables.append(self._doubt())
         if self.pedal is not None:
             title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
             tables.append(outputs_table(title, OUTPUTS, self.pedal))
@@ -197,6 +199,17 @@ class ForkliftAnswer(Answer):
                     f"{self.design.forces.lining_friction:.4g} the locked wheels use {f.lining_friction:.4g}."
                 )
         return tables
+
+    def _doubt(self) -> str:
+        """The stopping distance with less and more friction on the road."""
+
+        def distance(design: ForkliftInput) -> float:
+            found = solve_stages(design, ("vehicle",)).stop
+            assert found is not None
+            return float(found.distance) if np.all(found.stops) else np.nan
+
+        of = "tyres on the road: Stopping distance"
+        return hangs_on_friction(self.design, "stop.friction", of, distance, "m", "does not stop")
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""

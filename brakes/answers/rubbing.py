@@ -15,6 +15,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer
+from brakes.answers.doubts import PART, change
 from brakes.answers.tables import (
     format_number,
     outputs_csv,
@@ -26,7 +27,6 @@ from brakes.common.heat import Fade, repeat_stops
 
 _HEAT = take_fields(Fade, "hottest settled first_angle last_angle first_friction last_friction energy pv")
 _SHOWN = 10  # stops
-_PART = 0.1  # by which the friction of linings varies, as makers give it
 
 
 @dataclass(frozen=True)
@@ -102,13 +102,13 @@ class RubbingAnswer(Answer):
         """The torque at this force with less and more friction, under other laws, and in reverse."""
         torque, mu, back = self.result.torque, self.result.friction, not self.result.reverse
         ends = ", ".join(
-            _change(self.again(friction=part * mu).torque, torque) for part in (1 - _PART, 1 + _PART)
+            _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
         )
         others = [f"{words} {_change(found, torque)}" for words, found in self.by_other_laws()]
         turned = self.again(reverse=back).torque
         if not abs(turned / torque - 1) < 1e-9:  # also where it locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
-        said = "; ".join((f"friction -+{100 * _PART:.0f} %: {ends}", *others))
+        said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
         return f"At this force, torque {format_number(torque)} N m; {said}."
 
     def by_other_laws(self) -> Iterator[tuple[str, float]]:
@@ -118,7 +118,7 @@ class RubbingAnswer(Answer):
     def doubtful(self) -> Iterator[Any]:
         """Results of the same load with less and more friction, and under other laws of the pressure."""
         result, given = self.result, self.design.load.given | {"reverse": self.result.reverse}
-        for part in (1 - _PART, 1 + _PART):
+        for part in (1 - PART, 1 + PART):
             yield type(self).solver(result.brake, friction=part * result.friction, **given)
         for _, brake in self._other_laws():
             yield type(self).solver(brake, friction=result.friction, **given)
@@ -168,7 +168,4 @@ def _of_stops(fade: Fade) -> Iterator[RenderableType]:
 
 def _change(other: float, torque: float) -> str:
     """A torque and its relative change."""
-    if np.isnan(other):
-        return "locks"
-    change = f" ({100 * (other / torque - 1):+.1f} %)" if torque else ""
-    return f"{format_number(other)} N m{change}"
+    return change(other, torque, "N m", "locks")

@@ -16,6 +16,7 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results.result import plain
 from brakes.answers.base import Answer, ArrayBrakeType
+from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_fields, take_from
 from brakes.chain import Actuation, actuate, force_for, ratio_for
 from brakes.config.vehicle import VehicleInput
@@ -160,6 +161,7 @@ class VehicleAnswer(Answer):
         heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
         title = "The vehicle at rest on the slope, and in a stop on level ground"
         tables: list[RenderableType] = [table(title, heads, [*said, *rows, *first], (0, 3))]
+        tables.append(self._doubt())
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.design.stop is not None:
             ends = [["", *(str(way.slowing and way.slowing.status) for way in ways), ""]]
@@ -169,6 +171,16 @@ class VehicleAnswer(Answer):
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
             tables.append(f"Lever, {self.lever.verdict}.")
         return tables
+
+    def _doubt(self) -> str:
+        """The largest slope on which it holds both ways, with less and more friction of the tyres."""
+
+        def largest(design: VehicleInput) -> float:
+            ways = BRAKE.solve(design).ways.values()
+            return float(np.degrees(min(way.holding.largest_slope for way in ways)))
+
+        of = "tyres on the road: Largest slope both ways"
+        return hangs_on_friction(self.design, "road.friction", of, largest, "deg", "none")
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
         """Yield each wanted input that does not exist: its words, the axle, and the reason."""

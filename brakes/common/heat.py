@@ -119,7 +119,9 @@ class Duty:
         if self.friction_curve is not None:
             curve = np.asarray(self.friction_curve)
             self._check(curve)
-            set_fields(self, friction_curve=tuple(map(tuple, curve.tolist())))  # comparable, as an array is not
+            set_fields(
+                self, friction_curve=tuple(map(tuple, curve.tolist()))
+            )  # comparable, as an array is not
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:

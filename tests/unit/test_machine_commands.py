@@ -1,5 +1,6 @@
 """`brakes band` and the other brakes pressed by one force: exit codes, sentences, sweeps, spreads."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -78,6 +79,17 @@ def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
     """230.541 and 298.001 N m: recomputed at 0.315 and 0.385, by a second program."""
     _, out, _ = answer("drum")
     assert "230.54 N m (-12.3 %), 298.00 N m (+13.3 %)" in " ".join(out.split())
+
+
+def test_the_doubt_of_a_stop_is_that_of_two_more_runs(answer):
+    """The line on 10 % of friction, which is also said of stops, slopes and calipers."""
+    given = "friction = 0.7"
+    said = " ".join(answer("forklift")[1].split())
+    low, high = (
+        re.findall(r"Stopping distance (\S+) m;", " ".join(answer("forklift", given, changed)[1].split()))[0]
+        for changed in ("friction = 0.63", "friction = 0.77")
+    )
+    assert re.search(rf"on the road -\+10 %: {low} m \(\+.* %\), {high} m \(-", said)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,53 @@
+"""What a result hangs on: the same design with less and more friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.inputs.paths import part_at, with_parts
+from brakes.answers.tables import format_number
+
+PART = 0.1  # by which friction varies, as makers of linings give it
+
+
+def change(other: float, value: float, unit: str, none: str) -> str:
+    """A result with its unit, and its change relative to another; a word where there is none."""
+    if not np.isfinite(other):
+        return none
+    relative = f" ({100 * (other / value - 1):+.1f} %)" if value else ""
+    return f"{format_number(other)} {unit}{relative}"
+
+
+def hangs_on_friction(
+    design: Any, path: str, of: str, result: Callable[[Any], float], unit: str, none: str
+) -> str:
+    """Say how a result changes with 10 % less and more friction: in the form of the line on other brakes.
+
+    Parameters
+    ----------
+    design : BaseModel
+        The design.
+    path : str
+        Path of the friction in it.
+    of : str
+        What rubs, and the name of the result, such as "tyres on the road: stopping distance".
+    result : callable
+        ``result(design)``: the result in `unit`; nan or inf if there is none.
+    unit : str
+        Its unit.
+    none : str
+        What is said where there is none, such as "does not stop".
+    """
+    friction, value = part_at(design, path), result(design)
+    said = []
+    for part in (1 - PART, 1 + PART):
+        with suppress(InvalidValue):  # past the largest friction that a file may have
+            said.append(change(result(with_parts(design, {path: part * friction})), value, unit, none))
+    what, _, name = of.partition(": ")
+    now, ends = change(value, 0.0, unit, none), ", ".join(said)
+    return f"{name} {now}; friction of {what} -+{100 * PART:.0f} %: {ends}."
