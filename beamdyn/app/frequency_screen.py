@@ -209,6 +209,8 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
         yield KeyResult(f"at the motion's {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
     if np.isfinite(critical.speed):
         yield KeyResult("critical speed", brief(critical.speed, unit))
+        if answer.margins:
+            return
         margin = f"{100 * (1 - top / critical.speed):.3g} %" if top < critical.speed else "none: past it"
         yield KeyResult("margin of the top speed", margin)
     else:

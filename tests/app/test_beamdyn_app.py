@@ -14,7 +14,8 @@ from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_tasks import drawn
 from beamdyn.scene.physics import Physics
 
-FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20}  # of an outline, of modes, ..
+# Rows of an outline, of modes, of settings, of measured values, and of unknown numbers.
+FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20, "Compare": 4, "Identify": 2}
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 

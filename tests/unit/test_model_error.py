@@ -165,7 +165,7 @@ def test_large_deflection_that_cannot_be_solved_makes_the_model_error_unknown() 
     """A second plane; a hinge; a straight beam that has buckled."""
     mount, buckled = bd.Mount(0.215, math.radians(45)), bd.Scene(HARVESTER, bd.Mount(0.215))
     cases = {
-        "one plane": (bd.Scene(HARVESTER, mount, physics=bd.Physics(planes=2)), 100.0),
+        "two planes": (bd.Scene(HARVESTER, mount, physics=bd.Physics(planes=2)), 100.0),
         "hinge": (bd.Scene(HARVESTER, replace(mount, root_stiffness=0.0)), 10.0),
         "unstable": (buckled, 1.2 * bd.critical_speed(buckled)),
     }

@@ -20,8 +20,8 @@ SCREENS = [
     for name, entries in kinds(document).items()
     for screen in document.screens
 ]
-# Lengths and angles that no sketch shows: those of a function along the beam.
-NOT_DRAWN = {"beam.twist"}
+# Lengths and angles that no sketch shows: those of functions along the beam, and beside the plane drawn.
+NOT_DRAWN = {"beam.twist", "beam.sweep", "beam.prebend", "beam.tip.offset_across"}
 
 
 @pytest.mark.parametrize("document, screen, entries", SCREENS)

@@ -71,35 +71,45 @@ def test_a_partial_key_of_several_inputs_names_them(brakes):
     assert "friction is ambiguous; give run.friction or stop.friction" in err
 
 
-def test_one_truck_that_tips_is_a_row_with_its_reason(brakes, tmp_path):
+@pytest.fixture
+def tall(tmp_path):
+    """A truck that overturns at rest over its rear axle past 32.96 deg: its tangent is 1.674 m over 2.581 m."""
+    text = FORKLIFT.read_text(encoding="utf-8")
+    assert 'empty_cg_y = "0.359 m"' in text
+    path = tmp_path / "tall.toml"
+    path.write_text(text.replace('empty_cg_y = "0.359 m"', 'empty_cg_y = "3.2 m"'), encoding="utf-8")
+    return path
+
+
+def test_one_truck_that_tips_is_a_row_with_its_reason(brakes, tall, tmp_path):
     sheet = tmp_path / "slopes.csv"
-    vary = ("--vary", "stop.slope=10:80:8 deg", "--what", "torque_per_brake", "--csv", sheet)
-    code, out, err = brakes("forklift", FORKLIFT, *vary)
-    assert code == DONE and "at 2 of 8 values there is no answer; stop.slope = 70 deg" in err
+    vary = ("--vary", "stop.slope=5:40:8 deg", "--what", "torque_per_brake", "--csv", sheet)
+    code, out, err = brakes("forklift", tall, *vary)
+    assert code == DONE and "at 2 of 8 values there is no answer; stop.slope = 35 deg" in err
     assert "no answer, because" in out and "the truck overturns" in out
     heads, *rows = table(sheet)
     assert heads[-1] == "no_answer" and len(rows) == 8
     for slope, torque, *_, why in rows:
-        tips = float(slope) > 65  # tan of it is the distance of the front axle over the height: 64.66 deg
+        tips = float(slope) > 32.96
         assert (
             np.isnan(float(torque)) == tips and why.startswith(f"stop.slope = {float(slope):g} deg") == tips
         )
 
 
-def test_rows_beside_a_refused_one_are_those_without_it(brakes, tmp_path):
+def test_rows_beside_a_refused_one_are_those_without_it(brakes, tall, tmp_path):
     def torques(slopes):
         sheet = tmp_path / f"{slopes[:2]}.csv"
         vary = ("--vary", f"stop.slope={slopes} deg", "--vary", "stop.speed=10,20 km/h")
-        brakes("forklift", FORKLIFT, *vary, "--what", "torque_per_brake", "--csv", sheet)
+        brakes("forklift", tall, *vary, "--what", "torque_per_brake", "--csv", sheet)
         return {tuple(row[:2]): float(row[2]) for row in table(sheet)[1:]}
 
-    alone, beside = torques("10,20"), torques("75,20,10")
+    alone, beside = torques("10,20"), torques("40,20,10")
     assert {key: beside[key] for key in alone} == alone
     assert sum(np.isnan([*beside.values()])) == 2
 
 
-def test_where_every_truck_tips_there_is_no_answer(brakes):
-    code, out, err = brakes("forklift", FORKLIFT, "--vary", "stop.slope=70,80 deg")
+def test_where_every_truck_tips_there_is_no_answer(brakes, tall):
+    code, out, err = brakes("forklift", tall, "--vary", "stop.slope=40,45 deg")
     assert (code, out) == (NO_ANSWER, "") and "at none of 2 values is there an answer" in err
 
 

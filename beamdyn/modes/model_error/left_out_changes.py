@@ -40,6 +40,7 @@ _HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 _REFUSED = {
     "mount.bending_angle": "it is solved where the bending angle is a multiple of 90 deg",
     "mount.precone": "it is solved without precone",
+    "physics.large_deflection": "here it is solved in one plane of bending",
 }
 EXCLUDED = _TWO_PLANES, _HINGED, *_REFUSED.values()
 _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
@@ -340,7 +341,8 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
         return SolvedValues(unknown, _TWO_PLANES)
     try:
         straight, bent = _comparable(scene)
+        within = solve(bent, LARGE_DEFLECTION.name)  # an analysis may have it in one plane alone
     except InvalidValue as error:
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
-    return _relative_change(without, solve(bent, LARGE_DEFLECTION.name))
+    return _relative_change(without, within)
