@@ -73,7 +73,7 @@ def test_a_partial_key_of_several_inputs_names_them(brakes):
 
 @pytest.fixture
 def tall(tmp_path):
-    """A truck that overturns at rest over its rear axle past 32.96 deg: its tangent is 1.674 m over 2.581 m."""
+    """A truck that overturns over its rear axle past 32.96 deg, whose tangent is 1.674 m over 2.581 m."""
     text = FORKLIFT.read_text(encoding="utf-8")
     assert 'empty_cg_y = "0.359 m"' in text
     path = tmp_path / "tall.toml"
