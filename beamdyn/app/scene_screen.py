@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from inspect import Parameter
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import numpy as np
@@ -28,6 +28,7 @@ from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import joined
+from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import FoldedPart, Screen
 from beamdyn.modes.model_error.left_out_effects import (
     LeftOutEffects,
@@ -43,6 +44,7 @@ _LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
 _DECADE = 3  # letters of a bar for a decade
 _LONGEST = 7  # decades
 _BAR = "\u2588"
+_HEADLINES = 3  # most parts of a result's one line that stand first
 
 
 def scene_screen(
@@ -171,11 +173,17 @@ def analysis_screen(analysis: Analysis) -> Screen:
     def result(answer: Answer) -> Result:
         return answer.result
 
+    def headline(answer: Answer) -> Iterator[KeyResult]:
+        lines = filter(None, answer.result.headline())
+        return (KeyResult(analysis.screen, line) for line in islice(lines, _HEADLINES))
+
     def on_page(answer: Answer) -> str:
         return picture(drawing(lambda: drawn(answer.result)), "Picture")
 
     more = (FoldedPart("Picture", on_page, lambda _: "<p>It is the drawing above.</p>"),)
-    return scene_screen(analysis.screen, analysis.question, solve, (name,), result, notes=notes, more=more)
+    return scene_screen(
+        analysis.screen, analysis.question, solve, (name,), result, notes=notes, more=more, headline=headline
+    )
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
