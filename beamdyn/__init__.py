@@ -18,7 +18,6 @@ SHOWN_BY.update(
     for module, rooms in {
         "common.edge.spread_tables": ("common",),
         "files.decks.deck_tables": ("files",),
-        "analyses.results.of_data": ("beside_data",),
         "analyses.results.of_linear_models": ("linear",),
         "analyses.results.of_loads": ("loads",),
         "analyses.results.of_modes": ("equations", "modes", "scene"),
@@ -32,12 +31,6 @@ SHOWN_BY.update(
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
-    from beamdyn.beside_data.compare import compare
-    from beamdyn.beside_data.explanations import Explanation
-    from beamdyn.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.beside_data.identification import Identification
-    from beamdyn.beside_data.identify import identify
-    from beamdyn.beside_data.separability import NotSeparable
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.inputs.designs import VariedInput
     from beamdyn.common.parallel.tasks import StudyInterrupted
@@ -57,7 +50,7 @@ if TYPE_CHECKING:
     from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, PropertyStep, ShapeCheck
     from beamdyn.files.decks.blade import IgnoredProperty
     from beamdyn.files.decks.deck import Deck, read_deck
-    from beamdyn.files.measurements import read_measurements
+    from beamdyn.files.measured_data import read_measurements
     from beamdyn.files.scenes import load_scene
     from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
     from beamdyn.linear.inputs_outputs import (
@@ -80,7 +73,6 @@ if TYPE_CHECKING:
     from beamdyn.loads.static_loads import StaticLoads, static_loads
     from beamdyn.loads.steady_loads import SteadyLoads, steady_loads
     from beamdyn.loads.transient_loads import TransientLoads, transient_loads
-    from beamdyn.measured.frequencies import MeasuredFrequencies
     from beamdyn.modes.backbone import Backbone, backbone
     from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
     from beamdyn.modes.critical import CriticalPoint, critical_point, critical_speed
@@ -97,6 +89,7 @@ if TYPE_CHECKING:
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.damping import Damping
+    from beamdyn.scene.measured_frequencies import MeasuredFrequencies
     from beamdyn.scene.motion import (
         Line,
         Motion,
@@ -120,6 +113,12 @@ if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossing, Crossings
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
+    from beamdyn.studies.beside_data.compare import compare
+    from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+    from beamdyn.studies.beside_data.identification import Identification
+    from beamdyn.studies.beside_data.identify import identify
+    from beamdyn.studies.beside_data.separability import NotSeparable
+    from beamdyn.studies.beside_data.single_numbers import Explanation
     from beamdyn.studies.campbell.diagram import Campbell, campbell
     from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
     from beamdyn.studies.sensitivities.sensitivities import (

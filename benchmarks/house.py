@@ -68,6 +68,8 @@ READERS = {
     "beamdyn/common/inputs/paths.py",
     "beamdyn/common/spreading/tolerances.py",
     "beamdyn/files/decks/blade.py",
+    "beamdyn/files/measured_data.py",
+    "beamdyn/files/scene_text.py",
     "beamdyn/common/plots/campbell.py",
     "beamdyn/scene/numbers.py",
 }

@@ -16,14 +16,14 @@ from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, p
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.varied_inputs import find_input, numbers
 from beamdyn.common.results.files import write_text
-from beamdyn.files.measurements import half_unit
+from beamdyn.files.measured_data import half_unit
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scene_text import with_numbers_in_text
 
 if TYPE_CHECKING:
-    from beamdyn.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.beside_data.identification import Identification
     from beamdyn.scene.scene import Scene
+    from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+    from beamdyn.studies.beside_data.identification import Identification
 
 Data = Annotated[
     Path | None,

@@ -9,9 +9,9 @@ from scipy.linalg import eigh, eigvals
 from scipy.optimize import brentq
 
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, elastic_stiffness
+from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
 from beamdyn.equations.beam_in_space.loaded_beam import LoadedBeam, TipLoad
-from beamdyn.equations.beam_in_space.rotations import quaternion_about
-from beamdyn.equations.beam_in_space.stations import Masses, Stations
+from beamdyn.equations.beam_in_space.station_forces import Masses, Stations
 from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces

@@ -14,11 +14,11 @@ from numpy.polynomial import Polynomial
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.beam_in_space.bent_beam import BeamInSpace, BentBeam
+from beamdyn.equations.beam_in_space.finite_rotations import skew
 from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
-from beamdyn.equations.beam_in_space.rotations import skew
-from beamdyn.equations.beam_in_space.stations import StationForces
+from beamdyn.equations.beam_in_space.station_forces import StationForces
 from beamdyn.equations.elastica import Elastica
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.modal_basis import ModalBasis

@@ -9,8 +9,8 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn import published
-from beamdyn.beside_data.compare import beside
 from beamdyn.reproduce.inward_beam import first_frequencies
+from beamdyn.studies.beside_data.compare import beside
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

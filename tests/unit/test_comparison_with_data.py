@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.beside_data.pairing import NO_MODE, pair
 from beamdyn.scene.numbers import with_numbers
+from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
 SCENE = bd.Scene(STRIP, bd.Mount(radius=0.215))

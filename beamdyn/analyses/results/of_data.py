@@ -8,17 +8,17 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.beside_data.explanations import say_value
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.pictures import figure_of
+from beamdyn.studies.beside_data.single_numbers import say_value
 
 if TYPE_CHECKING:
-    from beamdyn.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.beside_data.identification import Identification
+    from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+    from beamdyn.studies.beside_data.identification import Identification
 
 
 def comparison_columns(result: FrequencyComparison) -> Columns:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -37,17 +36,7 @@ from beamdyn.common.screens.sweep_panel import SweepPanel
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 _STALE = "Stale: for the entries before."
-_LONG = 100  # letters of a warning that is shown whole
 _CHARTS_APART = 0.1  # pictures of charts beside a drawing that moves: a browser takes 5 to 10 ms for each [s]
-
-
-def _folded(said: str) -> str:
-    """A long sentence in HTML, with what follows its first colon or semicolon folded."""
-    head = re.match(r".{40,}?[:;](?= )", said)
-    if head is None or len(said) <= _LONG:
-        return escape(said)
-    first, rest = head[0][:-1], said[head.end() :].strip()
-    return f"<details><summary>{escape(first)}</summary>{escape(rest)}</details>"
 
 
 class ScreenView:
@@ -307,10 +296,9 @@ class ScreenView:
         self._said.clear()
         with self._said:
             for said, kind in dict.fromkeys(sentences):
-                if kind == "warning":
-                    ui.html(_folded(f"Warning: {said}"), sanitize=False).classes(kind)
-                else:
-                    ui.label(said).classes(kind)
+                shown = ui.label(f"Warning: {said}" if kind == "warning" else said).classes(kind)
+                if kind == "warning":  # its first line; all of it when it is pointed at or has the focus
+                    shown.props("tabindex=0")
 
     # What is shown ------------------------------------------------------------------------------------
 

@@ -34,8 +34,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.pickling import FieldsOnly
-from beamdyn.equations.beam_in_space.rotations import cross, integrate_curvature, turn, turn_back
-from beamdyn.equations.beam_in_space.stations import Masses, MassesInSpace, StationForces, Stations
+from beamdyn.equations.beam_in_space.finite_rotations import cross, integrate_curvature, turn, turn_back
+from beamdyn.equations.beam_in_space.station_forces import Masses, MassesInSpace, StationForces, Stations
 
 STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beamdyn.equations.beam_in_space.bent_beam import BeamInSpace, BentBeam
-from beamdyn.equations.beam_in_space.rotations import skew
-from beamdyn.equations.beam_in_space.stations import StationForces
+from beamdyn.equations.beam_in_space.finite_rotations import skew
+from beamdyn.equations.beam_in_space.station_forces import StationForces
 
 _NOTHING = np.zeros(3)
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
-from beamdyn.equations.beam_in_space.rotations import cross, turn
+from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
 
 _AT_REST = np.zeros(3)
 

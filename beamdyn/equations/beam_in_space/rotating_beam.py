@@ -19,8 +19,8 @@ import numpy as np
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
-from beamdyn.equations.beam_in_space.rotations import turn_tensors
-from beamdyn.equations.beam_in_space.stations import Masses, StationForces, Stations
+from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors
+from beamdyn.equations.beam_in_space.station_forces import Masses, StationForces, Stations
 from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
 from beamdyn.equations.fields.field import Deflection, Load, Term

@@ -10,18 +10,18 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.beside_data.explanations import explain
-from beamdyn.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
-from beamdyn.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.common.inputs.checks import InvalidValue, kind
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
-from beamdyn.measured.frequencies import MeasuredFrequencies
 from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
+from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
+from beamdyn.studies.beside_data.single_numbers import explain
 
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
 

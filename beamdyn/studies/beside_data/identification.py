@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.beside_data.explanations import say_value
-from beamdyn.beside_data.frequency_comparison import FrequencyComparison
-from beamdyn.beside_data.separability import NotSeparable
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
@@ -19,6 +16,9 @@ from beamdyn.common.results.statements import joined
 from beamdyn.common.words import Words
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+from beamdyn.studies.beside_data.separability import NotSeparable
+from beamdyn.studies.beside_data.single_numbers import say_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

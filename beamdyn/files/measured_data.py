@@ -12,7 +12,7 @@ from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
 from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.inputs.checks import InvalidValue, real_array
-from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
 _MOST_SPEED = 1e5  # rad/s, a million revolutions per minute: faster is a unit mistaken
 _MOST = 40  # columns of frequencies

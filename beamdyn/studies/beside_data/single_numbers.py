@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.beside_data.fit import Fitting, fit_from
-from beamdyn.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import number
 from beamdyn.common.words import Named, amount
-from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import SCALE
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.fit import Fitting, fit_from
+from beamdyn.studies.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
 
 _WITHIN = {  # numbers that may be wrong, and by which factors they are at most
     "beam.length": (0.8, 1.25),

@@ -15,19 +15,19 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats.qmc import LatinHypercube
 
-from beamdyn.beside_data.free_numbers import FreeNumber, opened
-from beamdyn.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.discretization import Discretization
-from beamdyn.measured.frequencies import MeasuredFrequencies
 from beamdyn.modes.kinds import kinds_of_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modes import natural_modes
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.free_numbers import FreeNumber, opened
+from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
 
 _STEP = 1e-4  # of a variable of size 1, to either side

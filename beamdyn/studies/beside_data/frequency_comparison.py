@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from beamdyn.beside_data.explanations import Explanation, say_value
 from beamdyn.common.plots.plots import mark_points, plot_locus
 from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.digits import percent
@@ -19,6 +18,7 @@ from beamdyn.common.words import Setting, Words
 from beamdyn.modes.kinds import TORSION
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.single_numbers import Explanation, say_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

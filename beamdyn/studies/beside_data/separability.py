@@ -13,12 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.beside_data.fit import FittedModes, Fitting
 from beamdyn.common.results.announced import unannounced
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.points import TipMass
 from beamdyn.scene.profile import mean
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.fit import FittedModes, Fitting
 
 LARGEST = 1.0  # standard error of a variable of size 1, beyond which its number is not told
 FINEST = 1e-6  # least relative uncertainty of a frequency with which that is decided

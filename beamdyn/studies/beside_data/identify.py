@@ -11,19 +11,19 @@ import numpy as np
 from scipy import stats
 
 from beamdyn._version import __version__
-from beamdyn.beside_data.compare import beside
-from beamdyn.beside_data.fit import Fitted, Fitting, fit
-from beamdyn.beside_data.free_numbers import Bounds, FreeNumber, free_numbers
-from beamdyn.beside_data.identification import Identification
-from beamdyn.beside_data.pairing import NO_MODE
-from beamdyn.beside_data.separability import FINEST, Information, not_separable
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, LIMITS, Speeds, Statement
 from beamdyn.common.words import Words
-from beamdyn.measured.frequencies import MeasuredFrequencies
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.beside_data.compare import beside
+from beamdyn.studies.beside_data.fit import Fitted, Fitting, fit
+from beamdyn.studies.beside_data.free_numbers import Bounds, FreeNumber, free_numbers
+from beamdyn.studies.beside_data.identification import Identification
+from beamdyn.studies.beside_data.pairing import NO_MODE
+from beamdyn.studies.beside_data.separability import FINEST, Information, not_separable
 
 MOST_SOLVES = 40  # for each number
 _LEVEL = 0.95

@@ -1,1 +1,0 @@
-"""Values from a laboratory or another program, as data: no mechanics."""
