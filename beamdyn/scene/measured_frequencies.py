@@ -102,7 +102,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
 
     @property
     def allowance(self) -> np.ndarray:
-        """By how much a value may be off [Hz], shape (S, m): half a digit and twice the uncertainty."""
+        """Allowance of each value [Hz], shape (S, m): half of its last digit and twice the uncertainty."""
         return self.rounding + 2 * np.nan_to_num(self.uncertainty)
 
 

@@ -94,7 +94,7 @@ def _choices(entry: Input) -> list[str]:
 
 
 def _default(entry: Input) -> str:
-    """What a key has that is not given, as a file would say it."""
+    """Default of a key, as a file would give it."""
     if entry.required:
         return "required"
     return "" if entry.default in (None, [], ()) else f"{entry.default} {entry.quantity.unit}".rstrip()

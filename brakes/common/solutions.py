@@ -42,7 +42,7 @@ class Piece:
 
     @property
     def course(self) -> str:
-        """What the answer does: "rises", "falls" or "is level"."""
+        """Course of the answer over the piece: "rises", "falls" or "is level"."""
         return ("falls", "is level", "rises")[int(step(self.first, self.last)) + 1]
 
 
@@ -142,7 +142,7 @@ class Solutions(Result):
         )
 
     def _reasons(self) -> Iterator[str]:
-        """What keeps the answer from the wanted value."""
+        """Reason why the answer does not reach the wanted value."""
         yield from self._extremes() if self.pieces else ()
         yield from (f"it jumps past at {self.input} = {self._input(each)}" for each in self.jumps)
         yield from self.lacking if self.pieces else (gap.reason for gap in self.gaps)

@@ -75,7 +75,7 @@ class DrumBrake:
         return self.shoes[0].drum_radius
 
     def with_law(self, law: Literal["wear", "pressure"]) -> DrumBrake:
-        """The same brake with another law of the pressure."""
+        """Copy the brake with another law of the pressure."""
         return replace(self, shoes=tuple(replace(shoe, pressure_law=law) for shoe in self.shoes))
 
 

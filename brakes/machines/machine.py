@@ -132,7 +132,7 @@ class Machine(ABC):
         return ()
 
     def with_law(self, law: str) -> Machine:
-        """The same brake with another law of the pressure; raises ValueError where that is impossible."""
+        """Copy the brake with another law of the pressure; raises ValueError where that is impossible."""
         return replace(self, pressure_law=law)  # type: ignore[type-var]
 
 
@@ -221,7 +221,7 @@ class MachineResult(SlidesOrLocks):
 
     @property
     def grips(self) -> str:  # type: ignore[override]
-        """What locks, in the words of messages."""
+        """Name of the part that locks, as messages have it."""
         return self.brake.grips
 
     def headline(self) -> Iterator[str]:

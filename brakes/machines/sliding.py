@@ -252,7 +252,7 @@ class Sliding(Machine):
         return c * S - b * C + s * mu * (self.drum_radius * K - b * S - c * C)
 
     def _balance(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
-        """What the two equations leave when p0 is eliminated [m]; linear in the integrals."""
+        """Residual [m] of the two equations after p0 is eliminated; linear in the integrals."""
         (_, S, C), psi = integrals, self.abutment_angle
         along = np.sin(psi) * (S - s * mu * C) + np.cos(psi) * (C + s * mu * S)
         return along * self.arm - np.sin(psi) * self._moment(integrals, mu, s)

@@ -126,13 +126,13 @@ class Holding(Result):
 
     @property
     def limited_by(self) -> Any:
-        """What ends the largest slope: "slips", "tips" or "rolls"."""
+        """Failure past the largest slope: "slips", "tips" or "rolls"."""
         ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
         return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
 
     @property
     def message(self) -> str:
-        """What happens past the largest slope and on the given one, in one sentence; of one case."""
+        """Sentence on the given slope and on what happens past the largest one; of one case."""
         on, most = np.degrees(float(self.road.slope)), np.degrees(float(self.largest_slope))
         what = {"too near to decide": "it is too near to decide"}.get(str(self.status), f"it {self.status}")
         return f"{self.limited_by} past {most:.6g} deg: on {on:.6g} deg {what}"

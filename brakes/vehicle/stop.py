@@ -185,7 +185,7 @@ class Stop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """What limits the braking force: "road" where the front wheels lock, else "brake"."""
+        """Limit of the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
         return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
 

@@ -242,7 +242,7 @@ def _for_people(column: Column, units: DisplayUnits) -> Column:
 
 
 def _cells(column: Column) -> Sequence[str | Text]:
-    """What a table shows of a column's values."""
+    """Cells of a column in a table."""
     if column.cells is not None:
         return column.cells
     form = column.form or (".6g" if column.error is None else supported)

@@ -156,7 +156,7 @@ class SweepPanel:
 
     @property
     def _range(self) -> str:
-        """What stands in the fields as "start:stop:count unit"; an end without a unit has the other's."""
+        """Read the fields as "start:stop:count unit"; an end without a unit takes that of the other."""
         (low, _, unit), (high, _, other) = (
             (f.value or "").strip().partition(" ") for f in (self._low, self._high)
         )

@@ -47,7 +47,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
 
 
 def _names(blade: Blade, among: Iterable[str]) -> list[str]:
-    """Those of some properties that the blade has; of an offset or a twist, if it is not zero throughout."""
+    """Select the properties that the blade has; an offset or a twist only if it is not zero throughout."""
     given = (name for name in among if name in blade.columns)
     return [name for name in given if name not in OF_ANY_SIGN or blade.columns[name].any()]
 

@@ -208,7 +208,7 @@ class Fitted:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """By what fits are compared: fewer frequencies without a mode, then smaller residuals."""
+        """Key that orders fits: fewer frequencies without a mode, then smaller residuals."""
         return int((self.pairs == NO_MODE).sum()), self.cost
 
 

@@ -104,7 +104,7 @@ class FrequencyComparison(Result):
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """Of each value: "agrees", "within the model error", "outside" or "no mode"; shape (N,)."""
+        """Verdict on each value: "agrees", "within the model error", "outside" or "no mode"; shape (N,)."""
         off, sure = np.abs(self.measured - self.computed), self.allowance + self.error
         each = [np.isnan(off), off <= sure, off <= sure + self.model_error]
         return tuple(np.select(each, [ALONE, AGREES, LEFT_OUT], OUTSIDE).tolist())
@@ -120,7 +120,7 @@ class FrequencyComparison(Result):
         return super().to_dict() | {name: plain(value) for name, value in more.items()}
 
     def sentences(self) -> tuple[str, ...]:
-        """What the comparison says in words: the worst deviations, and what would explain them."""
+        """Sentences on the worst deviations, and on what would explain them."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:

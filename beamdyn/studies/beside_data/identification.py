@@ -114,7 +114,7 @@ class Identification(Result):
         return super().to_dict() | {"sentences": plain(self.sentences())}
 
     def sentences(self) -> tuple[str, ...]:
-        """What was found in words: numbers that are not told, the residual, and values that lie far off."""
+        """Sentences on numbers that the data do not tell, on the residual, and on values that lie far off."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:

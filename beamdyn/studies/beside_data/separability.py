@@ -125,7 +125,7 @@ def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
 
 
 def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
-    """What else could be measured, and its value of a scene."""
+    """Further quantities that could be measured, and functions that compute them of a scene."""
     first, speed = _frequency(scene), float(np.abs(fitting.data.speeds).max())
     return {
         "the mass of the beam": _mass(scene),

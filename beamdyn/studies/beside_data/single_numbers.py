@@ -132,7 +132,7 @@ def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
 def _explanation(
     scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
 ) -> Explanation | None:
-    """What a number alone explains; None where it hardly changes a frequency, or leaves its bounds."""
+    """Fit a number alone to all values; None where it hardly changes a frequency, or leaves its bounds."""
     weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
     fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
     start = fitting.at(np.array([free.first]))
