@@ -194,7 +194,7 @@ def _read_sections(
 def _from_shear_centre(
     text: DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Columns from the shear centre by `convert_offsets`; raises an error by line where no stiffness is left."""
+    """Columns from the shear centre by `convert_offsets`; an error names the line without stiffness."""
     edge = columns["second_bending_stiffness"]
     axial = columns.get("axial_stiffness", np.zeros_like(edge))
     converted = convert_offsets(edge, axial, *offsets)
