@@ -27,7 +27,8 @@ Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; th
 def section_tensor(beam: Beam, name: str) -> Tensor:
     """Tensor of a property of the sections, such as "bending_stiffness", in the directions e1, e2.
 
-    That of the rotary inertia is about the axis, not the centre of mass, where the two differ.
+    That of the rotary inertia is about the centre of tension, where that differs from the centre of mass: a
+    section tilts about the line that keeps its length.
 
     Parameters
     ----------
@@ -45,8 +46,9 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}
-    if name == "rotary_inertia" and second is not None and beam.mass_offset is not None:
-        second = second + beam.mass_per_length * beam.mass_offset * beam.mass_offset
+    lever = _from_tension_to_mass(beam)
+    if name == "rotary_inertia" and second is not None and lever is not None:
+        second = second + beam.mass_per_length * lever * lever
     if second is None:
         return {(0, 0): first}
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
@@ -61,6 +63,14 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
             "twist", float(beam.twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
         ) from None
     return {(0, 0): along, (0, 1): oblique, (1, 0): oblique, (1, 1): across}
+
+
+def _from_tension_to_mass(beam: Beam) -> Profile | None:
+    """Distance of the centre of mass from that of tension, across [m]; None where there are no offsets."""
+    if beam.tension_offset is None:
+        return beam.mass_offset
+    back = beam.tension_offset.scaled(-1.0)
+    return back if beam.mass_offset is None else beam.mass_offset + back
 
 
 def _turned_values(

@@ -319,7 +319,8 @@ def _end_of_stop(path: _Path, start: np.ndarray) -> tuple[np.ndarray, np.ndarray
         """Whether a stop has ended, or the lining faded to the load, before a temperature."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
-    hot = (low > high) | ~over(high)
+    # Without a curve `most` is where it ends, which rounding may put just past `high`.
+    hot = np.isfinite(path.last) & ((low > high) | ~over(high))
     high = np.where(hot | over(low), low, high)
     while np.any(high - low > 2 * _EPS * high):
         middle = (low + high) / 2
@@ -388,4 +389,4 @@ class _Path:
     def stopped(self, start: Numbers, end: Numbers) -> np.ndarray:
         """Whether the heat up to a temperature is that of the whole stop."""
         driven = self.duty.load_torque * self.angle(start, end) / self.duty.capacity
-        return end - start >= (self.duty.rise_of_a_stop + driven) * (1 - 2 * _EPS)
+        return end - start >= self.duty.rise_of_a_stop + driven - 4 * _EPS * np.abs(end)

@@ -27,6 +27,6 @@ def passes(limb: str, force: Numbers) -> bool:
 def verdict(limb: str, force: Numbers) -> str:
     """One sentence on the largest of the forces [N] of what presses."""
     most, source = LIMITS[limb]
-    said = "passed" if passes(limb, force) else "kept"
+    said = "exceeded" if passes(limb, force) else "kept"
     limb = "hand on a bicycle's lever" if limb == "bicycle" else limb
     return f"force of {float(np.max(force)):.6g} N: {source}, allows {most:g} N for a {limb}: {said}"

@@ -49,6 +49,9 @@ def _say_locked(grips: str, friction: np.ndarray, locking: np.ndarray, where: st
         " to ".join(dict.fromkeys(f"{float(end(values)):.4g}" for end in (np.min, np.max)))
         for values in (friction, locking)
     )
+    if np.all(friction < locking * (1 - LEAST_MARGIN)):
+        slides = f"nothing holds the {grips}, which slides off its abutment"
+        return f"no equilibrium{where}: at friction {mu} {slides}"
     return (
         f"locked{where}: friction {mu} is at or past self-locking, {least}; "
         f"the {grips} grips by itself, and its torque does not follow from what presses it"

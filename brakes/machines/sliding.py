@@ -178,10 +178,13 @@ class Sliding(Machine):
         return {leads: self._locking(leads) for leads in (True, False)}
 
     def _locking(self, leads: bool) -> Numbers:
-        """Friction at the first sign of the actuating force that is not positive, by halving."""
+        """Friction at the first actuating force that is not positive, by halving.
+
+        Where nothing holds the shoe there is no force; that is no locking.
+        """
 
         def holds(mu: np.ndarray) -> np.ndarray:
-            return self._force(mu, leads) > 0
+            return ~(self._force(mu, leads) <= 0)
 
         numbers = (value for value in vars(self).values() if not isinstance(value, str | Mapping))
         shape = np.broadcast_shapes(*map(np.shape, numbers))
@@ -218,7 +221,7 @@ class Sliding(Machine):
         psi = self.abutment_angle
         abutment = -(force + nx + tx) * np.cos(psi) - (ny + ty) * np.sin(psi)
         forces = {"normal_x": nx, "normal_y": ny, "friction_x": tx, "friction_y": ty, "abutment": abutment}
-        force = np.where(held, force, -1.0)  # what nothing holds is as what locks
+        force = np.where(held, force, -1.0)  # what nothing holds has no numbers, as what locks
         torque, size = np.where(held, mu * area * r * K, np.nan), np.where(held, np.real(size), 1.0)
         return Lining(torque, force, size, self.locking[leads] + 0 * np.real(delta), forces)
 

@@ -142,3 +142,14 @@ def test_pressure_times_radius_is_largest_at_the_rubbing_radius(law):
     disc = machines.Disc(0.08, 0.12, pad_angle=1.0, pressure_law=law)
     radius = np.linspace(0.08, 0.12, 101)
     assert disc.rubbing_radius == pytest.approx((disc.pressure(radius, 0.4) * radius).max(), rel=1e-14)
+
+
+def test_no_rounding_makes_a_lining_of_constant_friction_too_hot():
+    """A stop against a load L warms by J w^2/(2 m c) M/(M - L), whatever the 13th digit of the inputs."""
+    for mass in np.geomspace(1e-3, 1e4, 200):
+        for load in (0.0, 50.0):
+            duty = drum.Duty(inertia=50.0, speed=10 * np.pi, heated_mass=float(mass), load_torque=load)
+            found = drum.repeat_stops(duty, 0.35, lambda mu: 750.0 * np.asarray(mu))
+            rise = duty.rise_of_a_stop * 262.5 / (262.5 - load)
+            assert found.status == "stops"
+            assert found.hottest == pytest.approx(rise, rel=1e-12, abs=1e-12)  # of temperatures near 293 K

@@ -95,12 +95,32 @@ def test_there_is_one_solution_where_the_weight_changes_sign():
 
 
 def test_it_locks_where_it_says():
-    for shoes, reverse in (("single", False), ("single", True), ("simplex", False)):
-        brake = replace(BRAKE, shoes=shoes)
-        limit = float(machines.solve_brake(brake, friction=0.1, force=1.0, reverse=reverse).locking_friction)
-        for part, locks in ((1 - 1e-6, False), (1 + 1e-6, True)):
-            found = machines.solve_brake(brake, friction=part * limit, force=1.0, reverse=reverse)
-            assert bool(found.locked) == locks
+    brake = replace(BRAKE, shoes="single")
+    limit = float(machines.solve_brake(brake, friction=0.1, force=1.0).locking_friction)
+    for part, locks in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        found = machines.solve_brake(brake, friction=part * limit, force=1.0)
+        assert bool(found.locked) == locks
+        assert ("grips by itself" in found.message) == locks
+
+
+def test_a_shoe_that_nothing_holds_does_not_lock():
+    """Across the abutment's force, int p (cos t - s mu sin t) = 0 needs a sign that changes on the lining.
+
+    A trailing shoe is held up to -cot of the lining's end; a leading one from 30 to 60 deg between the two
+    cotangents of its ends.
+    """
+    trailing, last = replace(BRAKE, shoes="single"), -1 / np.tan(BRAKE.lining_end)
+    leading = replace(trailing, lining_start=np.radians(30), lining_end=np.radians(60))
+    for brake, reverse, friction, held in (
+        (trailing, True, 0.99 * last, True),
+        (trailing, True, 1.01 * last, False),
+        (leading, False, 0.35, False),
+        (leading, False, 0.6, True),
+    ):
+        found = machines.solve_brake(brake, friction=friction, force=1.0, reverse=reverse)
+        assert bool(np.isfinite(found.torque)) == held
+        assert found.message.startswith("slides" if held else "no equilibrium: at friction")
+        assert found.margin > 0
 
 
 @pytest.mark.parametrize("reverse", [False, True])

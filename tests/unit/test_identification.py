@@ -125,3 +125,21 @@ def test_as_many_unknowns_as_data_have_no_interval_without_uncertainties():
     assert np.isfinite(found.value[0])
     assert np.isnan(found.low[0])
     assert "no interval follows" in found.warnings[0]
+
+
+def test_data_that_no_mode_meets_are_refused():
+    data = bd.MeasuredFrequencies([6.2e6])
+    with pytest.raises(ValueError, match=r"free = 'beam.thickness': only 0 of 1 frequencies are near modes"):
+        bd.identify(
+            bd.Scene(bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0)),
+            data,
+            free={"beam.thickness": None},
+        )
+
+
+def test_a_beam_that_bends_far_is_compared_without_explanations():
+    scene = bd.Scene(
+        bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0), physics=bd.Physics(large_deflection=True)
+    )
+    found = bd.compare(scene, bd.MeasuredFrequencies([50.0], uncertainty=0.1))
+    assert found.verdict == ("outside",) and found.explanations == ()

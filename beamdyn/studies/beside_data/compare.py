@@ -32,7 +32,7 @@ def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
     where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
     what the model leaves out together, each number of the scene alone is fitted to all the data within
-    physical bounds.
+    physical bounds; not of a scene with large deflection, of which no derivatives are known.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     True
     """
     found = beside(scene, data)
-    if OUTSIDE not in found.verdict:
+    if OUTSIDE not in found.verdict or scene.physics.large_deflection:
         return found
     bound = found.allowance + found.error + np.nan_to_num(found.model_error)
     return replace(found, explanations=explain(scene, data, bound))

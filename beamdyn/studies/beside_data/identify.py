@@ -92,6 +92,11 @@ def identify(
     enough = stats.chi2.ppf(_LIKELY, max(data.count - len(numbers), 1)) if known else _NOTHING
     most = MOST_SOLVES * len(numbers)
     found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, float(enough))
+    paired = int((found.pairs != NO_MODE).sum())
+    if paired < len(numbers):
+        bound = f"only {paired} of {data.count} frequencies are near modes, for {len(numbers)} unknowns"
+        remedy = "begin with a scene that is nearer to the data, or give other bounds"
+        raise InvalidValue("free", ", ".join(free), bound, remedy)
     return _Told(found, known).result(start)
 
 
