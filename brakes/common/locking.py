@@ -9,6 +9,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.results.result import Result
 
+_NEAR = 1e-9  # relative distance from self-locking within which a brake without an equilibrium locks
 LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
 
 
@@ -49,7 +50,7 @@ def _say_locked(grips: str, friction: np.ndarray, locking: np.ndarray, where: st
         " to ".join(dict.fromkeys(f"{float(end(values)):.4g}" for end in (np.min, np.max)))
         for values in (friction, locking)
     )
-    if np.all(friction < locking * (1 - LEAST_MARGIN)):
+    if np.all(friction < locking * (1 - _NEAR)):
         slides = f"nothing holds the {grips}, which slides off its abutment"
         return f"no equilibrium{where}: at friction {mu} {slides}"
     return (
