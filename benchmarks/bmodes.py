@@ -37,6 +37,8 @@ def trace() -> Iterator[Row]:
             _over_print(bmodes.frequencies(data, ends, SPEED, 5)),
             "",
         )
+    read = bmodes.about_shear_centres(data, data["element_ends"], SPEED, _MODES)
+    yield "its 12 elements, centres and inertia from the shear centre", _over_print(read), ""
     no_torsion = blade_scene(NAME)
     whole, by_elements = whole_blade_scene(NAME), whole_blade_scene(NAME, by_elements=True)
     yield "ours, without torsion and offsets", _over_print(_solve(no_torsion)), ""

@@ -55,6 +55,14 @@ def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count:
     return np.sqrt(squares) / (2 * np.pi)
 
 
+def about_shear_centres(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count: int) -> np.ndarray:
+    """`frequencies` with the centre of mass and the edgewise inertia from the shear centre, not the axis."""
+    from_shear_centre = blade["mass_offset"] - blade["shear_offset"]
+    inertia = blade["edge_inertia"] + blade["mass_per_length"] * from_shear_centre**2
+    read = {**blade, "mass_offset": from_shear_centre, "edge_inertia": inertia}
+    return frequencies(read, ends, speed, count)
+
+
 def _functions(point: float, length: float) -> dict[tuple[str, int], np.ndarray]:
     """Functions of each displacement and their derivatives at a point of an element: (15,) each."""
     found = {}
