@@ -118,7 +118,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.beside_data.identification import Identification
     from beamdyn.studies.beside_data.identify import identify
     from beamdyn.studies.beside_data.separability import NotSeparable
-    from beamdyn.studies.beside_data.single_numbers import Explanation
+    from beamdyn.studies.beside_data.single_numbers import OneNumberFit
     from beamdyn.studies.campbell.diagram import Campbell, campbell
     from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
     from beamdyn.studies.sensitivities.sensitivities import (

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, elastic_stiffness
 from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
 from beamdyn.equations.beam_in_space.loaded_beam import LoadedBeam, TipLoad
-from beamdyn.equations.beam_in_space.station_forces import Masses, Stations
+from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
 from beamdyn.equations.discretization import FIXED
 from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces
@@ -39,7 +39,7 @@ def uniform(
     """A beam of one section: its law (6, 6), and per length mass, centre of mass and inertia (3, 3)."""
     points = functions + 16
     quadrature = ArcQuadrature(Cells(np.array(ends), points))
-    stations, xi = Stations(quadrature, length, np.empty(0)), quadrature.xi
+    stations, xi = BeamStations(quadrature, length, np.empty(0)), quadrature.xi
     of_each = RitzSpaces(Ritz(functions), tuple(ends), points, 2).functions(FIXED).evaluate(xi, 1)
     unknown = np.concatenate([_of_strain(name, of_each) for name in strains])
     stiffness = elastic_stiffness(stations, unknown, np.repeat(law[..., None], len(xi), axis=2))

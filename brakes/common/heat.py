@@ -269,7 +269,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     >>> float(drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest)  # K
     20.0
     """
-    path = _Path(duty, friction, torque_at)
+    path = _Warming(duty, friction, torque_at)
     start, stops = duty.surroundings + path.cases, []
     status = np.full(start.shape, "stops", dtype="U11")
     for k in range(int(np.max(duty.stops))):
@@ -307,7 +307,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     )
 
 
-def _end_of_stop(path: _Path, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Temperature after a stop, nan if it does not end, and its status."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
     low = start + duty.rise_of_a_stop
@@ -331,7 +331,7 @@ def _end_of_stop(path: _Path, start: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return np.where(status == "stops", high, np.nan), status
 
 
-class _Path:
+class _Warming:
     """Friction and torque over the temperature, and their integrals."""
 
     def __init__(self, duty: Duty, friction: Numbers, torque_at: TorqueAt) -> None:

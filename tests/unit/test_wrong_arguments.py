@@ -329,7 +329,7 @@ def test_the_table_holds_every_public_name_and_argument():
     made_elsewhere |= {"LineCrossing", "Margin"}  # parts of a diagram
     made_elsewhere |= {"LargestLoad"}  # parts of loads
     made_elsewhere |= {"SceneNumber", "VariedInput"}  # parts of studies
-    made_elsewhere |= {"Explanation", "NotSeparable"}  # parts of comparisons and identifications
+    made_elsewhere |= {"OneNumberFit", "NotSeparable"}  # parts of comparisons and identifications
     made_elsewhere |= {
         "FirstOrderRange",
         "Scatter",

@@ -35,7 +35,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, integrate_curvature, turn, turn_back
-from beamdyn.equations.beam_in_space.station_forces import Masses, MassesInSpace, StationForces, Stations
+from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
 
 STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
 
@@ -48,7 +48,7 @@ class BeamInSpace(FieldsOnly):
 
     Parameters
     ----------
-    stations : Stations
+    stations : BeamStations
         Points along the beam, N of them of a Gauss rule.
     masses : Masses
         Masses at the stations.
@@ -67,7 +67,7 @@ class BeamInSpace(FieldsOnly):
         has kinks, or does not begin along e1.
     """
 
-    stations: Stations
+    stations: BeamStations
     masses: Masses
     initial: np.ndarray
     functions: np.ndarray
@@ -117,7 +117,7 @@ class BeamInSpace(FieldsOnly):
         return BentBeam(self, q)
 
 
-def elastic_stiffness(stations: Stations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
+def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
     """Stiffness (n, n) of strains (n, 6, N) by the law of the sections (6, 6, N).
 
     Raises

@@ -20,7 +20,7 @@ from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors
-from beamdyn.equations.beam_in_space.station_forces import Masses, StationForces, Stations
+from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, StationForces
 from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
 from beamdyn.equations.fields.field import Deflection, Load, Term
@@ -79,7 +79,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     """Assemble the equations of a scene for large deflection in space, over those of the straight beam."""
     beam = scene.modelled_beam
     quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
-    stations, length = Stations(quadrature, beam.length, beam.lumps[0]), beam.length
+    stations, length = BeamStations(quadrature, beam.length, beam.lumps[0]), beam.length
     functions = np.zeros((linear.size, 6, len(quadrature.xi)))
     known = _strains_of_fields(beam)
     for name, place in linear.blocks.items():
@@ -101,7 +101,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     return RotatingBeam(model, linear, axis_of_rotation(scene))
 
 
-def _masses(scene: Scene, stations: Stations) -> Masses:
+def _masses(scene: Scene, stations: BeamStations) -> Masses:
     """Masses of a scene's beam at stations: of sections, of the body at the tip, and point masses."""
     beam, tip, xi = scene.modelled_beam, scene.beam.tip or TipMass(0.0), stations.quadrature.xi
     weights = stations.quadrature.weights * beam.length

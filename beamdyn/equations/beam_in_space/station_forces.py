@@ -20,7 +20,7 @@ from beamdyn.equations.quadrature import ArcQuadrature
 
 
 @dataclass(frozen=True)
-class Stations(FieldsOnly):
+class BeamStations(FieldsOnly):
     """Integrals along a beam to its stations, and their transposes.
 
     Parameters

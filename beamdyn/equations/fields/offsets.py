@@ -47,7 +47,7 @@ _TURN = 2  # number of the rotation by torsion, after the tilts towards e1 and e
 
 
 @dataclass(frozen=True)
-class Motion:
+class SectionMotion:
     """A displacement of the axis, or a rotation of the sections, by a field.
 
     Parameters
@@ -91,7 +91,7 @@ class Motion:
         return moved
 
 
-def _second_order(rows: Motion, columns: Motion) -> np.ndarray:
+def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
     """Second derivative of the displacement of the centre of mass by two rotations: shape (3, 4)."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
@@ -123,7 +123,7 @@ def _pulled(beam: Beam) -> list[list[Profile | None]]:
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
-class _Part(NamedTuple):
+class _CoupledMatrix(NamedTuple):
     """A matrix over the coordinates of two motions, with its transpose times a sign where they are two."""
 
     rows: str
@@ -151,19 +151,19 @@ class Offsets:
         The scene.
     spaces : Spaces
         Function spaces on the beam.
-    turn : Motion
+    turn : SectionMotion
         The turn by torsion.
     trials : sequence of Trial
         Fields that deflect the beam.
-    stretched : sequence of Motion
+    stretched : sequence of SectionMotion
         Displacement along the beam, where stretch is modelled.
     """
 
     scene: Scene
     spaces: Spaces
-    turn: Motion
+    turn: SectionMotion
     trials: Sequence[Trial]
-    stretched: Sequence[Motion] = ()
+    stretched: Sequence[SectionMotion] = ()
     _known: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, repr=False)
 
     @cached_property
@@ -172,13 +172,15 @@ class Offsets:
         return [trial for trial in self.trials if trial.field.rotates]
 
     @cached_property
-    def motions(self) -> list[Motion]:
+    def motions(self) -> list[SectionMotion]:
         """All motions of the sections."""
         moved = [
-            Motion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction) for t in self.trials
+            SectionMotion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction)
+            for t in self.trials
         ]
         tilts = [
-            Motion(t.field.name, t.conditions, t.rotation, rotation=t.field.direction) for t in self.tilting
+            SectionMotion(t.field.name, t.conditions, t.rotation, rotation=t.field.direction)
+            for t in self.tilting
         ]
         return [*self.stretched, *moved, *tilts, self.turn]
 
@@ -253,7 +255,7 @@ class Offsets:
         return reduce(Profile.__add__, outboard) if outboard else None
 
     def _integrate(
-        self, rows: Motion, columns: Motion, coefficients: np.ndarray, power: int
+        self, rows: SectionMotion, columns: SectionMotion, coefficients: np.ndarray, power: int
     ) -> np.ndarray | None:
         """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
         orders = rows.order, columns.order
@@ -287,7 +289,7 @@ class Offsets:
         for (rows, columns, quantity, order), matrix in sums.items():
             yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
 
-    def _moved(self) -> Iterator[_Part]:
+    def _moved(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of the acceleration of what two motions move, each to first order."""
         B, P = self.frame
         kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
@@ -306,9 +308,11 @@ class Offsets:
                     continue
                 if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
                     for quantity, order, factor in uses:
-                        yield _Part(rows.field, columns.field, quantity, order, factor * found, mirrored)
+                        yield _CoupledMatrix(
+                            rows.field, columns.field, quantity, order, factor * found, mirrored
+                        )
 
-    def _carried(self) -> Iterator[_Part]:
+    def _carried(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of the acceleration of the axis on what rotations move to second order."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
@@ -316,9 +320,9 @@ class Offsets:
                 moved = vector @ _second_order(rows, columns)
                 if (found := self._integrate(rows, columns, moved, power)) is not None:
                     mirrored = 0.0 if rows is columns else 1.0
-                    yield _Part(rows.field, columns.field, quantity, 0, found, mirrored)
+                    yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
-    def _drawn_in(self) -> Iterator[_Part]:
+    def _drawn_in(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of the axial force as bending and torsion draw in the line of centres of tension."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
@@ -328,9 +332,9 @@ class Offsets:
                     factor = float(vector[0] if tilts == (i == 0) else -vector[0])
                     orders = (0, 2) if tilts else (1, 1)
                     matrix = self._along(moment, self.turn.conditions, trial.conditions, orders)
-                    yield _Part(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
+                    yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
-    def _sheared(self) -> Iterator[_Part]:
+    def _sheared(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of shear forces as bending moves the axis along its slope."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
@@ -338,17 +342,17 @@ class Offsets:
                 force, moment = float(vector[1 + rows.field.direction]), pulled[columns.field.direction]
                 if force and moment is not None:
                     matrix = self._along(moment, rows.conditions, columns.conditions, (1, 2))
-                    yield _Part(rows.field.name, columns.field.name, quantity, 0, force * matrix)
+                    yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
-    def _turned(self) -> Iterator[_Part]:
+    def _turned(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of the twisting moment as bending in both directions turns the sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
                     names = pair.rows.field.name, pair.columns.field.name
-                    yield _Part(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
+                    yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
-    def _tightened(self) -> Iterator[_Part]:
+    def _tightened(self) -> Iterator[_CoupledMatrix]:
         """Yield the work of the axial force by what lies beside the axis, on the slopes of the beam."""
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
@@ -361,7 +365,7 @@ class Offsets:
                     along = self._along(force, rows.conditions, columns.conditions, (1, 1))
                     matrix = -along - ahead * at_tip * np.outer(rows.rotation, columns.rotation)
                     mirrored = 0.0 if rows is columns else 1.0
-                    yield _Part(rows.field.name, columns.field.name, quantity, 0, matrix, mirrored)
+                    yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, matrix, mirrored)
 
     # Loads --------------------------------------------------------------------------------------------
 
@@ -387,7 +391,7 @@ class Offsets:
             if vector.any():
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
-    def _accelerated(self, motion: Motion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
+    def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
         """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.
 
         The axial force acts at the centre of tension; what it does there stands apart.

@@ -74,7 +74,7 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
     _check_positions(scene, data)
-    rows = [_Row.of(scene, data, k) for k in range(len(data.speeds))]
+    rows = [_MeasuredRow.of(scene, data, k) for k in range(len(data.speeds))]
     at, column = np.nonzero(np.isfinite(data.frequency))
     joined = (np.concatenate([getattr(row, name) for row in rows]) for name in _PARTS)
     warnings = dict.fromkeys(str(said) for row in rows for said in row.modes.warnings)
@@ -112,7 +112,7 @@ _PARTS = "computed", "mode", "allowance", "error", "model_error", "likeness"
 
 
 @dataclass(frozen=True)
-class _Row:
+class _MeasuredRow:
     """The measured values at one speed beside the modes there; arrays are of those that are given."""
 
     data: MeasuredFrequencies
@@ -120,7 +120,7 @@ class _Row:
     modes: Modes
 
     @classmethod
-    def of(cls, scene: Scene, data: MeasuredFrequencies, row: int) -> _Row:
+    def of(cls, scene: Scene, data: MeasuredFrequencies, row: int) -> _MeasuredRow:
         count = data.frequency.shape[1] + _MORE_MODES
         with unannounced():
             return cls(data, row, natural_modes(scene, float(data.speeds[row]), count))

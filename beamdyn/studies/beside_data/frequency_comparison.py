@@ -18,7 +18,7 @@ from beamdyn.common.words import Setting, Words
 from beamdyn.modes.kinds import TORSION
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.beside_data.single_numbers import Explanation, say_value
+from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ class FrequencyComparison(Result):
         Modal assurance criterion of measured and computed shape; nan where no shapes were measured.
     unmeasured : tuple of str
         Modes of the scene between the measured ones that have no measured value.
-    explanations : tuple of Explanation
+    explanations : tuple of OneNumberFit
         Numbers of the scene of which one alone, changed, would come nearest to all the data; the best first.
     warnings : tuple of str
         Limits of the answer.
@@ -79,7 +79,7 @@ class FrequencyComparison(Result):
     model_error: np.ndarray
     likeness: np.ndarray
     unmeasured: tuple[str, ...]
-    explanations: tuple[Explanation, ...]
+    explanations: tuple[OneNumberFit, ...]
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)

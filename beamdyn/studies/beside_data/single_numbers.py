@@ -39,7 +39,7 @@ _SLACK = 1e-6  # by which a deviation may pass its bound
 
 
 @dataclass(frozen=True)
-class Explanation:
+class OneNumberFit:
     """A number of a scene that, changed alone, comes nearest to the data.
 
     Parameters
@@ -78,7 +78,7 @@ class Explanation:
         return percent(self.remaining) if self.remaining > _NOTHING else "nothing"
 
 
-def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[Explanation, ...]:
+def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[OneNumberFit, ...]:
     """Fit each number alone to all data; those that explain them first, and of them those that leave least.
 
     Parameters
@@ -131,7 +131,7 @@ def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
 
 def _explanation(
     scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
-) -> Explanation | None:
+) -> OneNumberFit | None:
     """Fit a number alone to all values; None where it hardly changes a frequency, or leaves its bounds."""
     weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
     fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
@@ -146,7 +146,7 @@ def _explanation(
     explains = bool((np.abs(residual) <= 1 + _SLACK).all()) and found.rank[0] == int(
         np.isnan(data.frequency).sum()
     )
-    return Explanation(free.path, free.unit, free.given, free.value(x), float(off.max()), explains)
+    return OneNumberFit(free.path, free.unit, free.given, free.value(x), float(off.max()), explains)
 
 
 def say_value(value: float, unit: str) -> str:
