@@ -14,7 +14,7 @@ from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.pickling import FieldsOnly
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
-from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE
+from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
@@ -154,11 +154,9 @@ class Beam(FieldsOnly, OneLine):
         for name in OFFSETS:
             if (given := getattr(self, name)) is not None and (place := _first_place(given)) is not None:
                 value, where = float(given(np.array(place))), f" at x/L = {place:.3f}"
-                raise InvalidValue(name, value, bound, GIVE_OR_COMPUTE, "m", where=where, **said)
+                raise InvalidValue(name, value, bound, GIVE_IT, "m", where=where, **said)
         if self.tip is not None and self.tip.offset_across:
-            raise InvalidValue(
-                "tip.offset_across", self.tip.offset_across, bound, GIVE_OR_COMPUTE, "m", **said
-            )
+            raise InvalidValue("tip.offset_across", self.tip.offset_across, bound, GIVE_IT, "m", **said)
 
     @cached_property
     def has_offsets(self) -> bool:

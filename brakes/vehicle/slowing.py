@@ -61,7 +61,9 @@ class Approach:
     """
 
     speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
-    reaction_time: Annotated[Numbers, Described("s", "t1", "time before the brakes act", least=0)] = 0.0
+    reaction_time: Annotated[
+        Numbers, Described("s", "t1", "time before the brakes act, at constant speed", least=0)
+    ] = 0.0
     rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)] = 0.0
     brake_force: Annotated[
         Numbers | None,

@@ -28,7 +28,7 @@ import numpy as np
 
 from beamdyn.equations.discretization import CLAMPED, FIXED, RootConditions, Space, Spaces
 from beamdyn.equations.fields.field import FieldEquations, Load, Term
-from beamdyn.equations.fields.offsets import Motion, Offsets
+from beamdyn.equations.fields.offsets import Offsets, SectionMotion
 from beamdyn.equations.fields.transverse import TransverseField, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
@@ -90,9 +90,9 @@ def assemble_section_torsion(
         along = (
             []
             if stretched is None
-            else [Motion("stretch", stretched, spaces.functions(stretched).end(0), along=0)]
+            else [SectionMotion("stretch", stretched, spaces.functions(stretched).end(0), along=0)]
         )
-        turn = Motion(_NAME, conditions, space.end(0), rotation=2)
+        turn = SectionMotion(_NAME, conditions, space.end(0), rotation=2)
         trials = [Trial.of(partner, scene, spaces) for partner in partners]
         offsets = Offsets(scene, spaces, turn, trials, along)
         terms, loads = [*terms, *offsets.terms()], [*loads, *offsets.loads()]
