@@ -44,5 +44,11 @@ def field(page, label):
     return page.get_by_label(label, exact=True).locator("visible=true")
 
 
+def unfold(page, folded, path):
+    """Open the folded part of a form, "section" or "rest", that holds the field of an input."""
+    around = page.locator(f".{folded}", has=page.locator(f"[data-path='{path}']"))
+    around.locator("visible=true").first.locator(".q-item").first.click()
+
+
 def shown(page, text):
     return page.get_by_text(text).locator("visible=true").first

@@ -105,6 +105,7 @@ def test_slider_pulled_by_the_mouse_is_followed_and_stays(opened, screen):
     expect(shown(page, "Up to date.")).to_be_visible()
     before, radius = drawing(page), field(page, "mount.radius")
     slider = page.get_by_role("slider", name="radius, r [mm]").locator("visible=true")
+    slider.scroll_into_view_if_needed()
     x, y = middle(slider)
     page.mouse.move(x, y)
     page.mouse.down()

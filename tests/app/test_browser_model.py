@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.app.browsing import field, go, shown
+from tests.app.browsing import field, go, shown, unfold
 from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
@@ -42,6 +42,7 @@ def test_number_of_the_straight_beam_is_not_alone_and_automatic_physics_mends_it
         expect(shown(page, "left out at 100 rad/s: large deflection +9.1 %")).to_be_visible()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.set_viewport_size({"width": 1280, "height": 900})
+    unfold(page, "section", "physics.auto")
     choose(page, "auto", "true")
     expect(shown(page, "Computing.")).to_be_visible()
     go(page, "Steady response")  # it takes a click meanwhile

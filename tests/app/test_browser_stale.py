@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.app.browsing import field, go, shown
+from tests.app.browsing import field, go, shown, unfold
 from tests.app.serving import IN_BROWSER, NO_PLAYWRIGHT, PATIENCE
 
 sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
@@ -97,6 +97,7 @@ def test_refusal_is_seen_at_the_field_that_was_changed(opened, width):
 
 def test_a_hinge_turns_over_at_any_speed(opened):
     page = opened("beamdyn")
+    unfold(page, "rest", "mount.root_stiffness")
     field(page, "root stiffness, k").fill("0")
     expect(shown(page, "give the hinge a spring, or a beam that points outward")).to_be_visible()
     expect(page.locator(".headline:visible div", has_text="critical speed")).to_contain_text("0 rad/s")
