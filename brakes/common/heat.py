@@ -125,7 +125,7 @@ class Duty:
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
-            raise ValueError("friction_curve: give two rows or more of temperature and friction")
+            raise ValueError("friction_curve: give two or more rows of temperature and friction")
         if not np.all(np.diff(curve[:, 0]) > 0):
             raise ValueError("friction_curve: the temperatures must increase from row to row")
         bound = "it is below the first temperature of friction_curve, {limit}"

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.reproduce.blades import printed_by_bmodes
 from benchmarks.cases.blades import blade_scene, reference_blade
 from benchmarks.cases.reference.twisted_beam import Blade, constant, converged, solve
 from benchmarks.cases.reference.twisted_beam.cases import blade_of
@@ -145,11 +144,3 @@ def test_a_blade_without_its_twist() -> None:
     scene = blade_scene(row["name"], twisted=False)
     found = bd.natural_modes(scene, row["speed_rpm"] * math.pi / 30, 5, bd.Fem(100)).frequency
     np.testing.assert_allclose(found, numbers(row["frequency_without_twist"]), rtol=TABLES)
-
-
-def test_what_bmodes_prints_of_its_own_blade() -> None:
-    """Within 0.3 % in each mode, with all of its deck: tests/literature/test_bmodes.py traces the rest."""
-    found = [*printed_by_bmodes()]
-    apart = [c.ours / float(np.mean(c.published)) - 1 for c in found]
-    assert len(found) == 5
-    np.testing.assert_allclose(apart, 0.0, atol=3e-3)
