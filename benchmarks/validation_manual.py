@@ -41,7 +41,7 @@ _TESTS_OF_TABLES = {  # by the beginning of the source's name
 }
 _BLADES = "test_printed_tables.py::test_blades_of_wind_turbines"
 _SPIN_UP = "test_transient.py::test_spin_up_of_an_outward_beam"
-_BMODES = "test_two_planes.py::test_what_bmodes_prints_of_its_own_blade"
+_BMODES = "test_bmodes.py::test_what_reproduce_compares_is_traced_here"
 _CARNEGIE = "test_two_planes.py::test_carnegies_theory_and_experiment_are_of_the_same_blade"
 _MEASURED = "test_measured.py::test_a_measured_straight_beam"
 _TESTS_OF_LEE_YOO = {  # by the beginning of the section's title

@@ -14,16 +14,19 @@ says how far a statistic may be from the truth.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from inspect import signature
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count
 from beamdyn.common.spreading.tolerances import SpreadInput
+
+if TYPE_CHECKING:
+    from scipy.stats.qmc import QMCEngine
 
 BLOCKS = 16
 LEAST, MOST = 128, 2**17  # samples: below, blocks are too small to say how far off they are
@@ -138,12 +141,15 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
     """Points of a scrambled Sobol' sequence, shape (rows, columns), none of which is 0 or 1."""
     from scipy.stats import qmc  # it takes long to load
 
-    seed_name = "rng" if "rng" in signature(qmc.Sobol).parameters else "seed"  # before scipy 1.15
     if columns > qmc.Sobol.MAXDIM:
         raise InvalidValue("spread", columns // 2, f"at most {qmc.Sobol.MAXDIM // 2} inputs have a spread")
-    random: dict[str, Any] = {seed_name: np.random.default_rng(seed)}
-    points = qmc.Sobol(columns, **random).random(rows)
-    return np.clip(points, 2.0**-40, 1 - 2.0**-40)
+    return np.clip(seeded(qmc.Sobol, columns, seed).random(rows), 2.0**-40, 1 - 2.0**-40)
+
+
+def seeded(sequence: Callable[..., QMCEngine], columns: int, seed: np.random.SeedSequence | int) -> QMCEngine:
+    """Make a sequence of points of `scipy.stats.qmc`, whose seed had another name before scipy 1.15."""
+    name = "rng" if "rng" in signature(sequence).parameters else "seed"
+    return sequence(columns, **{name: np.random.default_rng(seed)})
 
 
 # Statistics of the answers ------------------------------------------------------------------------

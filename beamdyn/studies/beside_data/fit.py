@@ -18,6 +18,7 @@ from scipy.stats.qmc import LatinHypercube
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.announced import unannounced
+from beamdyn.common.spreading.statistics import seeded
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.kinds import kinds_of_modes
@@ -290,9 +291,8 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
     """Variables (p,) at which to begin, the nearest to the data first."""
     numbers = fitting.numbers
-    shares = LatinHypercube(len(numbers), rng=seed).random(
-        _TRIED * starts if len(numbers) > 1 else starts - 1
-    )
+    rows = _TRIED * starts if len(numbers) > 1 else starts - 1
+    shares = seeded(LatinHypercube, len(numbers), seed).random(rows)
     tried = [np.array([n.first for n in numbers])]
     tried += [
         np.array([n.place(share) for n, share in zip(numbers, each, strict=True)]) for each in shares.tolist()
