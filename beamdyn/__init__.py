@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from beamdyn.common.edge.config import ConfigError
     from beamdyn.common.inputs.designs import VariedInput
     from beamdyn.common.parallel.tasks import StudyInterrupted
-    from beamdyn.common.results.announced import OutsideLinearTheory
     from beamdyn.common.results.display_units import DisplayUnits
     from beamdyn.common.results.result import load
+    from beamdyn.common.results.statements import OutsideLinearTheory
     from beamdyn.common.spreading.first_order import FirstOrderRange
     from beamdyn.common.spreading.spread_result import Spread
     from beamdyn.common.spreading.statistics import Scatter, SobolIndices

@@ -26,7 +26,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers 
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 from benchmarks.cases.random_inputs import random_inputs_scene
 from benchmarks.cases.random_scenes import random_scene

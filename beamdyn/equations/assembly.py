@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg
 
-from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import BACKWARD, Equations, Shape, SteadyPencil, place_blocks
 from beamdyn.equations.fields import FIELDS

@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields.field import Deflection, Load, Term

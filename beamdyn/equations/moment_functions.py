@@ -31,8 +31,8 @@ from typing import TypeAlias
 import numpy as np
 from scipy.linalg.lapack import dgeqp3, dorgqr
 
-from beamdyn.common.legendre import legendre_series, legendre_values
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.numerics import legendre_series, legendre_values
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.discretization import RootConditions
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.piecewise_polynomials import PiecewisePolynomials

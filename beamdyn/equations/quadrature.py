@@ -9,8 +9,8 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.legendre import gauss_points_on, gauss_rule, gauss_weights_on, legendre_series
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.numerics import gauss_points_on, gauss_rule, gauss_weights_on, legendre_series
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.scene.profile import Profile
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
-from beamdyn.common.legendre import gauss_points_on, gauss_weights_on
+from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
 from beamdyn.equations.discretization import RootConditions
 from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.equations.quadrature import Cells, SampledSpace, product_of

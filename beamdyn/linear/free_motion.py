@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
 _MASSLESS = 16 * _EPS  # r^2 over the largest, that is 0 within rounding

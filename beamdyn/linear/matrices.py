@@ -12,10 +12,9 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, several
-from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import GROWING, Speeds, Statement
+from beamdyn.common.results.statements import GROWING, Speeds, Statement, announced_of_plain_beam
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces

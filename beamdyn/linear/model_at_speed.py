@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from beamdyn.accuracy.margins import LINEAR_MESHES
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.words import Setting, Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil

@@ -13,9 +13,9 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
-from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.inputs_outputs import (
     AccelerationAt,

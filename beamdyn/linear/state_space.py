@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import StateSpace, lti
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.announced import announce
+from beamdyn.common.results.statements import announce
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
 from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot, as_observation
 from beamdyn.linear.matrices import MOST_JUDGED, list_inputs, listed, steady_drive, warn_of_model

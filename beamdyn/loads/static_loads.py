@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import ascending, real, within
-from beamdyn.common.results.announced import announced
+from beamdyn.common.results.statements import announced
 from beamdyn.loads.load_rows import barred_of_loads, span_rows
 from beamdyn.loads.span_loads import (
     SPEEDS,

@@ -16,10 +16,9 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import count, real
-from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import listed, spanned, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement
+from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement, announced_of_plain_beam
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.flexibility import bound_flexibility
 from beamdyn.modes.modal.discretization_choice import choose_model

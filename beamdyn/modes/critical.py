@@ -13,10 +13,18 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import within
-from beamdyn.common.results.announced import announce
 from beamdyn.common.results.one_line import error_at_most
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import INPUT, NO_ANSWER, OUTSIDE, TOLERANCE, Speeds, Statement, kind_of
+from beamdyn.common.results.statements import (
+    INPUT,
+    NO_ANSWER,
+    OUTSIDE,
+    TOLERANCE,
+    Speeds,
+    Statement,
+    announce,
+    kind_of,
+)
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.ritz import Ritz

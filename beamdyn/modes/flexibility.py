@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.legendre import gauss_rule, legendre_series
+from beamdyn.common.numerics import gauss_rule, legendre_series
 from beamdyn.equations.mass import axial_tension, outboard_moments
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import Profile

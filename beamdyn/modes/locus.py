@@ -13,10 +13,10 @@ import numpy as np
 from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
-from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.common.results.statements import announced
 from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model, plane_share, static_load

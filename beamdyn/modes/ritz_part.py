@@ -25,7 +25,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg import qr, solve_triangular
 
-from beamdyn.common.legendre import gauss_rule, legendre_series
+from beamdyn.common.numerics import gauss_rule, legendre_series
 from beamdyn.equations.discretization import CLAMPED
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.moment_functions import NODES, MomentSpaces, orthonormalize

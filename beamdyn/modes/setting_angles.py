@@ -13,10 +13,9 @@ from scipy.optimize import brentq
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, positive
-from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement
+from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement, announced_of_plain_beam
 from beamdyn.common.words import Named, Words
 from beamdyn.equations import effects
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, positive, refuse, set_fields, several, size
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE

@@ -17,14 +17,14 @@ import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
 from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, refuse
-from beamdyn.common.legendre import (
+from beamdyn.common.numerics import (
     gauss_points_on,
     integrate_series,
     legendre_series,
     legendre_values,
     multiply_series,
 )
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.words import Named, Words
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper

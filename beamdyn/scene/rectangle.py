@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
-from beamdyn.common.legendre import gauss_rule
+from beamdyn.common.numerics import gauss_rule
 from beamdyn.common.words import Words
 from beamdyn.scene.names_elsewhere import FROM_STIFFNESS
 from beamdyn.scene.profile import Profile, as_profile, combine

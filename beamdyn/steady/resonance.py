@@ -11,9 +11,16 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, positive
-from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import EXCITATION, GROWING, INPUT, NO_ANSWER, Speeds, Statement
+from beamdyn.common.results.statements import (
+    EXCITATION,
+    GROWING,
+    INPUT,
+    NO_ANSWER,
+    Speeds,
+    Statement,
+    announced,
+)
 from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     choose_model,

@@ -14,11 +14,10 @@ from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import ascending, count, positive
 from beamdyn.common.plots.plots import plot_response
-from beamdyn.common.results.announced import announced
 from beamdyn.common.results.one_line import error_at_most, states, warned
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
-from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement
+from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement, announced
 from beamdyn.equations.effects import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis

@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.inputs.designs import rows_of
-from beamdyn.common.results.announced import unannounced
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.statements import (
     NO_ANSWER,
     OUTSIDE,
@@ -23,6 +22,7 @@ from beamdyn.common.results.statements import (
     Words,
     joined,
     kind_of,
+    unannounced,
 )
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects

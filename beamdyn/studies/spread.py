@@ -13,8 +13,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, check_used, kind, one_of
 from beamdyn.common.parallel.tasks import Progress
-from beamdyn.common.results.announced import announced, unannounced
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.statements import announced, unannounced
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.first_order import KnownDerivatives
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread

@@ -29,8 +29,8 @@ from beamdyn.common.inputs.checks import (
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, rows_of
 from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.announced import announced
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import announced
 from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, check_discretization
 from beamdyn.scene.names_elsewhere import ROLLING_WHEEL

@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range

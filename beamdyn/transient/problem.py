@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size

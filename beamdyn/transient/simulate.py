@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, within
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.announced import announced
+from beamdyn.common.results.statements import announced
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range, given_basis
 from beamdyn.modes.model_error.effect_choice import bend_for_peak, choose_for_motion

@@ -31,11 +31,10 @@ from beamdyn.common.inputs.checks import (
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_sweep
-from beamdyn.common.results.announced import announced, unannounced
-from beamdyn.common.results.digits import supported
+from beamdyn.common.results.display_units import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement
+from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement, announced, unannounced
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, given_basis

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import beamdyn as bd
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 

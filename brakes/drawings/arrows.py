@@ -45,7 +45,7 @@ class ForceArrows:
         symbol : str
             Its symbol, such as "N_1".
         role : str
-            Role that gives its colour: a name in `beamdyn.common.drawing.style`.
+            Role that gives its colour: a name in `beamdyn.common.drawing.strokes`.
         ends_here : bool
             Whether the arrow ends at `at`, as for a force that pushes, and does not start there.
         """

@@ -20,7 +20,7 @@ from beamdyn.scene.physics import AUTO
 from tests.app.conftest import InThread
 from tests.app.serving import PATIENCE
 
-pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
+pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.statements.OutsideLinearTheory")
 AT_45 = {
     "beam.poissons_ratio": "0",
     "mount.setting_angle": "45 deg",

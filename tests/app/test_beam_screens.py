@@ -24,7 +24,7 @@ from beamdyn.common.screens.handles import draw_sheet
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.words import Setting, Words
 
-pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.announced.OutsideLinearTheory")
+pytestmark = pytest.mark.filterwarnings("ignore::beamdyn.common.results.statements.OutsideLinearTheory")
 SHORT = {"run.end": "2 s", "motion.rotation.duration": "1 s"}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.drawing.style import INKS
+from beamdyn.common.drawing.strokes import INKS
 from beamdyn.common.screens.chart_options import chart_colours, options_of, thinned
 
 X = ChartAxis("speed", "rad/s", low=0.0, high=10.0)

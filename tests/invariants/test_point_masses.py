@@ -23,7 +23,7 @@ NODES = 14  # Gauss points on a third of a part between masses
 
 # The beams are nondimensional, of no material.
 pytestmark = pytest.mark.filterwarnings(
-    "ignore:bending_stiffness:UserWarning", "ignore::beamdyn.common.results.announced.OutsideLinearTheory"
+    "ignore:bending_stiffness:UserWarning", "ignore::beamdyn.common.results.statements.OutsideLinearTheory"
 )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.scene.numbers import with_numbers
 from benchmarks.cases.reference.many_digits.differences import frequency_derivatives
 from benchmarks.cases.reference.of_scene import exact_critical_speed

@@ -5,7 +5,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from beamdyn.common.assignment import assign
+from beamdyn.common.numerics import assign
 
 
 @pytest.mark.parametrize("apart", [0.0, 2.0])

@@ -19,7 +19,7 @@ from beamdyn.common.drawing.layout import Fit, arrange, follow
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
 from beamdyn.common.drawing.sheet import Paper, lay_out
-from beamdyn.common.drawing.style import INKS
+from beamdyn.common.drawing.strokes import INKS
 from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped
 from beamdyn.common.edge.config import ConfigError

@@ -9,7 +9,7 @@ import beamdyn as bd
 from beamdyn.analyses.results.cautions import warnings_of
 from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.scene.validity import warn_of_elastic_limit
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 2e11, "density": 7850.0}

@@ -8,7 +8,7 @@ from beamdyn.app.program import BEAMDYN
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.sheet import lay_out
 from beamdyn.common.drawing.sketch import Sketch, sketch_paper, symbols_in
-from beamdyn.common.drawing.symbols import symbol_html, typeset
+from beamdyn.common.drawing.text_width import symbol_html, typeset
 from beamdyn.common.screens.form_entries import label, label_html, table_of
 from brakes.app.program import BRAKES
 from tests.unit.test_drawings import check_texts, kinds

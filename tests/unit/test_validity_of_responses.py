@@ -10,7 +10,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import main
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 2e-4, 2e11, 7850.0)
 OUTWARD = bd.Scene(STRIP, bd.Mount(0.215, np.pi), damping_ratio=0.02)

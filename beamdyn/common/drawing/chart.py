@@ -78,7 +78,7 @@ class ChartPoints:
     at : sequence of (x, y, words)
         Their coordinates, and the text of each at the pointer.
     role : str
-        Role that gives their colour: a name in `beamdyn.common.drawing.style`.
+        Role that gives their colour: a name in `beamdyn.common.drawing.strokes`.
     """
 
     name: str

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.style import ink
+from beamdyn.common.drawing.strokes import ink
 from beamdyn.common.results.pictures import COLOURS
 
 if TYPE_CHECKING:

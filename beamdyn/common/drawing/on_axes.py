@@ -10,8 +10,7 @@ from beamdyn.common.drawing import strokes
 from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, heading
 from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
-from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, letters_of, strokes_of
-from beamdyn.common.drawing.style import colour
+from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, colour, letters_of, strokes_of
 from beamdyn.common.drawing.text_width import LINE_HEIGHT
 from beamdyn.common.results.pictures import new_figure
 

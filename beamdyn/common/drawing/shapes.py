@@ -21,7 +21,7 @@ class Outline:
     points : ndarray, shape (k, 2)
         The points; the line has a gap where they are not numbers.
     role : str
-        Role that gives its colour: a name in `beamdyn.common.drawing.style`.
+        Role that gives its colour: a name in `beamdyn.common.drawing.strokes`.
     width : float
         Width of the line [pt]; 0 for none.
     dash : tuple of float

@@ -9,7 +9,7 @@ import numpy as np
 
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Paper, Rows
-from beamdyn.common.drawing.symbols import typeset
+from beamdyn.common.drawing.text_width import typeset
 
 Sketcher = Callable[[Mapping[str, str]], Rows]  # entries of a form in, drawings out
 

@@ -11,8 +11,18 @@ import numpy as np
 
 from beamdyn.common.drawing.layout import Fit, Layout
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
-from beamdyn.common.drawing.strokes import GROUND, HALO, Circle, Letters, Pen, Stroke, letters_of, strokes_of
-from beamdyn.common.drawing.style import INKS, colour
+from beamdyn.common.drawing.strokes import (
+    GROUND,
+    HALO,
+    INKS,
+    Circle,
+    Letters,
+    Pen,
+    Stroke,
+    colour,
+    letters_of,
+    strokes_of,
+)
 from beamdyn.common.drawing.text_width import FAMILY, SUBSCRIPT, line_width, symbol_width
 
 _DARK = "@media (prefers-color-scheme: dark)"

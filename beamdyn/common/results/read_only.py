@@ -1,4 +1,4 @@
-"""Objects whose arrays cannot be written."""
+"""Objects whose arrays cannot be written, and which are pickled by their fields."""
 
 from __future__ import annotations
 
@@ -6,6 +6,14 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+
+
+class FieldsOnly:
+    """Base of dataclasses that are pickled by their fields, without what they have computed and kept."""
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
+        return type(self), tuple(getattr(self, f.name) for f in fields)
 
 
 class ReadOnlyArrays:

@@ -12,9 +12,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.common.results.files import as_path, check_writable, write_text
-from beamdyn.common.results.plain import nullified, plain
 from beamdyn.common.results.read_only import make_read_only
-from beamdyn.common.results.snapshots import decode, encode
+from beamdyn.common.results.snapshots import decode, encode, nullified, plain
 
 # Records with a schema version and a checksum --------------------------------------------------------
 

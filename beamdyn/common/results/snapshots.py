@@ -1,4 +1,4 @@
-"""Objects made of data as JSON's types, and back, to the bit: how results are kept in files.
+"""Objects made of data as JSON's types, for reading, and for making them again to the bit.
 
 Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
 What is not (a function, an object of another package's class) is left out, and stands in the object that
@@ -18,6 +18,34 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.words import Words
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON's types, with complex numbers as pairs and numbers that are not finite kept."""
+    if isinstance(value, np.ndarray):
+        value = np.stack([value.real, value.imag], axis=-1) if np.iscomplexobj(value) else value
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if f.repr}
+    if isinstance(value, tuple | list):
+        return [plain(v) for v in value]
+    if isinstance(value, dict):
+        return {str(key): plain(v) for key, v in value.items()}
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    return value
+
+
+def nullified(value: Any) -> Any:
+    """Replace numbers that are not finite, which JSON does not have, by null."""
+    if isinstance(value, dict):
+        return {key: nullified(v) for key, v in value.items()}
+    if isinstance(value, list):
+        return [nullified(v) for v in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
 
 _ADDED = "added"
 ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack: its default is what they meant

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
-from beamdyn.common.drawing.style import INKS
+from beamdyn.common.drawing.strokes import INKS
 
 _DIGITS = 5  # digits of numbers on the page; those of places on an axis are over its length
 _MOST_DIGITS = 10  # digits of a curve that varies little

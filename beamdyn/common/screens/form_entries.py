@@ -12,7 +12,7 @@ from html import escape
 from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
-from beamdyn.common.drawing.symbols import symbol_html
+from beamdyn.common.drawing.text_width import symbol_html
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.file_words import say
 from beamdyn.common.edge.inputs import Input, Quantity, parts_of

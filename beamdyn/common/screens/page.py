@@ -22,8 +22,7 @@ from beamdyn.common.screens.computations import download
 from beamdyn.common.screens.dialogs import DesignsDialog, FileDialog, LinkDialog
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.form_entries import Entries
-from beamdyn.common.screens.header import Header
-from beamdyn.common.screens.look import BLUE, RED, STYLE, scripts_of
+from beamdyn.common.screens.header import BLUE, RED, STYLE, Header, scripts_of
 from beamdyn.common.screens.open_document import OpenDocument, OtherDesign
 from beamdyn.common.screens.page_tasks import outcome_of
 from beamdyn.common.screens.processes import RunsTasks

@@ -33,7 +33,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, integrate_curvature, turn, turn_back
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.common.legendre import gauss_rule
+from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.quadrature import Cells, integrals_between_points
 
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])

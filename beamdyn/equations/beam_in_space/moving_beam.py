@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
 

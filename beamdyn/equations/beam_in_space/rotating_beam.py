@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors

@@ -41,7 +41,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.legendre import gauss_rule
+from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import CLAMPED, RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Condition, Explanation

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
 
-from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
-from beamdyn.common.triangular import solve_lower, solve_lower_transposed
+from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS, forward_error, rounding_of_scene
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver, explained, rounding_of_factored
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest

@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.triangular import solve_lower
+from beamdyn.common.numerics import solve_lower
 from beamdyn.equations.equations_of_motion import BACKWARD
 from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,

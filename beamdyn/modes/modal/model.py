@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations

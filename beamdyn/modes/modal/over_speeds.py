@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from beamdyn.common.assignment import assign
+from beamdyn.common.numerics import assign
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 
 _FEW = 160  # speeds that are solved each

@@ -13,8 +13,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from beamdyn.common.assignment import assign
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.common.numerics import assign
 from beamdyn.common.words import Setting, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations

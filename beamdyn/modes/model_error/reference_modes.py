@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 from scipy.linalg.lapack import zgetrf, zgetrs
 
-from beamdyn.common.assignment import assign
+from beamdyn.common.numerics import assign
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil

@@ -11,10 +11,9 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, kind
-from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import Speeds
+from beamdyn.common.results.statements import Speeds, unannounced
 from beamdyn.common.words import Words
 from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies

@@ -17,7 +17,7 @@ from scipy.stats.qmc import LatinHypercube
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.common.spreading.statistics import seeded
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.discretization import Discretization

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beamdyn.common.assignment import assign
+from beamdyn.common.numerics import assign
 from beamdyn.modes.kinds import BENDING, TORSION
 
 _TOO_FAR = 1.5  # half ways from a mode to its neighbour; one mode may be off by more than its half way

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.points import TipMass
 from beamdyn.scene.profile import mean

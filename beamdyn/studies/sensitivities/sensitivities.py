@@ -15,8 +15,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
-from beamdyn.common.results.announced import unannounced
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import unannounced
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.critical import critical_point
