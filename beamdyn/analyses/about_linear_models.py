@@ -19,18 +19,12 @@ from beamdyn.common.edge.data_text import read_data
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.linear.inputs_outputs import (
-    AccelerationAt,
-    DeflectionAt,
-    PointForce,
-    as_excitation,
-    as_observation,
-)
+from beamdyn.linear import inputs_outputs
 from beamdyn.scene.motion import RollingWheel
 
 if TYPE_CHECKING:
+    from beamdyn.linear import inputs_outputs
     from beamdyn.linear.frequency_response import FrequencyResponse
-    from beamdyn.linear.inputs_outputs import Excitation, Observation
     from beamdyn.linear.matrices import Matrices
     from beamdyn.linear.random_response import RandomResponse
     from beamdyn.scene.scene import Scene
@@ -85,7 +79,7 @@ class RandomInput:
     input: Text | None = None
 
     @property
-    def drive(self) -> Excitation | None:
+    def drive(self) -> inputs_outputs.Excitation | None:
         """Where the input acts; None for what its density suggests."""
         return None if self.input is None else parse_input(self.input)
 
@@ -135,20 +129,20 @@ class RandomInput:
 NO_RANDOM_INPUT = RandomInput()
 
 
-def parse_input(text: str) -> Excitation:
+def parse_input(text: str) -> inputs_outputs.Excitation:
     """The excitation of ``--input``: a word, or a force at a position with its unit."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
-        return as_excitation("--input", text.strip())
-    return PointForce(_position("--input", match[2]), "across" if match[3] else "bending")
+        return inputs_outputs.as_excitation("--input", text.strip())
+    return inputs_outputs.PointForce(_position("--input", match[2]), "across" if match[3] else "bending")
 
 
-def parse_output(text: str) -> Observation:
+def parse_output(text: str) -> inputs_outputs.Observation:
     """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
-        return as_observation("--output", text.strip())
-    made = AccelerationAt if match[1] == "acceleration" else DeflectionAt
+        return inputs_outputs.as_observation("--output", text.strip())
+    made = inputs_outputs.AccelerationAt if match[1] == "acceleration" else inputs_outputs.DeflectionAt
     return made(_position("--output", match[2]), "across" if match[3] else "bending")
 
 

@@ -27,12 +27,7 @@ from beamdyn.analyses.options import (
     none_given,
     positive,
 )
-from beamdyn.analyses.results.of_loads import (
-    cycles_csv,
-    cycles_table,
-    equivalents_table,
-    transient_loads_table,
-)
+from beamdyn.analyses.results import of_loads
 from beamdyn.analyses.values import final_speed, parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.outputs import write_table
 from beamdyn.common.inputs import checks
@@ -110,8 +105,8 @@ class CycleOptions:
 
     def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
         """Counted cycles, and the equal cycles that do the same damage."""
-        made: list[RenderableType] = [cycles_table(cycles)]
-        return [*made, equivalents_table(equivalents)] if equivalents else made
+        made: list[RenderableType] = [of_loads.cycles_table(cycles)]
+        return [*made, of_loads.equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: LoadCycles) -> None:
         """Write the file that was asked for, if any."""
@@ -120,7 +115,7 @@ class CycleOptions:
         if self.cycles_file.suffix.lower() == ".json":
             write_text(self.cycles_file, cycles.to_json())
         else:
-            write_table(self.cycles_file, cycles_csv(cycles))
+            write_table(self.cycles_file, of_loads.cycles_csv(cycles))
 
 
 NOT_COUNTED = CycleOptions()
@@ -278,7 +273,7 @@ def _in_transient(
     if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
     result = bd.transient_loads(bd.simulate(scene, end, **basis), **where)
-    tables: list[RenderableType] = [transient_loads_table(result, span)]
+    tables: list[RenderableType] = [of_loads.transient_loads_table(result, span)]
     if counting.cycles is None:
         return result, tables
     ends = (None, None) if span is None else span

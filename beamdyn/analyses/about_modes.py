@@ -11,16 +11,8 @@ import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
+from beamdyn.analyses import options
 from beamdyn.analyses.analysis import WRITTEN, Answer, Physics, analysis
-from beamdyn.analyses.options import (
-    AtSpeed,
-    Discretization,
-    FrequencyTolerance,
-    ModeCount,
-    PositiveSpeed,
-    Speeds,
-    Text,
-)
 from beamdyn.analyses.results.cautions import critical_label, labels_of, warnings_of
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
 from beamdyn.common.plots.plots import mark_critical
@@ -45,7 +37,11 @@ _BENT = "The scene; large deflection is modelled in any case."
     'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"', about_scene=_BENT, physics=None
 )
 def equilibrium(
-    scene: Scene, *, speed: AtSpeed, branch: Text | None = None, discretization: Discretization = "ritz"
+    scene: Scene,
+    *,
+    speed: options.AtSpeed,
+    branch: options.Text | None = None,
+    discretization: options.Discretization = "ritz",
 ) -> Equilibrium:
     """Where the rotation bends the beam to, by any angle, and whether it stays there.
 
@@ -64,7 +60,7 @@ def equilibrium(
     physics=None,
 )
 def branches(
-    scene: Scene, *, top_speed: PositiveSpeed, discretization: Discretization = "ritz"
+    scene: Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
 ) -> EquilibriumBranches:
     """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
 
@@ -88,10 +84,10 @@ PlainPhysics = Annotated[Physics, Parameter(help=_PLAIN)]
 def modes(
     scene: Scene,
     *,
-    speed: AtSpeed,
-    modes: ModeCount = 3,
-    discretization: Discretization = "ritz",
-    tolerance: FrequencyTolerance = None,
+    speed: options.AtSpeed,
+    modes: options.ModeCount = 3,
+    discretization: options.Discretization = "ritz",
+    tolerance: options.FrequencyTolerance = None,
     shapes: Annotated[Path | None, WRITTEN] = None,
     outputs: Outputs = NO_FILES,
 ) -> Answer:
@@ -112,10 +108,10 @@ def modes(
 def locus(
     scene: Scene,
     *,
-    speeds: Speeds,
-    modes: ModeCount = 3,
-    discretization: Discretization = "ritz",
-    tolerance: FrequencyTolerance = None,
+    speeds: options.Speeds,
+    modes: options.ModeCount = 3,
+    discretization: options.Discretization = "ritz",
+    tolerance: options.FrequencyTolerance = None,
 ) -> Answer:
     """Natural frequencies over speed; each mode is tracked through crossings.
 
@@ -133,7 +129,7 @@ def locus(
 
 @analysis("beamdyn critical examples/tyre_harvester.toml")
 def critical(
-    scene: Scene, *, discretization: Discretization = "ritz", outputs: AnswerFiles = NO_ANSWER_FILES
+    scene: Scene, *, discretization: options.Discretization = "ritz", outputs: AnswerFiles = NO_ANSWER_FILES
 ) -> Answer:
     """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed."""
     result = bd.critical_point(scene, discretization)
@@ -150,8 +146,8 @@ def critical(
 def limits(
     scene: Scene,
     *,
-    top_speed: PositiveSpeed,
-    discretization: Discretization = "ritz",
+    top_speed: options.PositiveSpeed,
+    discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
     """Setting angles that separate a first frequency that falls with speed from one that rises.

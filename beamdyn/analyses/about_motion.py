@@ -11,17 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.analyses import options
 from beamdyn.analyses.analysis import WRITTEN, Answer, AsText, analysis
-from beamdyn.analyses.options import (
-    Discretization,
-    EndOfRun,
-    ModeCount,
-    Order,
-    SmallestBasis,
-    Speeds,
-    Text,
-    TimeTolerance,
-)
 from beamdyn.analyses.results.cautions import notes_of
 from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.analyses.values import at_most, parse_positive, parse_window
@@ -54,9 +45,9 @@ def resonances(
     scene: Scene,
     *,
     top_speed: TopOfSearch,
-    modes: ModeCount = 3,
-    order: Order = 1,
-    discretization: Discretization = "ritz",
+    modes: options.ModeCount = 3,
+    order: options.Order = 1,
+    discretization: options.Discretization = "ritz",
 ) -> Crossings:
     """Speeds of resonance, at which a frequency that the scene excites meets a natural frequency.
 
@@ -74,10 +65,10 @@ def resonances(
 def steady(
     scene: Scene,
     *,
-    speeds: Speeds,
-    modes: SmallestBasis = "auto",
+    speeds: options.Speeds,
+    modes: options.SmallestBasis = "auto",
     tolerance: float = 1e-5,
-    discretization: Discretization = "ritz",
+    discretization: options.Discretization = "ritz",
 ) -> Answer:
     """Steady response over speed, after the transient of the start has decayed.
 
@@ -110,12 +101,12 @@ Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(
 def simulate(
     scene: Scene,
     *,
-    t_end: EndOfRun,
-    modes: SmallestBasis = "auto",
-    tolerance: TimeTolerance = 1e-5,
+    t_end: options.EndOfRun,
+    modes: options.SmallestBasis = "auto",
+    tolerance: options.TimeTolerance = 1e-5,
     method: Method = "auto",
-    discretization: Discretization = "ritz",
-    window: Text | None = None,
+    discretization: options.Discretization = "ritz",
+    window: options.Text | None = None,
     series: Annotated[Path | None, WRITTEN] = None,
     animation: Annotated[Path | None, WRITTEN] = None,
     outputs: Outputs = NO_FILES,
@@ -149,10 +140,10 @@ def simulate(
 def sweep(
     scene: Scene,
     *,
-    speeds: Speeds,
+    speeds: options.Speeds,
     window: Window,
-    modes: SmallestBasis = "auto",
-    tolerance: TimeTolerance = 1e-5,
+    modes: options.SmallestBasis = "auto",
+    tolerance: options.TimeTolerance = 1e-5,
     workers: Annotated[int, at_most(128)] = 1,
     scheduler: str | None = None,
     store: Folder = None,

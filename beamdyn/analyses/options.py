@@ -6,16 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from beamdyn.analyses import values
 from beamdyn.analyses.analysis import AsText
-from beamdyn.analyses.values import (
-    at_most,
-    final_speed,
-    parse_points,
-    parse_positions,
-    parse_positive,
-    parse_speed,
-    parse_speeds,
-)
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -29,7 +21,7 @@ def none_given(_: Scene) -> None:
 
 def positive(unit: str, **more: Any) -> AsText:
     """A number above zero with its unit."""
-    return AsText(lambda option, text, _: parse_positive(option, text, unit), **more)
+    return AsText(lambda option, text, _: values.parse_positive(option, text, unit), **more)
 
 
 # Speeds and times -----------------------------------------------------------------------------------
@@ -38,12 +30,16 @@ _AT_SPEED = (
     'Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene\'s motion'
 )
 AtSpeed = Annotated[
-    float, AsText(parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}, or 0 without one.")
+    float,
+    AsText(values.parse_speed, absent=values.final_speed),
+    Parameter(help=f"{_AT_SPEED}, or 0 without one."),
 ]
-AtFinalSpeed = Annotated[float, AsText(parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}.")]
-Speed = Annotated[float | None, AsText(parse_speed, absent=none_given)]
+AtFinalSpeed = Annotated[
+    float, AsText(values.parse_speed, absent=values.final_speed), Parameter(help=f"{_AT_SPEED}.")
+]
+Speed = Annotated[float | None, AsText(values.parse_speed, absent=none_given)]
 PositiveSpeed = Annotated[float, positive("rad/s")]
-Speeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene))]
+Speeds = Annotated[Any, AsText(lambda _, text, scene: values.parse_speeds(text, scene))]
 
 EndOfRun = Annotated[float, positive("s")]
 
@@ -56,16 +52,16 @@ Discretization = Annotated[
         help="ritz: assumed modes; fem: finite elements. They are independent, so that each checks the other."
     ),
 ]
-ModeCount = Annotated[int, at_most(100), Parameter(help="Number of modes, from the lowest.")]
-Count = Annotated[int, at_most(100)]
-CountOrAuto = Annotated[int | Literal["auto"], at_most(100)]
+ModeCount = Annotated[int, values.at_most(100), Parameter(help="Number of modes, from the lowest.")]
+Count = Annotated[int, values.at_most(100)]
+CountOrAuto = Annotated[int | Literal["auto"], values.at_most(100)]
 SmallestBasis = Annotated[
     CountOrAuto,
     Parameter(
         help="Size of the modal basis; auto: the smallest whose modal truncation error meets the tolerance."
     ),
 ]
-Order = Annotated[int, at_most(5)]
+Order = Annotated[int, values.at_most(5)]
 FrequencyTolerance = Annotated[
     float | None,
     Parameter(
@@ -82,7 +78,7 @@ TimeTolerance = Annotated[
 LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 Stations = Annotated[
     list[float] | None,
-    AsText(lambda option, text, _: parse_positions(option, text), absent=none_given),
+    AsText(lambda option, text, _: values.parse_positions(option, text), absent=none_given),
     Parameter(
         help='Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of '
         "jumps."
@@ -90,7 +86,7 @@ Stations = Annotated[
 ]
 SectionPoints = Annotated[
     list[list[float]] | None,
-    AsText(lambda option, text, _: parse_points(option, text), absent=none_given),
+    AsText(lambda option, text, _: values.parse_points(option, text), absent=none_given),
     Parameter(
         help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, '
         "in which the beam bends, and along the second. Default: the outermost."

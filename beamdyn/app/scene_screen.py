@@ -30,12 +30,7 @@ from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import joined
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import FoldedPart, Screen
-from beamdyn.modes.model_error.left_out_effects import (
-    LeftOutEffects,
-    StatesModelError,
-    say_change,
-    spans_by_kind,
-)
+from beamdyn.modes.model_error import left_out_effects
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,7 +71,7 @@ def scene_screen(
     def shown(answer: Any) -> Sequence[RenderableType]:
         found = result(answer)
         tables = tables_with_choice(found)
-        if left_out_of and isinstance(found, StatesModelError):
+        if left_out_of and isinstance(found, left_out_effects.StatesModelError):
             tables.append(left_out_table(found.left_out_effects, left_out_of))
         return tables
 
@@ -113,7 +108,7 @@ def brief(value: float, unit: ShownUnit) -> str:
 # What the physics leaves out --------------------------------------------------------------------------
 
 
-def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
+def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> RenderableType:
     """Table of the effects that a model leaves out, the largest first, with a bar for each.
 
     Parameters
@@ -131,13 +126,13 @@ def left_out_table(effects: LeftOutEffects, of: str) -> RenderableType:
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
         how = joined("; ", filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))
-        rows.append((name, say_change(sizes[name]), bar(sizes[name]), in_files(how)))
+        rows.append((name, left_out_effects.say_change(sizes[name]), bar(sizes[name]), in_files(how)))
     unknown = ((name, why) for name, why in effects.not_known.items() if name not in sizes)
     rows += [(name, "not known", "", in_files(why)) for name, why in unknown]
     of_kind = {mode.kind: mode.effect for mode in effects.unlisted}
     rows += [
         (f"modes: {kind}", span, "", in_files(effects.reasons.get(of_kind[kind], "")))
-        for kind, span in spans_by_kind(effects.unlisted).items()
+        for kind, span in left_out_effects.spans_by_kind(effects.unlisted).items()
     ]
     rows += [
         (name, "not modelled", "", in_files(effects.reasons.get(name, ""))) for name in effects.not_modelled

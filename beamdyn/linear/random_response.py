@@ -16,6 +16,7 @@ from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
+from beamdyn.linear import spectra
 from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.inputs_outputs import (
     AccelerationAt,
@@ -33,16 +34,6 @@ from beamdyn.linear.mean_square import (
     partial_fractions,
 )
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.linear.spectra import (
-    PowerSpectrum,
-    RoadRoughness,
-    about_resonances,
-    frequencies_of_response,
-    highest_frequency,
-    one_of_each,
-    random_input,
-    warn_of_band,
-)
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
@@ -144,7 +135,7 @@ class RandomResponse(JudgedByRepeating):
 def random_response(
     scene: Scene,
     speed: float,
-    psd: PowerSpectrum | RoadRoughness | float,
+    psd: spectra.PowerSpectrum | spectra.RoadRoughness | float,
     input: Excitation | str | None = None,
     output: Observation | str = "tip",
     frequencies: Sequence[float] | np.ndarray | None = None,
@@ -209,12 +200,12 @@ def random_response(
     start = perf_counter()
     seen = as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
-    drive, spectrum = random_input(scene, speed, psd, input)
+    drive, spectrum = spectra.random_input(scene, speed, psd, input)
     check_damped(scene)
-    if not isinstance(spectrum, PowerSpectrum) and type(seen) is not DeflectionAt:
+    if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) is not DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
-    top, loaded = highest_frequency(spectrum), with_forces(scene, [drive])
+    top, loaded = spectra.highest_frequency(spectrum), with_forces(scene, [drive])
     refined = evaluate_accurately(
         loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
         lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
@@ -235,7 +226,7 @@ def random_response(
         frequencies=f,
         psd=of_psd.value,
         psd_error=of_psd.error,
-        input_rms=spectrum.rms if isinstance(spectrum, PowerSpectrum) else math.inf,
+        input_rms=spectrum.rms if isinstance(spectrum, spectra.PowerSpectrum) else math.inf,
         parametric=parametric,
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
@@ -243,7 +234,7 @@ def random_response(
         warnings=(
             *_warnings(scene, seen, rms, parametric),
             *warn_of_rotation(model.model, speed),
-            *warn_of_band(spectrum, drive, model),
+            *spectra.warn_of_band(spectrum, drive, model),
         ),
         provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
         scene=scene,
@@ -253,21 +244,23 @@ def random_response(
 # The response -------------------------------------------------------------------------------------
 
 
-def _frequencies(spectrum: PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation) -> np.ndarray:
+def _frequencies(
+    spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation
+) -> np.ndarray:
     """Frequencies of the response [Hz], such that straight lines between its densities have their area.
 
     Those to white noise end at ten times the lowest resonance.
     """
     poles = damped_motion(model).poles
-    if isinstance(spectrum, PowerSpectrum):
+    if isinstance(spectrum, spectra.PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
-        return frequencies_of_response(spectrum, poles, shifts)
+        return spectra.frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # without resonances all are overdamped
     top = 10 * float(lowest.min())
-    bottom, about = top / 10**_DECADES, about_resonances(poles)
+    bottom, about = top / 10**_DECADES, spectra.about_resonances(poles)
     between = about[(about > bottom) & (about < top)]
-    return one_of_each(np.concatenate([np.geomspace(bottom, top, _POINTS), between]))
+    return spectra.one_of_each(np.concatenate([np.geomspace(bottom, top, _POINTS), between]))
 
 
 def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
@@ -276,23 +269,26 @@ def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[i
 
 
 def _mean_square(
-    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float
+    transfers: dict[int, PartialFractions], spectrum: spectra.PowerSpectrum | float, speed: float
 ) -> float:
     """Mean square over time and a turn: the sum of those of the harmonics, which are apart in frequency."""
-    if isinstance(spectrum, PowerSpectrum):
+    if isinstance(spectrum, spectra.PowerSpectrum):
         return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
     return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
 
 
 def _density(
-    transfers: dict[int, PartialFractions], spectrum: PowerSpectrum | float, speed: float, f: np.ndarray
+    transfers: dict[int, PartialFractions],
+    spectrum: spectra.PowerSpectrum | float,
+    speed: float,
+    f: np.ndarray,
 ) -> np.ndarray:
     """One-sided density of the response at f [Hz]: the input at f - h n, of either sign, gives that at f."""
     total = np.zeros(len(f))
     for h, H in transfers.items():
         size = np.abs(H(2j * np.pi * f)) ** 2
         there = np.abs(f - h * speed / _TURN)
-        total += size * (spectrum.at(there) if isinstance(spectrum, PowerSpectrum) else spectrum)
+        total += size * (spectrum.at(there) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum)
     return total
 
 

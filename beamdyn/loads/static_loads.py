@@ -12,14 +12,8 @@ from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import ascending, real, within
 from beamdyn.common.results.statements import announced
+from beamdyn.loads import span_loads
 from beamdyn.loads.load_rows import barred_of_loads, span_rows
-from beamdyn.loads.span_loads import (
-    SPEEDS,
-    AskedLoads,
-    LoadCase,
-    SpanLoads,
-    refuse_large_deflection,
-)
 from beamdyn.loads.stations import Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
@@ -47,7 +41,7 @@ _ROUNDING = 1e-12  # relative to the largest along the span
 
 
 @dataclass(frozen=True)
-class StaticLoads(SpanLoads):
+class StaticLoads(span_loads.SpanLoads):
     """Loads along the span in equilibrium at C steady speeds.
 
     The fields are those of `SpanLoads` and, besides:
@@ -73,7 +67,7 @@ class StaticLoads(SpanLoads):
     angle: float
     tip: np.ndarray
 
-    case: ClassVar[LoadCase] = SPEEDS
+    case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
         """Values with large deflection, by the deflection of the tip of the straight beam."""
@@ -144,13 +138,13 @@ def static_loads(
     (0.471, 0.471)
     """
     check_scene(scene)
-    refuse_large_deflection(scene)
+    span_loads.refuse_large_deflection(scene)
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     scene = choose_physics(scene, speeds, _MODES, tolerance, barred_of_loads(scene))
-    asked = AskedLoads.of(scene, at, points, youngs_modulus)
+    asked = span_loads.AskedLoads.of(scene, at, points, youngs_modulus)
 
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
@@ -203,7 +197,7 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
 
 
 def _solve(
-    model: Model, asked: AskedLoads, speeds: np.ndarray, theta: float
+    model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Outputs (C, S, K) in equilibrium at each speed, and the deflection of the tip (C, d)."""
     equations = model.equations

@@ -10,15 +10,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.loads import span_loads
 from beamdyn.loads.load_rows import LoadRows, span_rows
-from beamdyn.loads.span_loads import (
-    SPEEDS,
-    AskedLoads,
-    LoadCase,
-    SpanLoads,
-    refuse_large_deflection,
-    with_unit,
-)
 from beamdyn.loads.stations import (
     UNITS,
     Positions,
@@ -30,16 +23,9 @@ from beamdyn.loads.stations import (
 )
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.motion import Line
+from beamdyn.steady import periodic_system
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import (
-    Pair,
-    check_steady_state,
-    expand_quantities,
-    generate_harmonics,
-    list_harmonics,
-    name_line,
-)
 from beamdyn.steady.response import SteadyResponse
 from beamdyn.steady.vibration import combine_pairs, vibration_of
 
@@ -51,7 +37,7 @@ _NEGLIGIBLE = 1e-12  # size of a line of the tip, over the sum of all, below whi
 
 
 @dataclass(frozen=True)
-class SteadyLoads(SpanLoads):
+class SteadyLoads(span_loads.SpanLoads):
     """Loads along the span in steady response at C speeds: largest magnitudes over both phases.
 
     The fields are those of `SpanLoads` and, besides, the following; values are nan where there is no steady
@@ -82,7 +68,7 @@ class SteadyLoads(SpanLoads):
     response: SteadyResponse = field(repr=False)
     outputs: StationOutputs = field(repr=False)
 
-    case: ClassVar[LoadCase] = SPEEDS
+    case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
         """Complex amplitude a of each line of a quantity: shape (C, S, k, l).
@@ -111,7 +97,7 @@ class SteadyLoads(SpanLoads):
         def largest(name: str) -> np.ndarray:
             return np.nanmax(self.values(name), axis=0, keepdims=True)
 
-        return self.draw(ax, quantity, largest, f"largest {with_unit(quantity)}, of all speeds")
+        return self.draw(ax, quantity, largest, f"largest {span_loads.with_unit(quantity)}, of all speeds")
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
@@ -161,8 +147,8 @@ def steady_loads(
     """
     kind("response", response, SteadyResponse, "steady_response makes one")
     scene, refined = response.scene, response.refined
-    refuse_large_deflection(scene)
-    asked = AskedLoads.of(scene, at, points, youngs_modulus)
+    span_loads.refuse_large_deflection(scene)
+    asked = span_loads.AskedLoads.of(scene, at, points, youngs_modulus)
     lines = lines_of_response(response, asked.stations, asked.outputs)
     error = np.full(lines.largest.shape, np.inf)
     if refined is not None:
@@ -171,13 +157,13 @@ def steady_loads(
         along_span = np.abs(rough.amplitude).sum(axis=-1).max(axis=1)
         where = asked.stations, asked.outputs, response.request.basis, scene.beam.length
         error = mode_error(rough.distance_from(fine), along_span, *where) + lines.of_harmonics
-    motion, method = check_steady_state(scene.motion), response.provenance.method
+    motion, method = periodic_system.check_steady_state(scene.motion), response.provenance.method
     compared_with = "" if refined is None else refined.provenance.method
     return SteadyLoads(
         **asked.result(lines.largest, error, response.warnings, method, compared_with),
         speeds=response.speeds,
         harmonics=lines.harmonics,
-        lines=tuple(name_line(motion, (int(j), int(k))) for j, k in lines.harmonics),
+        lines=tuple(periodic_system.name_line(motion, (int(j), int(k))) for j, k in lines.harmonics),
         response=response,
         outputs=asked.outputs,
     )
@@ -249,26 +235,30 @@ def lines_of_response(
     LoadLines
     """
     request, speeds = response.request, response.speeds
-    model, motion = request.model, check_steady_state(request.scene.motion)
+    model, motion = request.model, periodic_system.check_steady_state(request.scene.motion)
     equations = model.modal_equations(request.basis)
     rows = span_rows(model.scene, model.discretization, equations, stations).in_motion(equations)
     rows = rows if outputs is None else rows.through(outputs.matrix)
     pairs, q, truncated = _solve(response, equations)
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
-    spectra = expand_quantities(equations, used, motion, speeds)
+    spectra = periodic_system.expand_quantities(equations, used, motion, speeds)
     reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root, then those of their products
     for quantity in rows.load:
-        reached |= list_harmonics(spectra[quantity])
+        reached |= periodic_system.list_harmonics(spectra[quantity])
     for quantity in (*rows.position, *rows.velocity):
-        reached |= {(a + j, b + k) for a, b in list_harmonics(spectra[quantity]) for j, k in pairs}
+        reached |= {
+            (a + j, b + k) for a, b in periodic_system.list_harmonics(spectra[quantity]) for j, k in pairs
+        }
     union = sorted(reached)
     fine, rough = (_expand(rows, spectra, union, pairs, rates, each) for each in (q, truncated))
     fine[~response.stable] = np.nan
     return LoadLines(*combine_pairs(fine, union, motion), np.abs(fine - rough).sum(axis=-1))
 
 
-def _solve(response: SteadyResponse, equations: Equations) -> tuple[list[Pair], np.ndarray, np.ndarray]:
+def _solve(
+    response: SteadyResponse, equations: Equations
+) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
     """Solve for the coordinates with the harmonics of one interaction more than in the response.
 
     Lines of the tip within rounding error at all speeds are left out.
@@ -285,7 +275,7 @@ def _solve(response: SteadyResponse, equations: Equations) -> tuple[list[Pair], 
     matter = (np.nan_to_num(size) > _NEGLIGIBLE * np.nan_to_num(response.bound)[:, None]).any(axis=0)
     both = ((sign * int(j), sign * int(k)) for j, k in response.harmonics[matter] for sign in (1, -1))
     coupling = set().union(*(system.coupling for system, _ in vibration.parts))
-    levels = generate_harmonics(dict.fromkeys(both), coupling, 1)
+    levels = periodic_system.generate_harmonics(dict.fromkeys(both), coupling, 1)
     pairs = [h for level in levels for h in level]
     fewer = pairs if len(levels) == 1 else [h for level in levels[:-1] for h in level]
     q = np.zeros((2, len(response.speeds), len(pairs), equations.size), dtype=complex)
@@ -300,8 +290,8 @@ def _solve(response: SteadyResponse, equations: Equations) -> tuple[list[Pair], 
 def _expand(
     rows: LoadRows,
     spectra: dict[str, np.ndarray],
-    union: list[Pair],
-    pairs: list[Pair],
+    union: list[periodic_system.Pair],
+    pairs: list[periodic_system.Pair],
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:

@@ -12,15 +12,8 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.plots.curves import plot_load_over_time
 from beamdyn.equations.effects import LARGE_DEFLECTION
+from beamdyn.loads import span_loads
 from beamdyn.loads.load_path import LoadPath
-from beamdyn.loads.span_loads import (
-    AskedLoads,
-    LargestLoad,
-    LoadCase,
-    SpanLoads,
-    refuse_large_deflection,
-    with_unit,
-)
 from beamdyn.loads.stations import UNITS, Positions, SectionPoints
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, nothing_known
@@ -72,7 +65,7 @@ class EquivalentRange:
 
 
 @dataclass(frozen=True)
-class TransientLoads(SpanLoads):
+class TransientLoads(span_loads.SpanLoads):
     """Loads along the span at C times of a transient.
 
     The fields are those of `SpanLoads` and, besides:
@@ -103,7 +96,7 @@ class TransientLoads(SpanLoads):
     path: LoadPath = field(repr=False)
     equivalent_ranges: tuple[EquivalentRange, ...] = ()
 
-    case: ClassVar[LoadCase] = LoadCase("time", "s", "t")
+    case: ClassVar[span_loads.LoadCase] = span_loads.LoadCase("time", "s", "t")
 
     @property
     def run(self) -> Transient:
@@ -169,7 +162,7 @@ class TransientLoads(SpanLoads):
         component: int | None = None,
         start: float | None = None,
         end: float | None = None,
-    ) -> LargestLoad:
+    ) -> span_loads.LargestLoad:
         """Find the largest magnitude of a quantity from `start` to `end` [s], also between the times.
 
         Parameters
@@ -203,7 +196,7 @@ class TransientLoads(SpanLoads):
             first, last = window_in(self.run, start, end)
             return self.values(name)[(self.t >= first) & (self.t <= last)]
 
-        return self.draw(ax, quantity, within, with_unit(quantity))
+        return self.draw(ax, quantity, within, span_loads.with_unit(quantity))
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
         """Draw a quantity over time at the station of an index, such as the root's bending moment."""
@@ -258,8 +251,8 @@ def transient_loads(
     array([0.   , 0.025])
     """
     kind("run", run, Transient, "simulate makes one")
-    refuse_large_deflection(run.scene)
-    asked = AskedLoads.of(run.scene, at, points, youngs_modulus)
+    span_loads.refuse_large_deflection(run.scene)
+    asked = span_loads.AskedLoads.of(run.scene, at, points, youngs_modulus)
     path = LoadPath(run, asked.stations, asked.outputs)
     times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)
     values, error = path.at(times), path.error

@@ -28,14 +28,9 @@ from beamdyn.common.results.statements import (
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.ritz import Ritz
+from beamdyn.modes import critical_search
 from beamdyn.modes.bounds import bound_critical_speed
 from beamdyn.modes.buckling import Buckling, decide_buckling
-from beamdyn.modes.critical_search import (
-    FoundSpeed,
-    compare_critical_speeds,
-    models_of_critical_speed,
-    search_critical_speed,
-)
 from beamdyn.modes.modal.discretization_choice import (
     DEFAULT_TARGET,
     PLATE_TARGET,
@@ -213,23 +208,23 @@ def critical_point(
     # Large deflection does not change when a straight beam buckles.
     scene = scene.straightened
     target = affordable_target(scene, discretization, target)
-    models = partial(models_of_critical_speed, target=target, cheapest=tolerance is not None)
+    models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
         buckling = replace(buckling, speed=None)  # sections so heavy that a long bend topples
     sought = buckling.exists is not False and buckling.speed is None  # by bending, within reach of the theory
     if buckling.speed == 0 or (not sought and not scene.physics.stretch):
         return _argued(scene, buckling, start)
-    found, reason = search_critical_speed(first, target), buckling.why
+    found, reason = critical_search.search_critical_speed(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
-        found = search_critical_speed(models(scene, "ritz"), target)
+        found = critical_search.search_critical_speed(models(scene, "ritz"), target)
     if (
         scene.physics.stretch
     ):  # the lower of the critical speeds: a basis that resolves it may not see bending's
         reason = "the rotation softens the stretch by more than the axial stiffness"
         if sought:
             without = replace(scene, physics=replace(scene.physics, stretch=False))
-            bending = search_critical_speed(models(without, discretization), target)
+            bending = critical_search.search_critical_speed(models(without, discretization), target)
             same = min(bending.error + found.error, UNRESOLVED)
             if np.isfinite(bending.speed) and bending.speed <= found.speed * (1 + same):
                 found, reason = bending, buckling.why
@@ -260,7 +255,7 @@ def _is_loaded_across(scene: Scene) -> bool:
 
 def _is_within_theory(model: Model) -> bool:
     """Whether a model resolves a critical speed, and nothing says that it stretches the beam by over 1 %."""
-    found = compare_critical_speeds(model)
+    found = critical_search.compare_critical_speeds(model)
     if np.isinf(found.error):
         return False
     _, strain = static_load(model, np.array([found.speed]))
@@ -278,7 +273,7 @@ def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
 
 def _warnings(
     scene: Scene,
-    found: FoundSpeed,
+    found: critical_search.FoundSpeed,
     buckling: Buckling,
     none_below: float,
     discretization: DiscretizationChoice,

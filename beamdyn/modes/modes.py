@@ -23,13 +23,7 @@ from beamdyn.common.words import Words
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
-from beamdyn.modes.modal.discretization_choice import (
-    PLATE_TARGET,
-    TOLERANCES,
-    DiscretizationChoice,
-    solve_to_tolerance,
-    warn_of_missed_tolerance,
-)
+from beamdyn.modes.modal import discretization_choice
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -231,7 +225,7 @@ def natural_modes(
     scene: Scene,
     speed: float = 0.0,
     modes: int = 3,
-    discretization: DiscretizationChoice = "ritz",
+    discretization: discretization_choice.DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Modes:
     """Compute the natural modes at a steady speed, about a fixed centre.
@@ -278,12 +272,14 @@ def natural_modes(
     check_scene(scene)
     speeds, modes = np.array([real("speed", speed, "rad/s")]), count("modes", modes)
     check_speeds(speeds, "speed")
-    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+    tolerance = (
+        None if tolerance is None else within("tolerance", tolerance, *discretization_choice.TOLERANCES)
+    )
     if scene.chooses_physics:
         from beamdyn.modes.model_error.effect_choice import choose_physics  # few calls need it
 
         scene = choose_physics(scene, speeds, modes, tolerance)
-    solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
+    solution = discretization_choice.solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     kinds = kinds_of_modes(equations, solution.eigen.vector)
     vectors = _with_signs(equations, solution.eigen.vector[0], None if kinds is None else kinds[0])
@@ -381,8 +377,8 @@ def warn_of_modes(
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
         yield from warn_of_straight(deflection, speeds, model)
     if tolerance is not None:
-        yield from warn_of_missed_tolerance(error.max(), tolerance)
-    elif error.max() > (PLATE_TARGET if scene.models_width else 1e-6):
+        yield from discretization_choice.warn_of_missed_tolerance(error.max(), tolerance)
+    elif error.max() > (discretization_choice.PLATE_TARGET if scene.models_width else 1e-6):
         said = f"estimated relative error reaches {error.max():.1g}: the model did not resolve every mode"
         quantity = "estimated relative error"
         yield Statement(said, kind=TOLERANCE, quantity=quantity, value=error.max(), limit=1e-6)

@@ -12,18 +12,7 @@ from matplotlib.figure import Figure
 import beamdyn as bd
 from beamdyn.common.plots.plots import mark_points, plot_loci_by_angle, plot_locus
 from beamdyn.common.results.pictures import COLOURS
-from beamdyn.reproduce.inward_beam import (
-    MM,
-    PAPER,
-    SPEED,
-    TOP,
-    WINDOW,
-    crossings,
-    inward_scene,
-    passage,
-    rolling_scene,
-    run,
-)
+from beamdyn.reproduce import inward_beam
 
 _OUTSIDE = "(left and middle: linear equations, outside their range)"
 
@@ -49,22 +38,24 @@ def _axes(title: str) -> Axes:
 
 def _fig_4() -> Axes:
     """Draw the first frequency over speed, with the values of ANSYS."""
-    ax, scene = _axes("Fig. 4: first natural frequency, setting angle 0"), inward_scene()
+    ax, scene = _axes("Fig. 4: first natural frequency, setting angle 0"), inward_beam.inward_scene()
     critical = bd.critical_point(scene).speed
     speeds = critical * np.sin(np.linspace(0, np.pi / 2 - 1e-3, 301))  # dense where the frequency falls to 0
     ax.set_xlim(-4, 204)
     plot_locus(speeds, bd.frequency_locus(scene, speeds, 1).frequency, ax, ["ours (Ritz)"], critical)
-    known, ansys = ([row[key]["value"] for row in PAPER["first_frequency"]] for key in ("speed", "ansys"))
+    known, ansys = (
+        [row[key]["value"] for row in inward_beam.PAPER["first_frequency"]] for key in ("speed", "ansys")
+    )
     mark_points(ax, known, ansys, "ANSYS, in the paper")
     return ax
 
 
 def _fig_5() -> Axes:
     """Draw the tip deflection over time."""
-    title = f"Fig. 5: tip deflection, spin-up to {SPEED:g} rad/s"
-    ax, (time, line) = run().plot(_axes(title)), passage()
+    title = f"Fig. 5: tip deflection, spin-up to {inward_beam.SPEED:g} rad/s"
+    ax, (time, line) = inward_beam.run().plot(_axes(title)), inward_beam.passage()
     ax.axvline(time, color="0.3", linestyle="--", linewidth=1, label=f"passage through {line:.2f} rad/s")
-    ax.axvspan(*WINDOW, color="0.93", zorder=0, label="window of Table 3")
+    ax.axvspan(*inward_beam.WINDOW, color="0.93", zorder=0, label="window of Table 3")
     ax.set_ylim(top=3.2)
     ax.legend(fontsize=10, loc="upper left")
     return ax
@@ -74,17 +65,17 @@ def _fig_6(result: bd.Sweep) -> Axes:
     """Draw the largest deflection over speed, with the steady amplitude."""
     ax = result.plot(_axes("Fig. 6: largest tip deflection over speed"))
     ax.lines[0].set_label("undamped transient, 20 to 30 s")
-    speeds = np.linspace(1, TOP, 1000)
-    steady = MM * bd.steady_response(rolling_scene(), speeds, 3).amplitude
+    speeds = np.linspace(1, inward_beam.TOP, 1000)
+    steady = inward_beam.MM * bd.steady_response(inward_beam.rolling_scene(), speeds, 3).amplitude
     ax.plot(speeds, steady, color=COLOURS[1], linewidth=1.2, label="steady amplitude")
-    ax.set_ylim(0, 1.1 * MM * float(result.peaks.max()))
+    ax.set_ylim(0, 1.1 * inward_beam.MM * float(result.peaks.max()))
     ax.legend(fontsize=10, loc="upper right")
     return ax
 
 
 def _fig_7() -> Axes:
     """Draw the first natural frequency and the two excited frequencies over speed."""
-    found = crossings()
+    found = inward_beam.crossings()
     ax = found.plot(_axes("Fig. 7: first natural frequency and excited frequencies"))
     for c in found:
         if c.kind == "forced":
@@ -95,9 +86,9 @@ def _fig_7() -> Axes:
 
 def _fig_8() -> Figure:
     """Draw the first frequency over speed on either side of the first setting-angle limit."""
-    angles, near = PAPER["figures"]["fig_8"]["setting_angle"], np.linspace(0, 17, 171)
-    figure, left, right = _three_panels(angles, TOP, "Fig. 8", "the first setting-angle limit")
-    _draw(left, angles, np.linspace(0, TOP, 301), "over speed")
+    angles, near = inward_beam.PAPER["figures"]["fig_8"]["setting_angle"], np.linspace(0, 17, 171)
+    figure, left, right = _three_panels(angles, inward_beam.TOP, "Fig. 8", "the first setting-angle limit")
+    _draw(left, angles, np.linspace(0, inward_beam.TOP, 301), "over speed")
     first = _first_frequencies(angles, near)
     plot_loci_by_angle(near, (first - first[:, :1]) * 1e6, angles, right)
     right.set(ylim=(-0.5, 0.5), ylabel="change from rest [µHz]")
@@ -107,7 +98,7 @@ def _fig_8() -> Figure:
 
 def _fig_9() -> Figure:
     """Draw the first frequency over speed on either side of the second setting-angle limit."""
-    angles = PAPER["figures"]["fig_9"]["setting_angle"]
+    angles = inward_beam.PAPER["figures"]["fig_9"]["setting_angle"]
     figure, left, right = _three_panels(angles, 400.0, "Fig. 9", "the paper's second limit")
     five = "five clamped-free modes: one turns, the other rises on"
     _draw(left, angles, np.linspace(0, 12000.0, 501), five, bd.Ritz(5, "eigenfunctions"))
@@ -140,7 +131,7 @@ def _first_frequencies(
     bends: bool = False,
 ) -> np.ndarray:
     """First frequency [Hz] at setting angles [deg] over speeds [rad/s]: shape (angles, speeds)."""
-    scenes = [inward_scene(angle, large_deflection=bends) for angle in angles]
+    scenes = [inward_beam.inward_scene(angle, large_deflection=bends) for angle in angles]
     tolerance = 1e-4 if bends else None
     loci = [bd.frequency_locus(scene, speeds, 1, discretization, tolerance) for scene in scenes]
     return np.array([locus.frequency[:, 0] for locus in loci])

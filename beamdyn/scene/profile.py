@@ -16,14 +16,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.polynomial import Polynomial, legendre
 
+from beamdyn.common import numerics
 from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, refuse
-from beamdyn.common.numerics import (
-    gauss_points_on,
-    integrate_series,
-    legendre_series,
-    legendre_values,
-    multiply_series,
-)
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.words import Named, Words
 
@@ -127,15 +121,15 @@ class Profile(FieldsOnly):
         ends = merge_breakpoints(np.concatenate([self.breakpoints, breakpoints]))
         if ends == self.breakpoints:
             return self
-        values = self(gauss_points_on(np.array(ends), self.degree + 1))
-        return _of_series(ends, legendre_series(values.shape[1]) @ values.T)
+        values = self(numerics.gauss_points_on(np.array(ends), self.degree + 1))
+        return _of_series(ends, numerics.legendre_series(values.shape[1]) @ values.T)
 
     def __mul__(self, other: Profile) -> Profile:
         """Multiply two properties pointwise."""
         if other is ONE:
             return self
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
-        return _of_series(a.breakpoints, multiply_series(a.series, b.series))
+        return _of_series(a.breakpoints, numerics.multiply_series(a.series, b.series))
 
     def __add__(self, other: Profile) -> Profile:
         """Add two properties pointwise."""
@@ -147,7 +141,7 @@ class Profile(FieldsOnly):
 
     def at_points(self, points: int) -> np.ndarray:
         """Values at Gauss points of each segment, shape (segments, points)."""
-        return (legendre_values(points, self.degree) @ self.series).T
+        return (numerics.legendre_values(points, self.degree) @ self.series).T
 
     def scaled(self, factor: float) -> Profile:
         """Multiply the property by a constant."""
@@ -155,7 +149,7 @@ class Profile(FieldsOnly):
 
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
-        inner = integrate_series(-np.diff(self._ends) / 2 * self.series)
+        inner = numerics.integrate_series(-np.diff(self._ends) / 2 * self.series)
         of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)  # values at the left ends
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
@@ -201,7 +195,7 @@ def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Pro
     parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
     for nodes in _FIT_NODES if any(part.degree for part in parts) else (1,):
         values = np.swapaxes(function(*(part.at_points(nodes) for part in parts)), 1, 2)
-        series = np.linalg.solve(legendre_values(nodes, nodes - 1), values)
+        series = np.linalg.solve(numerics.legendre_values(nodes, nodes - 1), values)
         largest = np.abs(series).max(axis=1, keepdims=True)
         unresolved = np.flatnonzero(
             (np.abs(series[:, 1:][:, -3:]) > _FIT_TOLERANCE * largest).any(axis=(0, 1))

@@ -11,16 +11,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, positive
+from beamdyn.common.results import statements
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import (
-    EXCITATION,
-    GROWING,
-    INPUT,
-    NO_ANSWER,
-    Speeds,
-    Statement,
-    announced,
-)
 from beamdyn.modes.modal.discretization_choice import (
     DiscretizationChoice,
     choose_model,
@@ -47,7 +39,7 @@ _BENT_NODES = 100  # the same with large deflection: each takes an equilibrium, 
 _FURTHER_MODES = 2  # modes of other parts that may come below those that are sought
 
 
-@announced
+@statements.announced
 def resonance_speeds(
     scene: Scene,
     top_speed: float,
@@ -208,23 +200,27 @@ def _warnings(
     order: int,
     top: float,
     critical: float,
-) -> Iterator[Statement]:
+) -> Iterator[statements.Statement]:
     """Yield what limits the search, why it finds nothing, and whether rotation bends the beam too far."""
     scene = model.scene
     if discretization == "fem" and model.discretization.order is None:
         said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
-        yield Statement(said, kind=INPUT, quantity="discretization")
+        yield statements.Statement(said, kind=statements.INPUT, quantity="discretization")
     yield from warn_of_left_out(scene)
     if top >= critical:
-        yield Statement("searched up to the critical speed, ", Speeds(critical), kind=GROWING)
+        yield statements.Statement(
+            "searched up to the critical speed, ", statements.Speeds(critical), kind=statements.GROWING
+        )
     names = ", ".join(dict.fromkeys(line.name for kind in lines for line in kind))
     if not names:
         motion = "has no motion" if scene.motion is None else f"has a {type(scene.motion).__name__}"
         said = f"nothing varies in time at steady speed: the scene {motion} and gravity = {scene.gravity:g}; "
-        yield Statement(said, WITH_WHEEL, kind=EXCITATION, remedy=WITH_WHEEL)
+        yield statements.Statement(said, WITH_WHEEL, kind=statements.EXCITATION, remedy=WITH_WHEEL)
     elif not crossings:
         begin, end = f"no mode meets a line of order {order} up to ", f"; lines: {names}"
-        yield Statement(begin, Speeds(min(top, critical)), end, kind=NO_ANSWER)
+        yield statements.Statement(
+            begin, statements.Speeds(min(top, critical)), end, kind=statements.NO_ANSWER
+        )
     if crossings and not scene.physics.large_deflection:
         speeds = np.array(sorted(c.speed for c in crossings))
         deflection = np.linalg.norm(model.static_tips(speeds), axis=1)

@@ -26,16 +26,9 @@ from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_p
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.repeated import repeatable
+from beamdyn.scene import validity
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import (
-    LARGE_DEFLECTION,
-    check_speeds,
-    list_speeds,
-    warn_of_deflection,
-    warn_of_left_out,
-    warn_of_road,
-)
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import check_steady_state, name_line
 from beamdyn.steady.vibration import (
@@ -296,7 +289,7 @@ def steady_response(
     """
     check_scene(scene)
     speeds = ascending("speeds", speeds)
-    check_speeds(speeds)
+    validity.check_speeds(speeds)
     basis = given_basis(modes)
     interactions = None if harmonics is None else count("harmonics", harmonics, least=0, most=_MOST_HARMONICS)
     tolerance = positive("tolerance", tolerance)
@@ -411,39 +404,43 @@ def _warnings(
 ) -> Iterator[Statement]:
     """Yield what limits the response, by speeds (S,)."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
-    yield from warn_of_left_out(scene)
+    yield from validity.warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
     for name in (UNSTABLE, *WITHOUT_STABLE_MEAN):
         if (at := status == name).any():
-            where = list_speeds(speeds, at)
+            where = validity.list_speeds(speeds, at)
             yield Statement(f"{name} at {at.sum()} speed(s), ", where, ": no steady response", kind=GROWING)
     if (at := vibration == 0).any():
         remedy = "that takes gravity, or a wavy road and a speed other than 0"
         said = (
             "nothing excites the beam at ",
-            list_speeds(speeds, at),
+            validity.list_speeds(speeds, at),
             f", so that it does not move: {remedy}",
         )
         yield Statement(*said, kind=EXCITATION, remedy=remedy)
     if not scene.physics.large_deflection:
-        yield from warn_of_deflection(vibration, scene.beam.length, speeds)
-    elif (large := vibration > LARGE_DEFLECTION * scene.beam.length).any():
+        yield from validity.warn_of_deflection(vibration, scene.beam.length, speeds)
+    elif (large := vibration > validity.LARGE_DEFLECTION * scene.beam.length).any():
         ratio = vibration[large].max() / scene.beam.length
         yield Statement(
             f"the tip vibrates by {ratio:.2g} of the length about the equilibrium at ",
-            list_speeds(speeds, large),
-            f": past {LARGE_DEFLECTION:g} vibration is not linear",
+            validity.list_speeds(speeds, large),
+            f": past {validity.LARGE_DEFLECTION:g} vibration is not linear",
             kind=LIMITS,
             quantity="tip deflection over the length",
             value=ratio,
-            limit=LARGE_DEFLECTION,
+            limit=validity.LARGE_DEFLECTION,
         )
     motion = check_steady_state(scene.motion)
-    yield from warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
+    yield from validity.warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := error > tolerance).any():
-        said = f"the harmonics are not resolved to {tolerance:g} at ", list_speeds(speeds, at), "; see error"
+        said = (
+            f"the harmonics are not resolved to {tolerance:g} at ",
+            validity.list_speeds(speeds, at),
+            "; see error",
+        )
         yield Statement(*said, kind=TOLERANCE, quantity="error", value=error[at].max(), limit=tolerance)
     if undecided.any():
-        where = list_speeds(speeds, undecided)
+        where = validity.list_speeds(speeds, undecided)
         end = ": growth_rate is within growth_rate_error"
         yield Statement("stability is not decided at ", where, end, kind=TOLERANCE, quantity="growth rate")

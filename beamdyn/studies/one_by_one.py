@@ -12,18 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.inputs.designs import rows_of
+from beamdyn.common.results import statements
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.common.results.statements import (
-    NO_ANSWER,
-    OUTSIDE,
-    InputValue,
-    Speeds,
-    Statement,
-    Words,
-    joined,
-    kind_of,
-    unannounced,
-)
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.modes import natural_modes
@@ -92,7 +82,7 @@ class SingleDesigns(FieldsOnly):
     def answers(self) -> DesignAnswers:
         """The answers of the designs; one that is refused has the reason as a caution."""
         designs = rows_of(dict(self.columns)) if self.columns else [{}]
-        with unannounced():
+        with statements.unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
         # How many answers are refused, and how many have warnings, with those of the first.
@@ -112,11 +102,13 @@ def _caution(
     """Yield of how many answers something holds, and why of the first."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
-        at = joined(", ", (InputValue(name, v, unit_of(name) or "") for name, v in designs[first].items()))
-        said = f" {words}", *(("; at ", at) if at else ()), ": ", joined("; ", reasons[first])
-        kinds = {*map(kind_of, reasons[first])} - {""}
-        kind = OUTSIDE if OUTSIDE in kinds else min(kinds, default=NO_ANSWER)
-        yield Caution(words, sum(counts), 0.0, Statement(*said, kind=kind))
+        at = statements.joined(
+            ", ", (statements.InputValue(name, v, unit_of(name) or "") for name, v in designs[first].items())
+        )
+        said = f" {words}", *(("; at ", at) if at else ()), ": ", statements.joined("; ", reasons[first])
+        kinds = {*map(statements.kind_of, reasons[first])} - {""}
+        kind = statements.OUTSIDE if statements.OUTSIDE in kinds else min(kinds, default=statements.NO_ANSWER)
+        yield Caution(words, sum(counts), 0.0, statements.Statement(*said, kind=kind))
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
@@ -179,9 +171,9 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
         if crossing is not None:
             value[0, i], error[0, i], status[0, i] = crossing.speed, crossing.error, RESONATES
     more = [
-        Words(
+        statements.Words(
             "there is also one at ",
-            Speeds(c.speed),
+            statements.Speeds(c.speed),
             f": {label_crossing(c.line, c.kind, c.mode, c.second_mode)}",
         )
         for c in lowest.values()
@@ -269,7 +261,7 @@ def left_out_of_design(
     """
     speeds = np.array([design.get(SPEED, question.speed)])
     try:
-        with unannounced():  # the study has warned
+        with statements.unannounced():  # the study has warned
             return _ANALYSES[question.what](question, scene, speeds).effects()
     except _FAILURES:
         return None

@@ -21,14 +21,8 @@ from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.periodic_system import excitation_lines, periodic_system
+from beamdyn.studies import batched
 from beamdyn.studies.answers import REFUSED, DesignAnswers, caution_where
-from beamdyn.studies.batched import (
-    BasisAnswers,
-    Refinement,
-    cautions_of_error,
-    cautions_of_refused,
-    stacks_of,
-)
 from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
@@ -123,7 +117,7 @@ def _ends_of_columns(designs: Designs) -> list[int]:
 
 def crossings_of(
     designs: SimilarDesigns,
-    refinement: Refinement,
+    refinement: batched.Refinement,
     scene: Scene,
     resonances: Sequence[PossibleCrossing],
     top: float,
@@ -145,14 +139,14 @@ def crossings_of(
     """
     multiples, modes = np.unique([each.multiple for each in resonances]), refinement.modes
 
-    def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
-        stack, coarse, *_ = stacks_of(designs, rows, basis)
+    def solve(rows: np.ndarray, basis: Discretization) -> batched.BasisAnswers:
+        stack, coarse, *_ = batched.stacks_of(designs, rows, basis)
         time, estimate = designs.time[rows], designs.estimate(basis)
         speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, modes, top * time, estimate)
         critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top * time, estimate)[0]
         speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
         met = np.isinf(speed) | (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
-        return BasisAnswers((speed / time[:, None, None], error), np.all(met, axis=(1, 2)))
+        return batched.BasisAnswers((speed / time[:, None, None], error), np.all(met, axis=(1, 2)))
 
     found, functions = refinement.solve(designs.count, len(multiples), solve)
     found = found or [np.full((designs.count, len(multiples), modes), np.nan)] * 2
@@ -163,8 +157,8 @@ def crossings_of(
     status = np.select([~excited, np.isnan(speed), np.isfinite(speed)], states, NO_RESONANCE)
     error = np.select([status == REFUSED, status == RESONATES], [np.inf, error], 0.0)
     cautions = (
-        *cautions_of_refused(status),
-        *cautions_of_error(error, refinement.tolerance),
+        *batched.cautions_of_refused(status),
+        *batched.cautions_of_error(error, refinement.tolerance),
         *caution_where((status == NO_LINE).all(axis=2), "g", 0.0, _NOTHING_EXCITES),
     )
     speed = np.where(status == RESONATES, speed, np.nan)

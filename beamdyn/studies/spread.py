@@ -15,21 +15,11 @@ from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, check_used
 from beamdyn.common.parallel.tasks import Progress
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.statements import announced, unannounced
-from beamdyn.common.spreading import DEFAULT_SAMPLES
+from beamdyn.common.spreading import DEFAULT_SAMPLES, tolerances
 from beamdyn.common.spreading.first_order import KnownDerivatives
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread
 from beamdyn.common.spreading.spread_result import Spread
 from beamdyn.common.spreading.statistics import check_samples, check_seed
-from beamdyn.common.spreading.tolerances import (
-    Convert,
-    Distribution,
-    Normal,
-    SpreadInput,
-    Uniform,
-    check_holds,
-    parse_tolerance,
-    without_unit,
-)
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
@@ -50,7 +40,7 @@ from beamdyn.studies.study_result import Study
 _NONLINEAR = "physics.large_deflection"  # the argument that is refused as it has no derivatives
 
 
-def known_derivatives(question: StudyQuestion, inputs: Sequence[SpreadInput]) -> KnownDerivatives:
+def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.SpreadInput]) -> KnownDerivatives:
     """Derivatives by inputs, as far as equations give them.
 
     Parameters
@@ -137,7 +127,7 @@ _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius":
 @announced
 def spread(
     scene: Scene,
-    inputs: Mapping[str, str | Distribution],
+    inputs: Mapping[str, str | tolerances.Distribution],
     what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
     *,
     samples: int = DEFAULT_SAMPLES,
@@ -282,8 +272,8 @@ class _StudyAnswers:
 
 
 def check_tolerances(
-    scene: Scene, inputs: Mapping[str, str | Distribution], speed: float
-) -> tuple[SpreadInput, ...]:
+    scene: Scene, inputs: Mapping[str, str | tolerances.Distribution], speed: float
+) -> tuple[tolerances.SpreadInput, ...]:
     """The inputs with their distributions.
 
     Raises
@@ -302,10 +292,10 @@ def check_tolerances(
             bound = "a percentage is of the speed, which is 0"
             raise InvalidValue(f"tolerances[{SPEED!r}]", given, bound, "give spread a speed [rad/s], too")
         if isinstance(given, str):
-            given = parse_tolerance(name, given, nominal, unit, _in_si(name, given, unit))
-        kind(name, given, Uniform | Normal, _REMEDY)
-        made.append(SpreadInput(name, unit, nominal, given))
-        check_holds(made[-1])
+            given = tolerances.parse_tolerance(name, given, nominal, unit, _in_si(name, given, unit))
+        kind(name, given, tolerances.Uniform | tolerances.Normal, _REMEDY)
+        made.append(tolerances.SpreadInput(name, unit, nominal, given))
+        tolerances.check_holds(made[-1])
         check_reach(scene, made[-1])
     return tuple(made)
 
@@ -335,17 +325,17 @@ def nominal_value(scene: Scene, name: str, speed: float) -> float:
     return value
 
 
-def _in_si(name: str, text: str, unit: str) -> Convert:
+def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
     def convert(number: str, written: str) -> float:
         if written not in ("", unit):
             bound = f"a text has percentages, or numbers in {unit or 'SI'}"
-            raise InvalidValue(name, text, bound, without_unit(text, written, unit))
+            raise InvalidValue(name, text, bound, tolerances.without_unit(text, written, unit))
         return float(number)
 
     return convert
 
 
-def check_reach(scene: Scene, given: SpreadInput) -> None:
+def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
     """Refuse a tolerance of which an end makes no scene, all other inputs being nominal."""
     for end in given.distribution.reach:
         try:

@@ -14,18 +14,7 @@ import numpy as np
 import scipy
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import (
-    InvalidValue,
-    NoModelAnswer,
-    as_floats,
-    check_used,
-    count,
-    one_of,
-    positive,
-    real,
-    real_array,
-    within,
-)
+from beamdyn.common.inputs import checks
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, rows_of
 from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
@@ -138,21 +127,23 @@ def study(
     check_scene(scene)
     designs = Designs(_check_inputs(vary), combine)
     check_designs(designs)
-    one_of("what", what, tuple(KINDS))
+    checks.one_of("what", what, tuple(KINDS))
     check_discretization(discretization)
     run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
     varied = SPEED in {each.name for each in designs.inputs}
     at = speed_of_study(scene, what, speed, varied)
-    check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
+    checks.check_used(what, OPTIONS, speed=speed, modes=modes, window=window)
     if varied and speed is not None:
-        raise InvalidValue("speed", speed, "the speed is varied, too", "leave one of the two out", "rad/s")
-    modes = count("modes", MODES if modes is None else modes)
-    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
+        raise checks.InvalidValue(
+            "speed", speed, "the speed is varied, too", "leave one of the two out", "rad/s"
+        )
+    modes = checks.count("modes", MODES if modes is None else modes)
+    tolerance = None if tolerance is None else checks.within("tolerance", tolerance, *TOLERANCES)
     # Numbers of the motion matter where the answer is that of one motion.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
         bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
-        raise InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
+        raise checks.InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
     question = StudyQuestion(
         scene, what, at, modes, discretization, tolerance, _check_window(WINDOW if window is None else window)
     )
@@ -189,12 +180,12 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
     """The inputs with their values as arrays; refused where there is none, or a value is no finite number."""
     if not isinstance(vary, Mapping) or not vary:
         remedy = 'give a dictionary, such as {"beam.thickness": [1e-4, 2e-4], "speed": [0.0, 50.0]}'
-        raise InvalidValue("vary", vary, "it names no input", remedy)
+        raise checks.InvalidValue("vary", vary, "it names no input", remedy)
     inputs = []
     for name, values in vary.items():
-        array = real_array(check_path("vary", name), values)
+        array = checks.real_array(check_path("vary", name), values)
         if not array.size:
-            raise InvalidValue(name, values, "it is empty; give at least one value")
+            raise checks.InvalidValue(name, values, "it is empty; give at least one value")
         inputs.append(VariedInput(name, unit_of(name) or "", array))
     return tuple(inputs)
 
@@ -210,7 +201,7 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
         Whether the speed is one of the inputs.
     """
     if speed is not None:
-        at = real("speed", speed, "rad/s")
+        at = checks.real("speed", speed, "rad/s")
     else:
         final = 0.0 if scene.motion is None or what == "frequencies" else scene.motion.final_speed
         at = final if np.isfinite(final) else 0.0
@@ -218,20 +209,20 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     kind = KINDS[what]
     if kind.needs_motion and scene.motion is None:
         remedy = Words("such as ", ROLLING_WHEEL)
-        raise InvalidValue("scene.motion", None, f"a study of {what} needs a motion", remedy)
+        raise checks.InvalidValue("scene.motion", None, f"a study of {what} needs a motion", remedy)
     if what == "crossings":
-        positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
+        checks.positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
     if varied and not kind.has_speed:
         bound = f"a {kind.word} is itself a speed that is sought, and belongs to no other"
-        raise InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
+        raise checks.InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
     return at
 
 
 def _check_window(window: tuple[float, float]) -> tuple[float, float]:
-    ends = as_floats(window)
+    ends = checks.as_floats(window)
     if ends is None or ends.shape != (2,) or not (0 <= ends[0] < ends[1] < np.inf):
         bound = "give its beginning and its end [s], two ascending numbers such as (20.0, 30.0)"
-        raise InvalidValue("window", window, bound)
+        raise checks.InvalidValue("window", window, bound)
     return float(ends[0]), float(ends[1])
 
 
@@ -243,7 +234,7 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
             with_numbers(scene, design)
         if few:
             return
-    except InvalidValue:
+    except checks.InvalidValue:
         if designs.combine == "product":
             raise
     for rows in designs.chunks(_AT_ONCE):
@@ -335,7 +326,7 @@ class _Request:
             bound = (
                 "crossings of these designs are found one by one, each as exactly as resonance_speeds does"
             )
-            raise InvalidValue("tolerance", question.tolerance, bound, "leave it out")
+            raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
         """The answers, of all designs in one basis where only numbers differ, else one by one.
@@ -354,7 +345,7 @@ class _Request:
         ]
         run.run(_answer, tasks, found.put)
         if (refused := found.count(REFUSED)) and refused == found.value.size:
-            raise NoModelAnswer(
+            raise checks.NoModelAnswer(
                 f"none of {self.designs.count} designs has an answer; {next(found.warnings())}"
             )
         return found

@@ -14,13 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beamdyn.transient import time_error
 from beamdyn.transient.gauss import interpolate, tableau
-from beamdyn.transient.time_error import (
-    INTERPOLATION_POINTS,
-    SegmentError,
-    SegmentWithError,
-    choose_checked_steps,
-)
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
 _WORTH_IT = 200  # number of steps below which these cost no more
@@ -216,7 +211,7 @@ def propagate_in_closed_form(
     v0: np.ndarray,
     stages: int,
     accuracy: float,
-) -> SegmentWithError | None:
+) -> time_error.SegmentWithError | None:
     """Motion at steady speed, as `beamdyn.transient.weakly_modulated.propagate_modulated` has it.
 
     Parameters
@@ -277,7 +272,7 @@ def _solve(
 
 def _sample(
     motion: _Exponentials, t0: float, h: float, steps: int, stages: int, accuracy: float, missed: np.ndarray
-) -> SegmentWithError:
+) -> time_error.SegmentWithError:
     """The motion at the ends of steps and at their nodes, without terms that are small or too fast."""
     growth = np.exp(np.maximum(np.real(motion.s), 0) * h * steps)
     size = np.abs(motion.b).max(axis=1) * growth
@@ -288,13 +283,13 @@ def _sample(
     left_out = np.abs(motion.b[small | fast] * growth[small | fast, None]).sum(axis=0)
     kept = _Exponentials(motion.s[~(small | fast)], motion.b[~(small | fast)])
     state, acceleration = _evaluate(kept, h, steps, stages)
-    chosen = choose_checked_steps(steps)
-    q = interpolate(h, state[chosen], acceleration[chosen], INTERPOLATION_POINTS)[0]
-    tau = h * (chosen[:, None] + INTERPOLATION_POINTS)
+    chosen = time_error.choose_checked_steps(steps)
+    q = interpolate(h, state[chosen], acceleration[chosen], time_error.INTERPOLATION_POINTS)[0]
+    tau = h * (chosen[:, None] + time_error.INTERPOLATION_POINTS)
     between = q.reshape(tau.size, -1) - kept.at(tau.ravel())[0]
     unresolved = np.abs(motion.b[fast]).sum(axis=0) > (missed + left_out) / 2
-    error = SegmentError(missed + left_out, between, unresolved)
-    return SegmentWithError(t0, h, state, acceleration, error)
+    error = time_error.SegmentError(missed + left_out, between, unresolved)
+    return time_error.SegmentWithError(t0, h, state, acceleration, error)
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:

@@ -14,17 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.transient import record_steps
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.elastica_steps import attempt_elastica, rest_in_equilibrium
 from beamdyn.transient.elastica_system import AnySystem, BentSystem
 from beamdyn.transient.gauss import Segment, propagate
-from beamdyn.transient.record_steps import (
-    RecordSteps,
-    is_record,
-    most_steps_in_piece,
-    propagate_record,
-    smooth_piece_ends,
-)
 from beamdyn.transient.step_size import (
     Attempt,
     StepSize,
@@ -84,7 +78,7 @@ def integrate(
     else:
         start = _Start(system, y0, t_end, tolerance)
         path = _rest_in_equilibrium(start)
-        by_samples = is_record(system, t_end, StepSize.from_tolerance(tolerance))
+        by_samples = record_steps.is_record(system, t_end, StepSize.from_tolerance(tolerance))
         attempt = partial(_attempt_record if by_samples else _attempt, start)
     if path is not None:
         return path, 0.0, "no steps: the beam stays in equilibrium"
@@ -111,7 +105,7 @@ def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
     balanced = not v.any() and (np.abs(f[0] - K[0] @ q) <= _BALANCE * size.max()).all()
     if not (balanced and (K[0] == K).all() and (f == f[0]).all()):
         return None
-    edges = smooth_piece_ends(system.motion, t_end)
+    edges = record_steps.smooth_piece_ends(system.motion, t_end)
     return Trajectory(_propagate(system, edges, [1] * (len(edges) - 1), y0, tolerance))
 
 
@@ -122,7 +116,7 @@ def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
     the preparation of another segment is worth.
     """
     system, y0, t_end, tolerance = start
-    breakpoints = set(smooth_piece_ends(system.motion, t_end))
+    breakpoints = set(record_steps.smooth_piece_ends(system.motion, t_end))
     edges, steps = [0.0], []
     parts = split_at_breakpoints(system.motion, t_end)
     counts = step_size.count_steps_of_each(system, parts)
@@ -148,7 +142,9 @@ def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) 
     """
     system, y0, t_end, tolerance = start
     if before is not None:
-        most, last = (most_steps_in_piece(system, t_end, size) for size in (step_size, before.step_size))
+        most, last = (
+            record_steps.most_steps_in_piece(system, t_end, size) for size in (step_size, before.step_size)
+        )
         wanted = None
         if before.order == ERROR_ORDER:
             wanted = max(np.ceil(most), np.ceil(last) + 1)
@@ -156,9 +152,9 @@ def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) 
             wanted = 1
         if wanted is not None:
             step_size = replace(step_size, phase=step_size.phase * _CEILED * most / wanted)
-    steps, n = RecordSteps.choose(system, t_end, step_size), system.size
+    steps, n = record_steps.RecordSteps.choose(system, t_end, step_size), system.size
     check_number_of_steps(len(steps), n, t_end)
-    segment = propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
+    segment = record_steps.propagate_record(system, steps, y0[:n], y0[n:], STAGES, _SERIES_SHARE * tolerance)
     order = ERROR_ORDER if len(steps) == len(steps.piece_start) else _ORDER_ACROSS_SAMPLES
     return _judged(system, step_size, Trajectory((segment,)), order)
 

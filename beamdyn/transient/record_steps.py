@@ -21,19 +21,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.scene.motion import Motion
-from beamdyn.transient.gauss import (
-    BLOCK,
-    StepMaps,
-    Tableau,
-    advance,
-    allocate_steps,
-    components,
-    interpolate,
-    interpolate_each,
-    project,
-    solve_steps,
-    tableau,
-)
+from beamdyn.transient import gauss
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
@@ -140,9 +128,9 @@ class RecordSteps:
         index = np.arange(len(self.piece_start))
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
-    def root(self, system: ModalSystem, table: Tableau) -> RootMotion:
+    def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
         """Motion of the root at the nodes of the steps, each quantity by its nearest polynomial: (N, s)."""
-        within = tableau(self.nodes_in_piece(len(table.c)))
+        within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
             return root  # without a sample inside, a polynomial through the nodes is the nearest
@@ -190,17 +178,17 @@ def _group(place: list[float]) -> list[int]:
         first.append(end)
 
 
-def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> StepMaps:
+def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> gauss.StepMaps:
     """Solve the collocation equations of all steps, in the time of each, and transform back to seconds."""
-    table, n, h = tableau(stages), system.size, steps.h[:, None, None]
+    table, n, h = gauss.tableau(stages), system.size, steps.h[:, None, None]
     C, K, f = system.assemble(steps.root(system, table))
     C = None if C is None else C * h[..., None]
-    maps = solve_steps(C, K * h[..., None] ** 2, f * h**2, 1.0, table)
+    maps = gauss.solve_steps(C, K * h[..., None] ** 2, f * h**2, 1.0, table)
     step, acceleration = maps.step.copy(), maps.acceleration / h[..., None] ** 2
     step[:, n:] /= h
     step[:, :, n + 1 :] *= h
     acceleration[..., n + 1 :] *= h[..., None]
-    return StepMaps(step, acceleration)
+    return gauss.StepMaps(step, acceleration)
 
 
 @dataclass(frozen=True)
@@ -234,13 +222,15 @@ class RecordSegment:
     def projected(self, outputs: np.ndarray) -> RecordSegment:
         """Segment of linear functions of the coordinates, given per unit of each: (d, n)."""
         return replace(
-            self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
+            self,
+            state=gauss.project(self.state, outputs),
+            acceleration=gauss.components(self.acceleration, outputs),
         )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""
         theta, h = np.arange(count) / count, self.steps.h[:, None, None]
-        q, v = interpolate(h, self.state[:-1], self.acceleration, theta)
+        q, v = gauss.interpolate(h, self.state[:-1], self.acceleration, theta)
         t = self.steps.start[:, None] + self.steps.h[:, None] * theta
         return t.ravel(), q.reshape(t.size, -1), v.reshape(t.size, -1)
 
@@ -249,7 +239,7 @@ class RecordSegment:
         t = np.asarray(t, dtype=float)
         k = np.maximum(np.searchsorted(self.steps.start, t, side="right") - 1, 0)
         h, start = self.steps.h[k], self.steps.start[k]
-        return interpolate_each(h, self.state[k], self.acceleration[k], (t - start) / h)
+        return gauss.interpolate_each(h, self.state[k], self.acceleration[k], (t - start) / h)
 
 
 def propagate_record(
@@ -277,7 +267,7 @@ def propagate_record(
     -------
     RecordSegment
     """
-    state, acceleration = allocate_steps(len(steps), stages, q0, v0)
+    state, acceleration = gauss.allocate_steps(len(steps), stages, q0, v0)
     for block in steps.blocks:
         ends = slice(block.start, block.stop + 1)
         if not _expand(system, steps, block, state[ends], acceleration[block], accuracy):
@@ -313,9 +303,9 @@ def _solve(
     system: ModalSystem, steps: RecordSteps, block: slice, state: np.ndarray, acceleration: np.ndarray
 ) -> None:
     """Fill in a block of steps, each solved by itself."""
-    size = max(1, min(BLOCK, _PIECES_AT_ONCE // int(steps.counts[block].max())))
+    size = max(1, min(gauss.BLOCK, _PIECES_AT_ONCE // int(steps.counts[block].max())))
     for first in range(0, len(acceleration), size):
         part = np.arange(first, min(first + size, len(acceleration)))
         maps = maps_of_record(system, steps.select(block.start + part), acceleration.shape[1])
-        advance(maps.step, state[first : part[-1] + 2])
+        gauss.advance(maps.step, state[first : part[-1] + 2])
         acceleration[part] = (maps.acceleration @ state[part, None, :, None])[..., 0]

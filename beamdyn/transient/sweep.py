@@ -18,16 +18,7 @@ import numpy as np
 import scipy
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import (
-    InvalidValue,
-    NoModelAnswer,
-    as_floats,
-    ascending,
-    count,
-    positive,
-    real,
-    within,
-)
+from beamdyn.common.inputs import checks
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_sweep
@@ -263,9 +254,9 @@ def sweep(
     """
     start = perf_counter()
     check_scene(scene)
-    cases = tuple(ascending("speeds", speeds).tolist())
+    cases = tuple(checks.ascending("speeds", speeds).tolist())
     request = _check_request(scene, window, t_end, tolerance, discretization)
-    chunk = count("chunk", chunk)
+    chunk = checks.count("chunk", chunk)
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
@@ -343,19 +334,19 @@ def _check_request(
     """Check the arguments that all cases share."""
     if scene.motion is None:
         remedy = "such as SpinUp(50.0, duration=10.0)"
-        raise InvalidValue("scene.motion", None, "a sweep needs a motion", remedy)
-    ends = as_floats(window)
+        raise checks.InvalidValue("scene.motion", None, "a sweep needs a motion", remedy)
+    ends = checks.as_floats(window)
     if ends is None or ends.shape != (2,):
         bound = "give its beginning and its end [s], two finite numbers such as (20.0, 30.0)"
-        raise InvalidValue("window", window, bound)
-    start, end = (real(f"window[{k}]", value, "s") for k, value in enumerate(ends.tolist()))
-    last = end if t_end is None else positive("t_end", t_end, "s")
+        raise checks.InvalidValue("window", window, bound)
+    start, end = (checks.real(f"window[{k}]", value, "s") for k, value in enumerate(ends.tolist()))
+    last = end if t_end is None else checks.positive("t_end", t_end, "s")
     if not 0 <= start < end <= last:
         raise ValueError(
             f"window = {start:g} ... {end:g} s: it must begin before it ends, "
             f"and lie in the run, 0 ... {last:g} s"
         )
-    tolerance = within("tolerance", tolerance, *TOLERANCES)
+    tolerance = checks.within("tolerance", tolerance, *TOLERANCES)
     return SweepRequest(scene, (start, end), last, tolerance, discretization)
 
 
@@ -366,7 +357,7 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
     if (past := fastest >= critical).any():
         where = list_speeds(np.array(speeds), past)
-        raise NoModelAnswer(
+        raise checks.NoModelAnswer(
             f"speeds: {past.sum()} of {len(speeds)} ({where}) pass the critical speed "
             f"{critical:.6g} rad/s, where the beam buckles and linear theory does not hold; leave them out"
         )

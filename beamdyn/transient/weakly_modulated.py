@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beamdyn.transient import gauss
 from beamdyn.transient.chebyshev import (
     NEGLIGIBLE,
     Polynomials,
@@ -23,17 +24,6 @@ from beamdyn.transient.chebyshev import (
     extrema,
     polynomials,
     to_part,
-)
-from beamdyn.transient.gauss import (
-    Segment,
-    Tableau,
-    add_drift,
-    advance,
-    allocate_steps,
-    increment,
-    left_side,
-    right_side,
-    tableau,
 )
 
 _POINTS = (25, 37)  # Chebyshev points of a segment of changing speed that are tried; odd
@@ -83,7 +73,7 @@ class _Steps(NamedTuple):
     first: float
     h: float
     number: int
-    table: Tableau
+    table: gauss.Tableau
     accuracy: float
 
 
@@ -110,15 +100,15 @@ class _StepMapSeries:
     R: np.ndarray
     Z: np.ndarray
     h: float
-    table: Tableau
+    table: gauss.Tableau
 
     @classmethod
-    def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: Tableau) -> _StepMapSeries:
+    def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: gauss.Tableau) -> _StepMapSeries:
         """Expand the accelerations of steps of h [s] that begin at some times (P,) [s]."""
         C, K = system.slow(times[:, None] + h * table.c)
         P, s, n, _ = K.shape
-        Y = np.linalg.inv(left_side(C, K, h, table))
-        free = right_side(C, K, np.zeros((P, s, n)), h, table)[:, :, 1:]
+        Y = np.linalg.inv(gauss.left_side(C, K, h, table))
+        free = gauss.right_side(C, K, np.zeros((P, s, n)), h, table)[:, :, 1:]
         loads = np.einsum("ij,la->iajl", np.eye(s), system.P).reshape(s * n, -1)
         drift = np.stack([np.ones(s), h * table.c], axis=1)  # of q and v in the displacement at the nodes
         R = -np.einsum("ix,mab->miaxb", drift, system.G).reshape(-1, s * n, 2 * n)
@@ -137,12 +127,12 @@ class _StepMapSeries:
 
     def constant(self) -> np.ndarray:
         """Maps from z to (q, v) at the end of a step with e = 0: shape (P, 1, 2 n, :)."""
-        return add_drift(increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
+        return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
         """Maps of a load at each node to (q, v), (P, s, 2 n, n), and W = R - Z X0, (P, m, s, n, :)."""
         P, s, n = len(self.Y), len(self.table.c), self.size
-        ends = increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
+        ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]
         return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, W.shape[-1])
 
@@ -292,7 +282,7 @@ def _pairs(d: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _scales(
-    system: ModulatedSystem, constant: np.ndarray, t: float, table: Tableau
+    system: ModulatedSystem, constant: np.ndarray, t: float, table: gauss.Tableau
 ) -> tuple[np.ndarray, np.ndarray]:
     """Factors of rows (2 n,) and columns (2 n + s l,) that make entries of the maps comparable.
 
@@ -316,7 +306,7 @@ def propagate_modulated(
     v0: np.ndarray,
     stages: int,
     accuracy: float,
-) -> Segment | None:
+) -> gauss.Segment | None:
     """Integrate over equal steps, as `beamdyn.transient.gauss.propagate` does, by the expanded maps.
 
     Parameters
@@ -334,22 +324,22 @@ def propagate_modulated(
     Segment or None
         None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
-    h, table = (t1 - t0) / steps, tableau(stages)
+    h, table = (t1 - t0) / steps, gauss.tableau(stages)
     expansion = _expand(_Steps(system, t0, h, steps, table, accuracy))
     if expansion is None:
         return None
-    state, acceleration = allocate_steps(steps, stages, q0, v0)
+    state, acceleration = gauss.allocate_steps(steps, stages, q0, v0)
     for block, e, g in _blocks(system, t0, h, steps, table):
         if steps * (expansion.ratio * np.abs(e).max(axis=(0, 1))).sum() ** 3 > accuracy:
             return None
         start, end = (2 * k / max(steps - 1, 1) - 1 for k in (block.start, block.stop - 1))
         ends = slice(block.start, block.stop + 1)
         _advance_block(expansion.over(start, end), e, g, state[ends], acceleration[block])
-    return Segment(t0, h, state, acceleration)
+    return gauss.Segment(t0, h, state, acceleration)
 
 
 def _blocks(
-    system: ModulatedSystem, t0: float, h: float, steps: int, table: Tableau
+    system: ModulatedSystem, t0: float, h: float, steps: int, table: gauss.Tableau
 ) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
     """Yield blocks of steps, with e (N, s, m) and g (N, s, l) at the nodes of their N steps."""
     for first in range(0, steps, _SAMPLED):
@@ -371,7 +361,7 @@ def _advance_block(
     affine = np.empty((N, columns - 1, columns))
     np.matmul(maps[:, :, columns - 1 :], g[:, :, None], out=affine[:, :, :1])
     affine[:, :, 1:] = maps[:, :, : columns - 1]
-    advance(affine, state)
+    gauss.advance(affine, state)
     z = np.concatenate([state[:-1, 1:], g], axis=1)
     acceleration[:] = local.accelerations(T, e, z).reshape(acceleration.shape)
 

@@ -11,14 +11,7 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
-from beamdyn.analyses.results.of_modes import (
-    between_speeds,
-    csv_directions,
-    rows_worth_showing,
-    said_of_model,
-    said_over_speeds,
-    selection_note,
-)
+from beamdyn.analyses.results import of_modes
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
@@ -65,7 +58,7 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
         )
     else:
         errors = f"Estimated time-integration error {unit.say(run.time_error, 1)}, {modes}."
-    left_out = said_of_model(run, run.left_out_effects.sentence("", "of the largest deflection"))
+    left_out = of_modes.said_of_model(run, run.left_out_effects.sentence("", "of the largest deflection"))
     return Group(shown, Text(errors), Text(left_out))
 
 
@@ -99,7 +92,7 @@ def _peak_cells(run: Transient, start: float, end: float, direction: int | None)
 
 def transient_csv(run: Transient) -> Columns:
     """Tip deflection over time, in both directions where two are modelled, and the largest's model error."""
-    names = [f"tip_deflection_{direction}" for direction in csv_directions(run.scene)]
+    names = [f"tip_deflection_{direction}" for direction in of_modes.csv_directions(run.scene)]
     tips = zip(names or ["tip_deflection"], (run.tip, run.tip_across), strict=False)
     error = np.full(len(run.t), float(f"{float(run.model_error):.2g}"))
     return Columns(
@@ -114,19 +107,19 @@ def transient_csv(run: Transient) -> Columns:
 
 def _table_over_speeds(result: SteadyResponse | Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
     """The columns at some speeds, the peaks included, which the status names."""
-    shown, high = rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
+    shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)
-    title = columns.title + selection_note(shown, result.speeds)
-    note = said_over_speeds(result)
+    title = columns.title + of_modes.selection_note(shown, result.speeds)
+    note = of_modes.said_over_speeds(result)
     return table_of(Columns(*columns.at(shown).columns, status, title=title, note=note), result.display_units)
 
 
 def _deflections(result: SteadyResponse | Sweep, error: np.ndarray, **sizes: np.ndarray) -> Iterator[Column]:
     """Speeds, and deflections by the name in files; digits beyond the model error are dimmed."""
-    words = dict(zip(csv_directions(result.scene), words_of_directions(result.scene), strict=True))
+    words = dict(zip(of_modes.csv_directions(result.scene), words_of_directions(result.scene), strict=True))
     yield Column("speed", result.speeds, "rad/s", form=".8g")
-    beyond, form = between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
+    beyond, form = of_modes.between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
     for name, size in sizes.items():
         head = _WORDS.get(name) or words[name.removeprefix("largest_")]
         yield Column(name, size, "m", "", error, beyond * np.abs(size), form, words=head)
@@ -134,7 +127,10 @@ def _deflections(result: SteadyResponse | Sweep, error: np.ndarray, **sizes: np.
 
 def _by_direction(result: SteadyResponse | Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
     """Largest deflections by the name in files, where two directions are modelled."""
-    return {f"largest_{name}": size for name, size in zip(csv_directions(result.scene), sizes, strict=False)}
+    return {
+        f"largest_{name}": size
+        for name, size in zip(of_modes.csv_directions(result.scene), sizes, strict=False)
+    }
 
 
 def steady_table(result: SteadyResponse) -> Group:
@@ -228,7 +224,7 @@ def crossings_columns(result: Crossings) -> Columns:
         Column("kind", [c.kind for c in result]),
         *_shares(result),
         title=f"{number}, by {result.provenance.method}. {extent}",
-        note=said_of_model(result, left_out),
+        note=of_modes.said_of_model(result, left_out),
     )
 
 
@@ -238,7 +234,7 @@ def _shares(result: Crossings) -> Iterator[Column]:
     known = [[s for s in (c.plane_share, c.second_plane_share) if s is not None] for c in result]
     cells = [" and ".join(f"{100 * a:.0f}, {100 * b:.0f}" for a, b in shares) for shares in known]
     for of_mode, mode in enumerate(("", "second_")):
-        for k, direction in enumerate(csv_directions(result.scene)):
+        for k, direction in enumerate(of_modes.csv_directions(result.scene)):
             values = [shares[of_mode][k] if len(shares) > of_mode else "" for shares in known]
             yield Column(f"{mode}share_{direction}", values, cells=cells, words=head)
             head = None

@@ -9,20 +9,9 @@ from zlib import crc32
 
 import numpy as np
 
+from beamdyn.common.drawing import strokes
 from beamdyn.common.drawing.layout import Fit, Layout
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
-from beamdyn.common.drawing.strokes import (
-    GROUND,
-    HALO,
-    INKS,
-    Circle,
-    Letters,
-    Pen,
-    Stroke,
-    colour,
-    letters_of,
-    strokes_of,
-)
 from beamdyn.common.drawing.text_width import FAMILY, SUBSCRIPT, line_width, symbol_width
 
 _DARK = "@media (prefers-color-scheme: dark)"
@@ -67,7 +56,7 @@ def element(layouts: Sequence[Layout], paper: Paper) -> str:
         f'aria-labelledby="{name}-t {name}-d" viewBox="0 0 {paper.width:g} {paper.height:g}" '
         f'width="{paper.width:g}" height="{paper.height:g}" font-family="{escape(FAMILY)}">'
         f'<title id="{name}-t">{escape(title)}</title><desc id="{name}-d">{escape(described)}</desc>'
-        f'<rect width="100%" height="100%" fill="{_paint(GROUND)}"/>{body}{grips}</svg>'
+        f'<rect width="100%" height="100%" fill="{_paint(strokes.GROUND)}"/>{body}{grips}</svg>'
     )
 
 
@@ -80,14 +69,16 @@ def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
 
 def page_colours(selector: str, dark: bool = False) -> str:
     """Style rules that set the colours of the drawings in the elements of a CSS selector."""
-    values = [(role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in INKS.items()]
+    values = [
+        (role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in strokes.INKS.items()
+    ]
     variables = "".join(f"--{role}:{line};--{role}-area:{area};" for role, (line, area) in values)
     return f"{selector}{{{variables}}}"
 
 
 def _paint(name: str) -> str:
     """A colour, as a variable of the page or file; where that is not set, the one on light ground."""
-    return f"var(--{name},{colour(name)})"
+    return f"var(--{name},{strokes.colour(name)})"
 
 
 def _parts(layout: Layout) -> Iterator[str]:
@@ -97,18 +88,18 @@ def _parts(layout: Layout) -> Iterator[str]:
         f'<clipPath id="{clip}"><rect x="{left:g}" y="{top:g}" width="{right - left:g}" '
         f'height="{bottom - top:g}"/></clipPath><g clip-path="url(#{clip})">'
     )
-    yield from map(_stroke, strokes_of(layout))
+    yield from map(_stroke, strokes.strokes_of(layout))
     yield (
-        f'</g><g stroke="{_paint(GROUND)}" stroke-width="{HALO}" stroke-linejoin="round" '
+        f'</g><g stroke="{_paint(strokes.GROUND)}" stroke-width="{strokes.HALO}" stroke-linejoin="round" '
         'paint-order="stroke" xml:space="preserve">'
     )
     for text in layout.texts:
-        yield from map(_letters, letters_of(text))
+        yield from map(_letters, strokes.letters_of(text))
     yield "</g>"
 
 
-def _stroke(stroke: Stroke) -> str:
-    if isinstance(stroke, Circle):
+def _stroke(stroke: strokes.Stroke) -> str:
+    if isinstance(stroke, strokes.Circle):
         x, y = stroke.centre
         return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{stroke.radius:.2f}"{_pen(stroke.pen)}/>'
     end = "Z" if stroke.closed else ""
@@ -116,7 +107,7 @@ def _stroke(stroke: Stroke) -> str:
     return f'<path d="{way}"{_pen(stroke.pen)} stroke-linejoin="round"/>'
 
 
-def _pen(pen: Pen) -> str:
+def _pen(pen: strokes.Pen) -> str:
     """Attributes of a line and of what is within it."""
     opacity = f' fill-opacity="{pen.opacity}"' if pen.fill and pen.opacity < 1 else ""
     dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in pen.dash)}"' if pen.dash else ""
@@ -128,7 +119,7 @@ def _pairs(points: np.ndarray) -> str:
     return " ".join(f"{x:.2f},{y:.2f}" for x, y in points.tolist())
 
 
-def _letters(line: Letters) -> str:
+def _letters(line: strokes.Letters) -> str:
     """A line of letters, drawn as wide as it was measured, whatever font there is."""
     symbol, words = line.symbol, line.words
     gap = " " if symbol and words else ""

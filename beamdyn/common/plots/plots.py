@@ -7,16 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.plots.axes_and_lines import (
-    draw_by_plane,
-    draw_lines,
-    name_colour,
-    name_planes,
-    new_axes,
-    set_up_axes,
-    speed_label,
-    style_by_plane,
-)
+from beamdyn.common.plots import axes_and_lines
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend
 from beamdyn.common.results.pictures import save_figure as save_figure  # exported with the plots
@@ -125,8 +116,8 @@ def _plot_over_speed(
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
-    ax = set_up_axes(ax, speed_label(units), quantity)
-    draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
+    axes_and_lines.draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
@@ -208,14 +199,14 @@ def plot_locus_by_plane(
     Axes
     """
     speeds = units.speed_unit().of(np.asarray(speeds))
-    ax = set_up_axes(ax, speed_label(units), "natural frequency [Hz]")
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), "natural frequency [Hz]")
     names = labels or _number_modes(np.shape(frequency)[1])
     columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
     for i, (y, solid, label) in enumerate(columns):
-        draw_by_plane(ax, speeds, y, solid, style_by_plane(i))
-        name_colour(ax, label, i)
+        axes_and_lines.draw_by_plane(ax, speeds, y, solid, axes_and_lines.style_by_plane(i))
+        axes_and_lines.name_colour(ax, label, i)
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
-    return name_planes(ax, [f"mostly {direction}" for direction in directions])
+    return axes_and_lines.name_planes(ax, [f"mostly {direction}" for direction in directions])
 
 
 def plot_response(
@@ -248,11 +239,13 @@ def plot_response(
     Axes
     """
     speed, length = units.speed_unit(), units.length_unit()
-    ax = set_up_axes(ax, speed_label(units), f"largest tip deflection [{length.name}]")
+    ax = axes_and_lines.set_up_axes(
+        ax, axes_and_lines.speed_label(units), f"largest tip deflection [{length.name}]"
+    )
     bounds = {} if bound is None else {"sum of the lines": bound}
     rows = {"largest over both phases": amplitude, **bounds, **(by_direction or {})}
     drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
-    draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
+    axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
         line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
     if (np.asarray(amplitude) > 0).any():
@@ -287,8 +280,10 @@ def plot_sweep(
     Axes
     """
     speed, length = units.speed_unit(), units.length_unit()
-    ax = set_up_axes(ax, speed_label(units), f"peak of the tip deflection [{length.name}]")
-    draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
+    ax = axes_and_lines.set_up_axes(
+        ax, axes_and_lines.speed_label(units), f"peak of the tip deflection [{length.name}]"
+    )
+    axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
     ax.set_ylim(bottom=0)
     return add_legend(ax) if len(labels) > 1 else ax
 
@@ -313,7 +308,7 @@ def plot_branches(
     -------
     Axes
     """
-    ax = new_axes() if ax is None else ax
+    ax = axes_and_lines.new_axes() if ax is None else ax
     for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
         lost = ~stable  # drawn with the points beside these, so that lines meet
         around = lost | np.r_[False, lost[:-1]] | np.r_[lost[1:], False]
@@ -326,7 +321,7 @@ def plot_branches(
                     color=colour,
                     label=f"{name}, {word}",
                 )
-    ax.set(xlabel=speed_label(units), ylabel="tip deflection over the length")
+    ax.set(xlabel=axes_and_lines.speed_label(units), ylabel="tip deflection over the length")
     ax.legend()
     return ax
 
@@ -360,7 +355,7 @@ def plot_transient(
     -------
     Axes
     """
-    ax = set_up_axes(ax, "time [s]", f"tip deflection [{units.length_unit().name}]")
+    ax = axes_and_lines.set_up_axes(ax, "time [s]", f"tip deflection [{units.length_unit().name}]")
     for colour, row, label in zip(COLOURS, np.atleast_2d(tip), labels, strict=False):
         width = 0.8 if len(t) > _MOST_THICK else 1.8
         ax.plot(t, units.length_unit().of(row), color=colour, linewidth=width, label=label)
@@ -387,7 +382,7 @@ def plot_frequency_response(
     ax : Axes, optional
         Where to draw; new axes if not given.
     """
-    ax = set_up_axes(ax, "frequency [Hz]", ylabel)
+    ax = axes_and_lines.set_up_axes(ax, "frequency [Hz]", ylabel)
     for (frequencies, size), label in zip(curves, labels, strict=True):
         drawn = frequencies > 0
         ax.loglog(frequencies[drawn], size[drawn], label=label or None)

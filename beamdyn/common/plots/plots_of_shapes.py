@@ -8,16 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.plots.axes_and_lines import (
-    draw_lines,
-    name_colour,
-    name_planes,
-    new_axes,
-    panels,
-    position_label,
-    set_up_axes,
-    style_by_plane,
-)
+from beamdyn.common.plots import axes_and_lines
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend
 
@@ -60,7 +51,7 @@ def plot_shapes(
     largest = np.abs(shapes).max(axis=1, keepdims=True)
     scaled = shapes / np.where(largest == 0, 1.0, largest)
     ax = _set_up_shapes(ax, units)
-    draw_lines(ax, units.length_unit("m").of(x), scaled, labels)
+    axes_and_lines.draw_lines(ax, units.length_unit("m").of(x), scaled, labels)
     return add_legend(ax)
 
 
@@ -98,9 +89,9 @@ def plot_shapes_by_plane(
     ax, x = _set_up_shapes(ax, units), units.length_unit("m").of(x)
     for i, (both, label) in enumerate(zip(scaled, labels, strict=True)):
         for row, dashes in zip(both, ("-", "--"), strict=True):
-            ax.plot(x, row, dashes, **style_by_plane(i))
-        name_colour(ax, label, i)
-    return name_planes(ax, directions)
+            ax.plot(x, row, dashes, **axes_and_lines.style_by_plane(i))
+        axes_and_lines.name_colour(ax, label, i)
+    return axes_and_lines.name_planes(ax, directions)
 
 
 def plot_surfaces(
@@ -139,7 +130,7 @@ def plot_surfaces(
     scale = 1 / np.where(largest == 0, 1.0, largest)
     width = float(np.ptp(y))
     scaled, moved = shapes * scale[:, None, None], y - _ASIDE * width * (across * scale[:, None])[:, :, None]
-    ax, each = panels(len(labels), ax, _panels_in_a_row(len(labels), float(x[-1]), width))
+    ax, each = axes_and_lines.panels(len(labels), ax, _panels_in_a_row(len(labels), float(x[-1]), width))
     colours = [_draw_surface(*one, units) for one in zip(each, repeat(x), moved, scaled, labels)]
     bar = ax.figure.colorbar(colours[0], ax=each, ticks=[-1, 0, 1], shrink=0.8)
     bar.set_label("deflection / its largest value")
@@ -170,7 +161,7 @@ def _draw_surface(
     ax.plot(x[0], y[0], color="black", linewidth=3.0)
     ax.set_aspect("equal")
     ax.set_title(label, fontsize=9)
-    ax.set_xlabel(position_label(units), fontsize=9)
+    ax.set_xlabel(axes_and_lines.position_label(units), fontsize=9)
     ax.set_ylabel(f"y [{unit.name}]", fontsize=9)
     ax.set_yticks(y[0, [0, -1]])
     ax.tick_params(labelsize=9)
@@ -180,14 +171,16 @@ def _draw_surface(
 
 def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
     """Label the axes for mode shapes, each over its largest deflection, and draw the beam at rest."""
-    ax = set_up_axes(ax, position_label(units), "deflection / its largest value")
+    ax = axes_and_lines.set_up_axes(
+        ax, axes_and_lines.position_label(units), "deflection / its largest value"
+    )
     ax.axhline(0, color="0.4", linewidth=0.8)
     return ax
 
 
 def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
     """Draw a bent beam to one scale: its positions along the straight beam and across it, over its length."""
-    ax = new_axes() if ax is None else ax
+    ax = axes_and_lines.new_axes() if ax is None else ax
     ax.plot(along, across, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
     labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}

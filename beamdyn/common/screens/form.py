@@ -9,26 +9,8 @@ from typing import Any
 from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.screens import form_entries
 from beamdyn.common.screens.controls import DragSlider
-from beamdyn.common.screens.form_entries import (
-    NOT_GIVEN,
-    Reading,
-    default_words,
-    has_rows,
-    heading_of,
-    help_of,
-    in_unit,
-    is_bare,
-    label,
-    label_html,
-    name_words,
-    options_of,
-    read_entry,
-    table_of,
-    unit_of,
-    units_of,
-    usual_unit,
-)
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
@@ -80,7 +62,7 @@ class Form:
         self._rest: dict[str, Any] = {}  # folded parts of tables
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
-            chosen = [entry for entry in inputs if table_of(entry.path) == section]
+            chosen = [entry for entry in inputs if form_entries.table_of(entry.path) == section]
             if chosen:
                 presets = [preset for preset in screen.presets if preset.table == section]
                 self._section(section, chosen, presets, work)
@@ -92,9 +74,12 @@ class Form:
         entries, drags = work.entries, self._drags
         first = [e for e in chosen if e.required or e.path in drags or entries.get(e.path, "")]
         rest = [entry for entry in chosen if entry not in first]
-        usual = len(chosen) <= _FEW and all(default_words(entry) != NOT_GIVEN for entry in chosen)
+        usual = len(chosen) <= _FEW and all(
+            form_entries.default_words(entry) != form_entries.NOT_GIVEN for entry in chosen
+        )
         table = ui.expansion(
-            heading_of(section, work.document.headings), value=bool(first) or usual or not section
+            form_entries.heading_of(section, work.document.headings),
+            value=bool(first) or usual or not section,
         )
         with table.classes("w-full section").props("dense"):
             for preset in presets:
@@ -129,14 +114,14 @@ class Form:
         made.on("popup-show", lambda: made.set_value(preset.chosen(text)))
 
     def _field(self, entry: Input, text: str) -> None:
-        made = self._select(entry, text) if options_of(entry) else self._input(entry, text)
+        made = self._select(entry, text) if form_entries.options_of(entry) else self._input(entry, text)
         made.without_auto_validation()  # mistakes are marked by the answer, not by the field
         made.classes("w-full").props(
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
         )
-        made.props["hint"] = help_of(entry)
+        made.props["hint"] = form_entries.help_of(entry)
         if entry.quantity.symbol:
-            made.add_slot("label", label_html(entry))
+            made.add_slot("label", form_entries.label_html(entry))
         self.fields[entry.path] = made
         if entry.path in self._drags:
             self._slider(self._drags[entry.path], entry, made)
@@ -146,7 +131,7 @@ class Form:
 
         def place() -> float | None:
             text = self._read(entry.path).text
-            given = in_unit(text, entry.quantity, drag.unit).partition(" ")[0]
+            given = form_entries.in_unit(text, entry.quantity, drag.unit).partition(" ")[0]
             try:
                 return min(max(float(given), drag.low), drag.high)
             except ValueError:
@@ -173,21 +158,24 @@ class Form:
         at = drag.low if start is None else start
         made = DragSlider(follow, **ends, step=drag.step, value=at, on_change=lambda e: write(e.value))
         unit = f" [{drag.unit}]" if drag.unit else ""
-        made.props(f'dense aria-label="{label(entry)}{unit}"').classes("q-px-md")
+        made.props(f'dense aria-label="{form_entries.label(entry)}{unit}"').classes("q-px-md")
         field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
 
     def _select(self, entry: Input, text: str) -> Any:
-        options = {option: option.replace("_", " ") for option in options_of(entry)}
+        options = {option: option.replace("_", " ") for option in form_entries.options_of(entry)}
         if not entry.required:
-            default = default_words(entry)
-            options = {"": default if default == NOT_GIVEN else f"{NOT_GIVEN}: {default}", **options}
-        made = ui.select(options, value=text if text in options else None, label=label(entry))
+            default = form_entries.default_words(entry)
+            options = {
+                "": default if default == form_entries.NOT_GIVEN else f"{form_entries.NOT_GIVEN}: {default}",
+                **options,
+            }
+        made = ui.select(options, value=text if text in options else None, label=form_entries.label(entry))
         return made.on_value_change(lambda e: self._changed(entry.path, e.value or ""))
 
     def _input(self, entry: Input, text: str) -> Any:
-        usual, several = default_words(entry), has_rows(entry)
+        usual, several = form_entries.default_words(entry), form_entries.has_rows(entry)
         field: Any = (ui.textarea if several else ui.input)(
-            label(entry),
+            form_entries.label(entry),
             value=text,
             placeholder="" if entry.required else usual,
             on_change=lambda e: self._heard(entry, e.value or ""),
@@ -200,9 +188,9 @@ class Form:
                 field.set_value(read.text)
 
         field.on("blur", tidy)
-        given = unit_of(text, entry) or unit_of(usual, entry)
-        self._units[entry.path] = given or usual_unit(entry.quantity.unit)
-        units = units_of(entry)
+        given = form_entries.unit_of(text, entry) or form_entries.unit_of(usual, entry)
+        self._units[entry.path] = given or form_entries.usual_unit(entry.quantity.unit)
+        units = form_entries.units_of(entry)
         if len(units) > 1:
             with field.add_slot("append"):
                 self._unit_button(entry, field, units)
@@ -212,22 +200,22 @@ class Form:
         """Read a text that was typed or written into a field, and show how it was read."""
         self.typed[entry.path] = typed
         read, field = self._read(entry.path), self.fields[entry.path]
-        self._units[entry.path] = unit_of(read.text, entry) or self._units[entry.path]
-        field.props["hint"] = read.remark or help_of(entry)
-        field.props["suffix"] = self._units[entry.path] if is_bare(field.value or "") else ""
+        self._units[entry.path] = form_entries.unit_of(read.text, entry) or self._units[entry.path]
+        field.props["hint"] = read.remark or form_entries.help_of(entry)
+        field.props["suffix"] = self._units[entry.path] if form_entries.is_bare(field.value or "") else ""
         self._changed(entry.path, read.text)
 
-    def _read(self, path: str) -> Reading:
+    def _read(self, path: str) -> form_entries.Reading:
         """The text of a field, as it is read."""
         typed = self.fields[path].value or ""
-        return read_entry(typed, self._inputs[path], self._units.get(path, ""))
+        return form_entries.read_entry(typed, self._inputs[path], self._units.get(path, ""))
 
     def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
         """A button whose menu converts the field's value to another unit; made at the first click."""
 
         def put(unit: str) -> None:
             self._units[entry.path] = unit
-            field.set_value(in_unit(self._read(entry.path).text, entry.quantity, unit))
+            field.set_value(form_entries.in_unit(self._read(entry.path).text, entry.quantity, unit))
 
         def choose() -> None:
             button.clear()
@@ -236,7 +224,7 @@ class Form:
                     ui.menu_item(unit, partial(put, unit))
 
         button = ui.button(icon="straighten", on_click=choose)
-        button.props(f'flat dense round size=sm aria-label="unit of {name_words(entry)}"')
+        button.props(f'flat dense round size=sm aria-label="unit of {form_entries.name_words(entry)}"')
 
     def put(self, entries: Mapping[str, str]) -> None:
         """Show these entries; fields that show theirs already are left alone."""
@@ -255,7 +243,7 @@ class Form:
 
     def hide(self, paths: Collection[str]) -> None:
         """Hide these fields, and tables that have no others; show the rest."""
-        shown = {table_of(path) for path in self.fields if path not in paths}
+        shown = {form_entries.table_of(path) for path in self.fields if path not in paths}
         for path, place in self._places.items():
             place.set_visibility(path not in paths)
         for section, table in self._tables.items():
@@ -271,6 +259,6 @@ class Form:
 
     def _unfold(self, path: str) -> None:
         """Open the table that holds a field, and its folded part if it is there."""
-        self._tables[table_of(path)].open()
+        self._tables[form_entries.table_of(path)].open()
         if path in self._rest:
             self._rest[path].open()

@@ -16,15 +16,7 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
 from beamdyn.common.edge.tables import FittedTable
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.screens.form_entries import (
-    NOT_GIVEN,
-    Entries,
-    default_words,
-    help_of,
-    label,
-    table_of,
-    tables_of,
-)
+from beamdyn.common.screens import form_entries
 from beamdyn.common.screens.open_document import OpenDocument, Outcome, ShownAnswer
 from beamdyn.common.screens.processes import TakesTooLong
 from beamdyn.common.screens.screens import Document, Screen
@@ -37,22 +29,24 @@ _FEW = 3  # fields that are changed by hand between two answers; a file that is 
 # Tasks: functions of a document, a screen, and what else is needed, which run in any process ---------------
 
 
-def solve(document: Document, screen: Screen, entries: Entries) -> Outcome:
+def solve(document: Document, screen: Screen, entries: form_entries.Entries) -> Outcome:
     """The whole answer to these entries, also what takes time; or what is wrong, by field."""
     return _opened(document, entries).attempt(screen)
 
 
-def solve_for_drawing(document: Document, screen: Screen, entries: Entries) -> Outcome:
+def solve_for_drawing(document: Document, screen: Screen, entries: form_entries.Entries) -> Outcome:
     """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field."""
     return _opened(document, entries).attempt(screen, for_drawing=True)
 
 
-def sweep(document: Document, screen: Screen, entries: Entries, text: str, results: str) -> Swept:
+def sweep(
+    document: Document, screen: Screen, entries: form_entries.Entries, text: str, results: str
+) -> Swept:
     """A sweep of one of these entries, or why there is none."""
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
-        return screen.sweeps.run(tables_of(work.needed(screen), work.inputs), text, results)
+        return screen.sweeps.run(form_entries.tables_of(work.needed(screen), work.inputs), text, results)
     except (ValueError, ArithmeticError, NoAnswer) as error:
         return reason_of(error)
 
@@ -82,7 +76,7 @@ def sweep_file(document: Document, screen: Screen, swept: InputSweep, kind: str)
 def report(
     document: Document,
     screen: Screen,
-    entries: Entries,
+    entries: form_entries.Entries,
     answered: Mapping[str, ShownAnswer],
     title: str,
     sweeps: Shown,
@@ -95,7 +89,7 @@ def report(
     return report_of(work, title, [(said, picture(file.decode(), said)) for said, file in files])
 
 
-def _opened(document: Document, entries: Entries) -> OpenDocument:
+def _opened(document: Document, entries: form_entries.Entries) -> OpenDocument:
     work = OpenDocument(document)
     work.entries = entries
     return work
@@ -140,11 +134,11 @@ def inputs_html(work: OpenDocument) -> str:
     made, idle = FittedTable(("input", "value", "", "meaning"), (0, 1, 2, 3)), work.idle
     for entry in work.inputs:
         if entry.path not in idle:
-            text, default = work.entries.get(entry.path, "").strip(), default_words(entry)
-            table = table_of(entry.path).replace("_", " ")
-            state = "given" if text else "" if default == NOT_GIVEN else "default"
-            name = f"{table}: {label(entry)}" if table else label(entry)
-            made.add_row(name, text or default, state, help_of(entry))
+            text, default = work.entries.get(entry.path, "").strip(), form_entries.default_words(entry)
+            table = form_entries.table_of(entry.path).replace("_", " ")
+            state = "given" if text else "" if default == form_entries.NOT_GIVEN else "default"
+            name = f"{table}: {form_entries.label(entry)}" if table else form_entries.label(entry)
+            made.add_row(name, text or default, state, form_entries.help_of(entry))
     return html([made])
 
 

@@ -17,15 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.common.edge.data_text import (
-    DataText,
-    check_all_there,
-    check_named,
-    named_number,
-    named_values,
-    plain_name,
-    read_data,
-)
+from beamdyn.common.edge import data_text
 from beamdyn.files.decks.blade import (
     Blade,
     DeckColumn,
@@ -70,21 +62,23 @@ _PROPERTIES = {
 _TIP = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
 _NEEDED = ("beam_type", "radius", "hub_rad", "precone", "bl_thp", "hub_conn", *_TIP, "sec_props_file")
 _NEEDED = (*_NEEDED, *(multiplier for _, multiplier in _PROPERTIES.values()))
-_MAIN_NAMES = {plain_name(name): name for name in _NEEDED}
-_OF_OFFSETS = tuple(plain_name(f"{name}_mult") for name in _OFFSETS)
+_MAIN_NAMES = {data_text.plain_name(name): name for name in _NEEDED}
+_OF_OFFSETS = tuple(data_text.plain_name(f"{name}_mult") for name in _OFFSETS)
 # Version 3 has the axial offset, and other names than version 1 for the speed.
 _MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult", *_OF_OFFSETS)
 
 
-def read_main_file(text: DataText) -> Blade:
+def read_main_file(text: data_text.DataText) -> Blade:
     """Read the main file and the section properties that it names."""
-    found = named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
-    check_all_there(text, found, _MAIN_NAMES)
-    values = {name: named_number(text, named) for name, named in found.items() if name != "secpropsfile"}
+    found = data_text.named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
+    data_text.check_all_there(text, found, _MAIN_NAMES)
+    values = {
+        name: data_text.named_number(text, named) for name, named in found.items() if name != "secpropsfile"
+    }
 
     # Refuse what is no cantilevered blade.
     def check(key: str, good: bool, wanted: str) -> None:
-        check_named(text, found[key], good, wanted)
+        data_text.check_named(text, found[key], good, wanted)
 
     check("beamtype", values["beamtype"] == 1, "= 1, a blade (towers are not read)")
     check("hubconn", values["hubconn"] == 1, "= 1, a cantilever (other roots are not read)")
@@ -93,13 +87,13 @@ def read_main_file(text: DataText) -> Blade:
     check("tipmass", values["tipmass"] >= 0, "of 0 or more")
     check("precone", abs(values["precone"]) < 90, "below 90 deg either way")
     for _, multiplier in _PROPERTIES.values():
-        key = plain_name(multiplier)
+        key = data_text.plain_name(multiplier)
         check(key, values[key] > 0, "above 0")
-    multipliers = {name: values[plain_name(name)] for _, name in _PROPERTIES.values()}
+    multipliers = {name: values[data_text.plain_name(name)] for _, name in _PROPERTIES.values()}
     multipliers |= {
         f"{name}_mult": values.get(key, 1.0) for name, key in zip(_OFFSETS, _OF_OFFSETS, strict=True)
     }
-    sections = read_data(named_file(text, found["secpropsfile"]))
+    sections = data_text.read_data(named_file(text, found["secpropsfile"]))
     hub_radius = values["hubrad"]
     blade, axis = _read_sections(sections, values["radius"] - hub_radius, hub_radius, multipliers)
     tip, left_out = _tip_body(values, axis)
@@ -145,7 +139,7 @@ def _tip_body(
 
 
 def read_section_file(
-    text: DataText, length: float, hub_radius: float, multipliers: dict[str, float] | None = None
+    text: data_text.DataText, length: float, hub_radius: float, multipliers: dict[str, float] | None = None
 ) -> Blade:
     """Read section properties.
 
@@ -167,11 +161,11 @@ def read_section_file(
 
 
 def _read_sections(
-    text: DataText, length: float, hub_radius: float, multipliers: dict[str, float]
+    text: data_text.DataText, length: float, hub_radius: float, multipliers: dict[str, float]
 ) -> tuple[Blade, float | None]:
     """The blade, and the shear centre at its tip along y [m]; None without torsion."""
-    found = named_values(text, {"nsecs"})
-    check_all_there(text, found, {"nsecs": "n_secs"})
+    found = data_text.named_values(text, {"nsecs"})
+    data_text.check_all_there(text, found, {"nsecs": "n_secs"})
     table = read_stations(text, _columns(text), found["nsecs"])
     columns, left_out = _properties(table, multipliers)
     has_torsion = {"torsion_stiffness", "rotary_inertia"} <= columns.keys()
@@ -192,7 +186,7 @@ def _read_sections(
 
 
 def _from_shear_centre(
-    text: DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
+    text: data_text.DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Columns from the shear centre by `convert_offsets`; an error names the line without stiffness."""
     edge = columns["second_bending_stiffness"]
@@ -224,9 +218,11 @@ def convert_offsets(
     }
 
 
-def _columns(text: DataText) -> tuple[DeckColumn, ...]:
+def _columns(text: data_text.DataText) -> tuple[DeckColumn, ...]:
     """The columns: the first is sec_loc, or span_loc in older files."""
-    firsts = {plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]}
+    firsts = {
+        data_text.plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]
+    }
     return (replace(COLUMNS[0], name="span_loc"), *COLUMNS[1:]) if "spanloc" in firsts else COLUMNS
 
 

@@ -14,16 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beamdyn.common.edge.data_text import (
-    DataText,
-    NamedValue,
-    check_all_there,
-    check_named,
-    named_number,
-    named_values,
-    plain_name,
-    read_data,
-)
+from beamdyn.common.edge import data_text
 from beamdyn.files.decks.audit import SHAPE_NAMES
 from beamdyn.files.decks.blade import (
     Blade,
@@ -75,7 +66,7 @@ _DAMPING = ("BldFlDmp(1)", "BldFlDmp(2)", "BldEdDmp(1)")
 _TUNERS = ("FlStTunr(1)", "FlStTunr(2)")
 _SHAPES = {mode: [f"{name}({power})" for power in range(2, 7)] for mode, name in SHAPE_NAMES.items()}
 _BLADE_NAMES = {
-    plain_name(name): name
+    data_text.plain_name(name): name
     for name in (
         "NBlInpSt",
         *_DAMPING,
@@ -85,34 +76,35 @@ _BLADE_NAMES = {
     )
 }
 _MAIN_NAMES = {
-    plain_name(name): name for name in ("TipRad", "HubRad", "PreCone(1)", "TipMass(1)", "BldFile(1)")
+    data_text.plain_name(name): name
+    for name in ("TipRad", "HubRad", "PreCone(1)", "TipMass(1)", "BldFile(1)")
 }
 _ELASTODYN = 1  # CompElast: 2 is BeamDyn's blades with ElastoDyn's hub, 3 a simplified ElastoDyn
-_MAIN_MORE = {plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
+_MAIN_MORE = {data_text.plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
 
 
-def read_openfast_file(text: DataText) -> Blade:
+def read_openfast_file(text: data_text.DataText) -> Blade:
     """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
-    found = named_values(text, {"edfile", "compelast"})
-    blade = read_main_file(read_data(named_file(text, found["edfile"])))
-    model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
+    found = data_text.named_values(text, {"edfile", "compelast"})
+    blade = read_main_file(data_text.read_data(named_file(text, found["edfile"])))
+    model = data_text.named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
     reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
     ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *blade.ignored)
     return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
 
 
-def read_main_file(text: DataText) -> Blade:
+def read_main_file(text: data_text.DataText) -> Blade:
     """Read the first blade of a rotor: the main file, and the blade file that it names."""
-    found = named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())
-    check_all_there(text, found, _MAIN_NAMES)
-    values = {key: named_number(text, named) for key, named in found.items() if key != "bldfile1"}
+    found = data_text.named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())
+    data_text.check_all_there(text, found, _MAIN_NAMES)
+    values = {key: data_text.named_number(text, named) for key, named in found.items() if key != "bldfile1"}
     hub_radius, tip_radius = values["hubrad"], values["tiprad"]
     wanted = f"of 0 or more and below TipRad = {tip_radius:g}"
-    check_named(text, found["hubrad"], 0 <= hub_radius < tip_radius, wanted)
-    check_named(text, found["tipmass1"], values["tipmass1"] >= 0, "of 0 or more")
-    check_named(text, found["precone1"], abs(values["precone1"]) < 90, "below 90 deg either way")
+    data_text.check_named(text, found["hubrad"], 0 <= hub_radius < tip_radius, wanted)
+    data_text.check_named(text, found["tipmass1"], values["tipmass1"] >= 0, "of 0 or more")
+    data_text.check_named(text, found["precone1"], abs(values["precone1"]) < 90, "below 90 deg either way")
     blade = read_blade_file(
-        read_data(named_file(text, found["bldfile1"])), tip_radius - hub_radius, hub_radius
+        data_text.read_data(named_file(text, found["bldfile1"])), tip_radius - hub_radius, hub_radius
     )
     return replace(
         blade,
@@ -125,7 +117,7 @@ def read_main_file(text: DataText) -> Blade:
     )
 
 
-def named_file(text: DataText, named: NamedValue) -> Path:
+def named_file(text: data_text.DataText, named: data_text.NamedValue) -> Path:
     """The file that a file names, from its own folder; it must be there."""
     path = text.path.parent / named.word.replace("\\", "/")
     if not path.is_file():
@@ -133,7 +125,7 @@ def named_file(text: DataText, named: NamedValue) -> Path:
     return path
 
 
-def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
+def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) -> Blade:
     """Read a blade file.
 
     Parameters
@@ -148,13 +140,13 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
     ConfigError
         If something is missing or not as expected.
     """
-    found = named_values(text, _BLADE_NAMES.keys())
-    check_all_there(text, found, {"nblinpst": "NBlInpSt"})
+    found = data_text.named_values(text, _BLADE_NAMES.keys())
+    data_text.check_all_there(text, found, {"nblinpst": "NBlInpSt"})
     table = read_stations(text, COLUMNS, found["nblinpst"])
-    check_all_there(text, found, _BLADE_NAMES)
+    data_text.check_all_there(text, found, _BLADE_NAMES)
 
     def numbers(*names: str) -> np.ndarray:
-        return np.array([named_number(text, found[plain_name(name)]) for name in names])
+        return np.array([data_text.named_number(text, found[data_text.plain_name(name)]) for name in names])
 
     damping = numbers(*_DAMPING) / 100
     # What the file says it is of: its second line, or that below two lines of dashes in FAST 7.
@@ -162,9 +154,9 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
     # The factor of each column; positive.
     factors = {}
     for name, column in _FACTORS.items():
-        named = found[plain_name(name)]
-        factors[column] = named_number(text, named)
-        check_named(text, named, factors[column] > 0, "above 0")
+        named = found[data_text.plain_name(name)]
+        factors[column] = data_text.named_number(text, named)
+        data_text.check_named(text, named, factors[column] > 0, "above 0")
     return Blade(
         kind="ElastoDyn blade file",
         title=next(plain, ""),

@@ -19,6 +19,7 @@ from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
 
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
+from beamdyn.modes.modal import springs
 from beamdyn.modes.modal.diagonal_stiffness import (
     LEAST_STIFFNESS,
     above_rounding,
@@ -35,16 +36,6 @@ from beamdyn.modes.modal.quadratic_eigenproblem import (
     solve_first_order,
     solve_general,
     solve_gyroscopic,
-)
-from beamdyn.modes.modal.springs import (
-    factor_graded,
-    find_free_turns,
-    insert_free_turns,
-    part_free_turns,
-    remove_shift,
-    softening_of_graded,
-    softening_on_springs,
-    solve_definite,
 )
 
 _EPS = np.finfo(float).eps
@@ -191,10 +182,10 @@ class Solver(Eigensolver):
     @cached_property
     def _softening(self) -> tuple[float, float]:
         if self.pencil.shift:
-            if (found := softening_of_graded(self.pencil)) is not None:
+            if (found := springs.softening_of_graded(self.pencil)) is not None:
                 return found
             growth, _, mass = self._diagonal
-            return softening_on_springs(mass, growth, self.pencil.shift)
+            return springs.softening_on_springs(mass, growth, self.pencil.shift)
         growth = self._diagonal[0]
         lowest, lost = -float(growth[0]), 2 * BACKWARD * np.abs(growth).max()
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
@@ -243,7 +234,7 @@ class Solver(Eigensolver):
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """One speed is solved by a factorization, others in the coordinates of the solver, each by itself."""
         if self.pencil.shift:
-            return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
+            return np.array([springs.solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
         if (L := self.factor(speeds)) is not None:
             load = speeds[0] ** 2 * self.pencil.f2
             return (outputs @ solve_lower_transposed(L, solve_lower(L, load[:, None]))[:, 0])[None]
@@ -264,8 +255,8 @@ class Solver(Eigensolver):
         by_matrices = rounding_of_matrices(terms, squared, z, size, np.abs(self.pencil.M))
         rounding += rounding_of_scene(self.pencil, speeds, squared, size, by_matrices)
         if self.pencil.shift:
-            squared, rounding = remove_shift(self.pencil, speeds, squared, vector, rounding)
-            vector = part_free_turns(self.pencil, squared, vector)
+            squared, rounding = springs.remove_shift(self.pencil, speeds, squared, vector, rounding)
+            vector = springs.part_free_turns(self.pencil, squared, vector)
         root = np.sqrt(np.abs(squared))
         eigenvalue = np.where(squared > 0, 1j * root, root)
         return Eigen(eigenvalue, vector, np.where(squared == 0, np.inf, rounding))
@@ -280,7 +271,7 @@ class Solver(Eigensolver):
         """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
         pencil, n = self.pencil, self.size
         on_springs = pencil.shift and not pencil.C.any() and not self._has_massless
-        if on_springs and (graded := factor_graded(pencil, speed)):
+        if on_springs and (graded := springs.factor_graded(pencil, speed)):
             return self._solve_graded(speed, count, *graded)
         growth, T, mass = self._diagonal
         stiffness = 1 + speed**2 * growth
@@ -298,7 +289,7 @@ class Solver(Eigensolver):
         turns = np.empty((n, 0))  # about hinges on which neither stiffness nor damping acts
         if pencil.shift:
             undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
-            turns = find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
+            turns = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
         if turns.size:  # each turn has 0 twice
             slowest = np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - 2 * turns.shape[1]]
             inverse, y = inverse[np.sort(slowest)], y[:, np.sort(slowest)]
@@ -308,7 +299,7 @@ class Solver(Eigensolver):
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
         modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
-        return insert_free_turns(turns, *modes, count) if turns.size else modes
+        return springs.insert_free_turns(turns, *modes, count) if turns.size else modes
 
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float

@@ -9,18 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.effects import (
-    CAMBER,
-    EXCLUSIVE,
-    LARGE_DEFLECTION,
-    SECOND_PLANE,
-    SHEAR,
-    TORSION,
-    TWIST,
-    Effect,
-    add_effects,
-    effects_left_out,
-)
+from beamdyn.equations import effects
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
@@ -29,8 +18,8 @@ ASSUMED_POISSONS_RATIO = 0.3
 # Where a section lacks Poisson's ratio: the largest of a uniform material, as the change grows from 0 with
 # it; or a usual one, by which a frequency of torsion is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
-    CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
-    TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
+    effects.CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
+    effects.TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
 MOST_CAMBER = "as if no section cambered, which is the most"
 _RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
@@ -50,7 +39,7 @@ class Addition:
         What was assumed about the beam to include it; empty if nothing.
     """
 
-    effect: Effect
+    effect: effects.Effect
     scene: Scene
     assumed: str = ""
 
@@ -75,7 +64,7 @@ def _assume_shear(beam: Beam) -> Beam | None:
     return replace(beam, shear_stiffness=stiffness, second_shear_stiffness=stiffness)
 
 
-def _assume(scene: Scene, effect: Effect) -> Iterator[tuple[Scene, str]]:
+def _assume(scene: Scene, effect: effects.Effect) -> Iterator[tuple[Scene, str]]:
     """Yield the scene, and one with what is assumed about its beam where an effect lacks data, with what."""
     yield scene, ""
     section = scene.beam.section
@@ -83,7 +72,7 @@ def _assume(scene: Scene, effect: Effect) -> Iterator[tuple[Scene, str]]:
         ratio, said = _ASSUMED_OF_SECTIONS[effect]
         beam = scene.beam.with_section(replace(section, poissons_ratio=ratio))
         yield replace(scene, beam=beam), said
-    if scene.physics.shear or effect is SHEAR:
+    if scene.physics.shear or effect is effects.SHEAR:
         beam = _assume_shear(scene.beam)
         if beam is not None:
             yield replace(scene, beam=beam), f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"
@@ -101,24 +90,26 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
     not_modelled : tuple of str
         Those that no model has.
     """
-    left_out = [effect for effect in effects_left_out(scene) if effect is not LARGE_DEFLECTION]
-    if TWIST in left_out:  # it needs the second plane: the two are one effect
-        left_out.remove(SECOND_PLANE)
+    left_out = [
+        effect for effect in effects.effects_left_out(scene) if effect is not effects.LARGE_DEFLECTION
+    ]
+    if effects.TWIST in left_out:  # it needs the second plane: the two are one effect
+        left_out.remove(effects.SECOND_PLANE)
     additions, not_known = [], {}
-    for effect in (effect for effect in left_out if effect.switch and effect is not TORSION):
+    for effect in (effect for effect in left_out if effect.switch and effect is not effects.TORSION):
         try:
             additions.append(add_effect(scene, effect))
         except InvalidValue as refusal:
             excluded = scene.physics.large_deflection and not effect.bends_in_space
-            why = EXCLUSIVE if excluded else str(refusal)
+            why = effects.EXCLUSIVE if excluded else str(refusal)
             not_known[effect.name] = f"give {refusal.other}" if refusal.other else why
     not_modelled = [effect.name for effect in left_out if not effect.switch]
-    if TORSION in left_out and not can_add(scene, TORSION):
-        not_modelled.insert(0, TORSION.name)
+    if effects.TORSION in left_out and not can_add(scene, effects.TORSION):
+        not_modelled.insert(0, effects.TORSION.name)
     return additions, not_known, tuple(not_modelled)
 
 
-def add_effect(scene: Scene, effect: Effect) -> Addition:
+def add_effect(scene: Scene, effect: effects.Effect) -> Addition:
     """Add an effect that a scene leaves out, with an assumption about the beam if that does.
 
     Where camber is not modelled, of a twisted beam and of a width that jumps, it is bounded.
@@ -131,13 +122,13 @@ def add_effect(scene: Scene, effect: Effect) -> Addition:
     *assumptions, last = _assume(scene, effect)
     for given, assumed in assumptions:
         with suppress(InvalidValue):
-            return Addition(effect, add_effects(given, [effect]), assumed)
+            return Addition(effect, effects.add_effects(given, [effect]), assumed)
     try:
-        return Addition(effect, add_effects(last[0], [effect]), last[1])
+        return Addition(effect, effects.add_effects(last[0], [effect]), last[1])
     except InvalidValue:
-        if effect is not CAMBER or scene.beam.section is None or scene.physics.large_deflection:
+        if effect is not effects.CAMBER or scene.beam.section is None or scene.physics.large_deflection:
             raise
-    return Addition(CAMBER, without_camber(last[0]), ", ".join(filter(None, [last[1], MOST_CAMBER])))
+    return Addition(effects.CAMBER, without_camber(last[0]), ", ".join(filter(None, [last[1], MOST_CAMBER])))
 
 
 def without_camber(scene: Scene) -> Scene:
@@ -150,7 +141,7 @@ def without_camber(scene: Scene) -> Scene:
     return replace(scene, beam=replace(beam, bending_stiffness=flat, second_bending_stiffness=across))
 
 
-def can_add(scene: Scene, effect: Effect) -> bool:
+def can_add(scene: Scene, effect: effects.Effect) -> bool:
     """Whether an effect that a scene leaves out can be added."""
     with suppress(InvalidValue):
         return bool(add_effect(scene, effect))

@@ -20,16 +20,9 @@ from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.kinds import BENDING, kinds_of_modes
 from beamdyn.modes.modal.model import Model, bends
+from beamdyn.modes.model_error import reference_modes
 from beamdyn.modes.model_error.additions import Addition, list_effects
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
-from beamdyn.modes.model_error.reference_modes import (
-    EXTRA_MODES,
-    BaseEquations,
-    buckling_mode,
-    match_modes,
-    shift_critical_speed,
-    shift_eigenvalues,
-)
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
@@ -79,7 +72,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         with it.
     """
     modes = eigenvalue.shape[1]
-    base = BaseEquations.of(without_large_deflection(model), modes)
+    base = reference_modes.BaseEquations.of(without_large_deflection(model), modes)
     references, reversals = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)], {}
 
     def change(added: Addition) -> np.ndarray:
@@ -124,10 +117,10 @@ def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -
     """Eigenvalues (m,) by equations with an effect of the modes s (m,), v (n, m) that vibrate or diverge."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
-    shifted[known] = shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
+    shifted[known] = reference_modes.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
     if lost.any():  # a step of inverse iteration may lead to a neighbour
-        shifted[lost] = match_modes(equations, speed, v[:, lost], _AMONG * len(s))
+        shifted[lost] = reference_modes.match_modes(equations, speed, v[:, lost], _AMONG * len(s))
     return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # of a pair the one that is listed
 
 
@@ -175,7 +168,10 @@ def _bent_change_at(
     """Relative changes (m,) at one speed, and why they are not known."""
     if not speed:
         return np.zeros(len(eigenvalue)), ""
-    count, speeds = min(len(eigenvalue) + EXTRA_MODES, straight.solver.size), np.array([speed])
+    count, speeds = (
+        min(len(eigenvalue) + reference_modes.EXTRA_MODES, straight.solver.size),
+        np.array([speed]),
+    )
     without = straight.solver.solve(speeds, count).eigenvalue[0]
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
@@ -213,14 +209,14 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     LeftOutEffects
         Relative changes, of shape ().
     """
-    base = BaseEquations.of(without_large_deflection(model), 1)
+    base = reference_modes.BaseEquations.of(without_large_deflection(model), 1)
 
     def change(added: Addition) -> np.ndarray:
         near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
-        v = buckling_mode(pencil, critical)
-        known = shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effect
-        shifted = shift_critical_speed(equations.steady(), known, near.embed(equations, v))
+        v = reference_modes.buckling_mode(pencil, critical)
+        known = reference_modes.shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effect
+        shifted = reference_modes.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
         return np.array(shifted / known - 1)
 
     bent, reason = None, ""

@@ -28,14 +28,7 @@ from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
-from beamdyn.studies.campbell.line_crossings import (
-    LineCrossing,
-    Margin,
-    coincident,
-    find_crossings,
-    margins_at_rated,
-    margins_in_range,
-)
+from beamdyn.studies.campbell import line_crossings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -97,8 +90,8 @@ class Campbell(StatesModelError):
     names: tuple[tuple[str, ...], ...]
     loci: tuple[Locus, ...]
     lines: tuple[Line, ...]
-    crossings: tuple[LineCrossing, ...]
-    margins: tuple[Margin, ...]
+    crossings: tuple[line_crossings.LineCrossing, ...]
+    margins: tuple[line_crossings.Margin, ...]
     bounds: tuple[tuple[str, FrequencyBounds], ...]
     rated: float | None
     operating: tuple[float, float] | None
@@ -267,10 +260,10 @@ def campbell(
     named = [*zip(by_label, names, loci, strict=True)]
     crossings, margins = [], []
     for one in named:
-        found = find_crossings(*one, lines, operating)
+        found = line_crossings.find_crossings(*one, lines, operating)
         crossings += found
-        margins += [] if rated is None else margins_at_rated(*one, lines, rated)
-        margins += [] if operating is None else margins_in_range(*one, lines, operating, found)
+        margins += [] if rated is None else line_crossings.margins_at_rated(*one, lines, rated)
+        margins += [] if operating is None else line_crossings.margins_in_range(*one, lines, operating, found)
     bounded, refused = _bound(named, speeds[-1] if rated is None else rated) if bounds else ([], [])
     methods = (", ".join(dict.fromkeys(getattr(c.provenance, n) for c in loci)) for n in _METHODS)
     return Campbell(
@@ -425,7 +418,7 @@ def _bound(
 def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence[Line]) -> Iterator[str]:
     for label, names, locus in named:
         yield from (after(_prefix(label), warning) for warning in locus.warnings)
-        for line, mode in coincident(locus, lines):
+        for line, mode in line_crossings.coincident(locus, lines):
             both = f"{names[mode]} and {line.name}"
             yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"
 

@@ -28,6 +28,7 @@ from beamdyn.scene.numbers import SPEED
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
+from beamdyn.studies.sensitivities import sensitivity_result
 from beamdyn.studies.sensitivities.changes import (
     Changes,
     PencilChange,
@@ -36,12 +37,6 @@ from beamdyn.studies.sensitivities.changes import (
     critical_derivative,
     critical_vector,
     steady_pencils,
-)
-from beamdyn.studies.sensitivities.sensitivity_result import (
-    SceneNumber,
-    Sensitivities,
-    check_names,
-    numbers_of,
 )
 
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
@@ -56,7 +51,7 @@ def frequency_sensitivities(
     inputs: Sequence[str] | None = None,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> Sensitivities:
+) -> sensitivity_result.Sensitivities:
     """Compute the derivatives of natural frequencies by the numbers of a scene, and by the speed.
 
     Parameters
@@ -93,16 +88,16 @@ def frequency_sensitivities(
     >>> found.relative[:, 0].round(6)  # f ~ h / L^2
     array([-2.,  1.])
     """
-    start, names = perf_counter(), check_names(inputs)
+    start, names = perf_counter(), sensitivity_result.check_names(inputs)
     with unannounced():
         found = natural_modes(scene, speed, modes, discretization, tolerance)
     model = _linear(found.model)
-    numbers = numbers_of(model.scene, names and [name for name in names if name != SPEED])
+    numbers = sensitivity_result.numbers_of(model.scene, names and [name for name in names if name != SPEED])
     changes = changes_of(model, numbers)
     fine, _ = both = _modes_of(model, found.speed, modes)
     derivative, error = _compared(changes, lambda k, dP: both[k].derivatives(dP), fine.scales(), np.imag, _HZ)
     if names is None or SPEED in names:
-        numbers = (*numbers, SceneNumber(SPEED, "rad/s", found.speed, 0.0))
+        numbers = (*numbers, sensitivity_result.SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
         with np.errstate(invalid="ignore"):  # a mode may not vibrate
             of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
@@ -123,7 +118,7 @@ def critical_speed_sensitivities(
     inputs: Sequence[str] | None = None,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> Sensitivities:
+) -> sensitivity_result.Sensitivities:
     """Compute the derivatives of the critical speed by the numbers of a scene.
 
     Parameters
@@ -156,13 +151,13 @@ def critical_speed_sensitivities(
     >>> bd.critical_speed_sensitivities(scene, inputs=["beam.thickness"]).relative.round(6)  # proportional
     array([[1.]])
     """
-    start, names = perf_counter(), check_names(inputs)
+    start, names = perf_counter(), sensitivity_result.check_names(inputs)
     with unannounced():
         found = critical_point(scene, discretization, tolerance)
     if found.model is None or not (0 < found.speed < np.inf and np.isfinite(found.error)):
         raise NoModelAnswer(f"there is no critical speed to change: {found.reason}")
     model = _linear(found.model)
-    numbers = numbers_of(model.scene, names)
+    numbers = sensitivity_result.numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
     each = [(P, at, critical_vector(P, at)) for P, at in zip(_pencils(model), speeds, strict=True)]
@@ -181,7 +176,7 @@ def crossing_sensitivities(
     order: int = 1,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> Sensitivities:
+) -> sensitivity_result.Sensitivities:
     """Compute the derivatives of resonance speeds by the numbers of a scene; its motion is not varied.
 
     Parameters
@@ -220,12 +215,12 @@ def crossing_sensitivities(
     >>> bd.crossing_sensitivities(scene, 75.0, modes=1, inputs=["beam.thickness"]).relative.round(6)
     array([[1., 1.]])
     """
-    start, names = perf_counter(), check_names(inputs)
+    start, names = perf_counter(), sensitivity_result.check_names(inputs)
     with unannounced():
         crossings = resonance_speeds(scene, top_speed, modes, order, discretization, tolerance)
         scene = crossings.scene.undamped
         model = _linear(natural_modes(scene, top_speed, modes + 1, discretization, tolerance).model)
-    numbers = numbers_of(scene, names)
+    numbers = sensitivity_result.numbers_of(scene, names)
     changes = changes_of(model, numbers)
     none = np.zeros((len(numbers), 0))
     columns = [(none, none), *(_crossing_derivatives(model, changes, c, modes) for c in crossings)]
@@ -243,15 +238,15 @@ def _result(
     answers: Iterable[str],
     unit: str,
     value: np.ndarray,
-    numbers: tuple[SceneNumber, ...],
+    numbers: tuple[sensitivity_result.SceneNumber, ...],
     derivative: np.ndarray,
     error: np.ndarray,
     warnings: tuple[str, ...],
-) -> Sensitivities:
+) -> sensitivity_result.Sensitivities:
     names = str(model.discretization), str(model.coarser.discretization)
     provenance = Provenance(__version__, *names, perf_counter() - start)
     of = tuple(answers), unit, value
-    return Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
+    return sensitivity_result.Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
 
 
 # Frequencies --------------------------------------------------------------------------------------

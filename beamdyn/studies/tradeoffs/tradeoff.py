@@ -23,14 +23,9 @@ from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.periodic_system import check_steady_state
+from beamdyn.studies.tradeoffs import responses
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
-from beamdyn.studies.tradeoffs.responses import (
-    harmonics_diagram,
-    integrators_diagram,
-    steady_modes_diagram,
-    transient_modes_diagram,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -205,12 +200,12 @@ def _list_diagrams(
     yield partial(physics_diagram, scene, speed, modes, time["physics"])
     if scene.motion is None:
         return
-    yield partial(integrators_diagram, scene, t_end, modes, time["integrators"])
-    yield partial(transient_modes_diagram, scene, t_end, time["transient modes"])
+    yield partial(responses.integrators_diagram, scene, t_end, modes, time["integrators"])
+    yield partial(responses.transient_modes_diagram, scene, t_end, time["transient modes"])
     if _has_known_steady_state(scene) and speed > 0:
         speeds = np.linspace(0, speed, _STEADY + 1)[1:]
-        yield partial(harmonics_diagram, scene, speeds, modes, time["steady"])
-        yield partial(steady_modes_diagram, scene, speeds, time["steady"])
+        yield partial(responses.harmonics_diagram, scene, speeds, modes, time["steady"])
+        yield partial(responses.steady_modes_diagram, scene, speeds, time["steady"])
 
 
 def _has_known_steady_state(scene: Scene) -> bool:
