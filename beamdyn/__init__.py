@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.damping import Damping
+    from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredResponse
     from beamdyn.scene.measured_frequencies import MeasuredFrequencies
     from beamdyn.scene.motion import (
         Line,
@@ -114,6 +115,7 @@ if TYPE_CHECKING:
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.studies.beside_data.compare import compare
+    from beamdyn.studies.beside_data.curve_comparison import CurveComparison
     from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
     from beamdyn.studies.beside_data.identification import Identification
     from beamdyn.studies.beside_data.identify import identify

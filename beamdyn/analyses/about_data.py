@@ -19,9 +19,11 @@ from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_data import half_unit
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scene_text import with_numbers_in_text
+from beamdyn.scene.measured_curves import MeasuredCurves
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
+    from beamdyn.studies.beside_data.curve_comparison import CurveComparison
     from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
     from beamdyn.studies.beside_data.identification import Identification
 
@@ -30,8 +32,9 @@ Data = Annotated[
     READ_SECOND,
     Parameter(
         name="DATA.csv",
-        help='Measured frequencies: a line of heads, such as "speed [rpm], frequency 1 [Hz], frequency 2 '
-        '[Hz], uncertainty [Hz]", then a line a speed; or a list of modes of ANSYS (SET,LIST).',
+        help='Measured values, by the heads of their columns: "speed [rpm], frequency 1 [Hz], frequency 2 '
+        '[Hz]", "time [s], tip [mm]", "position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]", '
+        '"position [mm], shape at 62.1 Hz"; lists of ANSYS, output of FAST, universal files.',
     ),
 ]
 Measured = Annotated[
@@ -43,6 +46,13 @@ AtSpeeds = Annotated[
     AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
     Parameter(help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest.'),
 ]
+ColumnsOfFile = Annotated[
+    str | None,
+    Parameter(
+        help='Which column of the file is meant, a semicolon between them: "tip = TipDxb1; root moment = '
+        'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".'
+    ),
+]
 Uncertainty = Annotated[
     str | None,
     Parameter(help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".'),
@@ -52,6 +62,8 @@ Uncertainty = Annotated[
 @analysis(
     'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
     "beamdyn compare examples/epps.toml examples/epps.csv",
+    "beamdyn compare examples/rolling_harvester.toml examples/resonance_radau.csv",
+    about_scene="The scene; a history takes its motion.",
     screen="Compare",
 )
 def compare(
@@ -61,9 +73,12 @@ def compare(
     measured: Measured = None,
     speeds: AtSpeeds,
     uncertainty: Uncertainty = None,
-) -> FrequencyComparison:
-    """Measured natural frequencies beside those of the scene: what agrees, and what explains the rest."""
-    given = _data(data, measured, speeds, uncertainty)
+    columns: ColumnsOfFile = None,
+) -> FrequencyComparison | CurveComparison:
+    """Measured values beside those of the scene: what agrees, and what explains the rest."""
+    given = _data(data, measured, speeds, uncertainty, columns)
+    if isinstance(given, MeasuredCurves):
+        return bd.compare(scene, given)
     return bd.compare(in_unit_of(scene, f"0 {given.speed_unit}"), given)
 
 
@@ -100,6 +115,8 @@ def identify(
         Write the scene with the numbers found into this file, with where they come from.
     """
     given = _data(data, measured, speeds, uncertainty)
+    if isinstance(given, MeasuredCurves):
+        raise ValueError(f"{data}: identify takes natural frequencies; this file is for compare")
     found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
     if write is not None and file is not None:
         _write(found, file, write, given.source)
@@ -128,13 +145,30 @@ def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
 
 
 def _data(
-    file: Path | None, measured: str | None, speeds: np.ndarray | None, uncertainty: str | None
-) -> bd.MeasuredFrequencies:
+    file: Path | None,
+    measured: str | None,
+    speeds: np.ndarray | None,
+    uncertainty: str | None,
+    columns: str | None = None,
+) -> bd.MeasuredFrequencies | MeasuredCurves:
     """The data of a file, or of the option."""
     if (file is None) == (measured is None):
         raise ValueError('give either a file, such as measured.csv, or --measured "62.1, 389, 1090 Hz"')
-    data = bd.read_measurements(file, speeds) if file is not None else _in_words(measured or "", speeds)
+    if file is None and columns is not None:
+        raise ValueError(f'--columns = "{columns}": it is of a file; leave it out')
+    named = None if columns is None else _columns(columns)
+    data = (
+        bd.read_measurements(file, speeds, named) if file is not None else _in_words(measured or "", speeds)
+    )
     return data if uncertainty is None else _with_uncertainty(data, uncertainty)
+
+
+def _columns(text: str) -> dict[str, str]:
+    """Our heads with those of the file, of ``--columns``."""
+    parts = [part.partition("=") for part in text.split(";") if part.strip()]
+    if not parts or not all(head.strip() and source.strip() for head, _, source in parts):
+        raise ValueError(f'--columns = "{text}": give e.g. "tip = TipDxb1; root moment = RootMyb1"')
+    return {head.strip(): source.strip() for head, _, source in parts}
 
 
 def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
@@ -147,16 +181,31 @@ def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
     return bd.MeasuredFrequencies(values, at, rounding=[halves])
 
 
-def _with_uncertainty(data: bd.MeasuredFrequencies, text: str) -> bd.MeasuredFrequencies:
-    """The data with an uncertainty of ``--uncertainty`` where they have none."""
-    if text.strip().endswith("%"):
+def _with_uncertainty(
+    data: bd.MeasuredFrequencies | MeasuredCurves, text: str
+) -> bd.MeasuredFrequencies | MeasuredCurves:
+    """The data with an uncertainty of ``--uncertainty`` where they have none.
+
+    A share is that of each frequency, and of the largest value of each other column.
+    """
+    share = text.strip().endswith("%")
+    if isinstance(data, MeasuredCurves):
+        if not share:
+            raise ValueError(
+                f'--uncertainty = "{text}": give a share, "1 %", or a column "tip uncertainty [mm]"'
+            )
+        sizes = np.abs(data.columns).max(axis=0)
+    else:
+        sizes = data.frequency
+    known = np.asarray(getattr(data, "uncertainty"))  # noqa: B009  (of each kind of data)
+    if share:
         try:
-            spread = data.frequency * float(text.strip()[:-1]) / 100
+            spread = sizes * float(text.strip()[:-1]) / 100
         except ValueError:
             raise ValueError(f'--uncertainty = "{text}": give e.g. "0.5 Hz" or "1 %"') from None
     else:
-        spread = np.full(data.frequency.shape, parse_quantity("--uncertainty", text, "Hz"))
-    return replace(data, uncertainty=np.where(np.isfinite(data.uncertainty), data.uncertainty, spread))
+        spread = np.full(known.shape, parse_quantity("--uncertainty", text, "Hz"))
+    return replace(data, uncertainty=np.where(np.isfinite(known), known, spread))
 
 
 def parse_free(text: str) -> dict[str, tuple[float, float] | None]:

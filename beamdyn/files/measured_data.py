@@ -1,4 +1,4 @@
-"""Files of measured natural frequencies: tables with units as CSV, and lists of modes that ANSYS writes."""
+"""Files of measured values: tables with units, and what other programs write; and tables of frequencies."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
 from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.inputs.checks import InvalidValue, real_array
+from beamdyn.common.results.files import as_path
+from beamdyn.files.measured_curve_files import reader_of
+from beamdyn.files.program_tables import UNIVERSAL, as_table, universal_table
+from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
 _MOST_SPEED = 1e5  # rad/s, a million revolutions per minute: faster is a unit mistaken
@@ -28,26 +32,33 @@ _SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
 
 
 def read_measurements(
-    path: str | PathLike[str], speeds: Sequence[float] | np.ndarray | None = None
-) -> MeasuredFrequencies:
-    """Read natural frequencies from a file of a laboratory or of another program.
+    path: str | PathLike[str],
+    speeds: Sequence[float] | np.ndarray | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> MeasuredFrequencies | MeasuredCurves:
+    """Read measured values from a file of a laboratory or of another program.
 
-    A CSV file has a line of heads with units, such as "speed [rpm], frequency 1 [Hz], frequency 2 [Hz],
-    uncertainty [Hz]", then a line a speed; a cell may be empty where a frequency was not found.  Heads may
-    also be flap 1, edge 1, torsion 1 or mode 1; "uncertainty" holds for all columns, "uncertainty 1" for one.
-    A single column of frequencies is a list of modes at one speed.  A list of modes of ANSYS (SET,LIST) is
-    read as it stands: each load step is a speed.
+    A CSV file has a line of heads with units, which tell what it holds: natural frequencies over speed
+    ("speed [rpm], frequency 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"), histories ("time [s], tip [mm]"),
+    loads along the span ("position [m], moment [N m]"), a frequency response ("frequency [Hz], tip by tip
+    force [mm/N], phase [deg]") or mode shapes ("position [mm], shape at 62.1 Hz").  Lists of modes and of
+    variables of ANSYS (SET,LIST and PRVAR), output of FAST and universal files (dataset 58, by pyuff) are
+    read as they stand.
 
     Parameters
     ----------
     path : str or path-like
         The file.
     speeds : sequence of float, optional
-        Speeds [rad/s] of the rows where the file has none; a single row is at rest if they are not given.
+        Speeds [rad/s] of the rows where a file of frequencies has none; the one speed of loads, shapes or a
+        response.  A single row is at rest if they are not given.
+    columns : mapping of str to str, optional
+        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the
+        file has none: {"tip by tip force [mm/N]": "UY_2"}.
 
     Returns
     -------
-    MeasuredFrequencies
+    MeasuredFrequencies, MeasuredHistory, MeasuredLoads or MeasuredResponse
 
     Raises
     ------
@@ -56,7 +67,7 @@ def read_measurements(
 
     References
     ----------
-    The list of data sets of ANSYS: Mechanical APDL Structural Analysis Guide, section 3.5.3.
+    The lists of ANSYS: Mechanical APDL Structural Analysis Guide, section 3.5.3; PRVAR: Command Reference.
 
     Examples
     --------
@@ -64,14 +75,39 @@ def read_measurements(
     >>> data.frequency[:, 0]
     array([65.23 , 61.963, 50.907])
     """
-    text = read_data(path)
+    file = as_path("path", path, "a file")
+    universal = file.suffix.lower() in UNIVERSAL and file.exists()
+    text = universal_table(file) if universal else read_data(file)
     given = None if speeds is None else real_array("speeds", speeds)
     head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
+    if not head:
+        text = as_table(text, _checked(columns))
+        if (reader := reader_of(text)) is not None:
+            return reader(text, half_unit, _one_speed(given))
     rows, written, labels, own, unit = _from_list(text, head) if head else _from_csv(text)
     at = _speeds(text, own.get(_SPEED), given, len(rows))
     spread = own.get(_OF_ALL, np.full(rows.shape, np.nan))
     halves = _half_digits(written, rows)
     return MeasuredFrequencies(rows, at, spread, halves, labels, source=text.path.name, speed_unit=unit)
+
+
+def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
+    """The heads asked for, as a mapping of texts."""
+    if columns is None:
+        return {}
+    texts = isinstance(columns, Mapping) and all(
+        isinstance(each, str) for each in (*columns, *columns.values())
+    )
+    if not texts:
+        raise InvalidValue("columns", columns, "give a dictionary of texts", 'such as {"tip": "TipDxb1"}')
+    return columns
+
+
+def _one_speed(speeds: np.ndarray | None) -> float | None:
+    """The one speed of loads, shapes or a response [rad/s]."""
+    if speeds is not None and len(speeds) != 1:
+        raise InvalidValue("speeds", speeds, "such data are at one speed", "give one")
+    return None if speeds is None else float(speeds[0])
 
 
 _Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndarray], str]

@@ -61,16 +61,13 @@ class MeasuredFrequencies(ReadOnlyArrays):
     speed_unit: str = ""
 
     def __post_init__(self) -> None:
-        speeds, frequency = real_array("speeds", self.speeds), _table("frequency", self.frequency)
+        speeds, frequency = real_array("speeds", self.speeds), table_of("frequency", self.frequency)
         if len(frequency) != len(speeds):
             bound = f"there are {len(frequency)} rows for {len(speeds)} speeds"
             raise InvalidValue("frequency", frequency, bound, "give a row of frequencies a speed")
         if not np.isfinite(frequency).any():
             raise InvalidValue("frequency", frequency, "there is none that is finite", "give one at least")
-        spread = {name: _spread(name, getattr(self, name), frequency) for name in ("uncertainty", "rounding")}
-        _refuse_below("frequency", frequency, frequency <= 0, "above 0")
-        _refuse_below("uncertainty", spread["uncertainty"], spread["uncertainty"] <= 0, "above 0")
-        _refuse_below("rounding", spread["rounding"], ~(spread["rounding"] >= 0), "0 or more")
+        _refuse_below("frequency", frequency, frequency <= 0, "above 0", "Hz")
         for name in ("source", "speed_unit"):
             kind(name, getattr(self, name), str)
         names = several("labels", self.labels, str, "give names in a list") or tuple(
@@ -79,7 +76,8 @@ class MeasuredFrequencies(ReadOnlyArrays):
         if len(names) != frequency.shape[1]:
             bound = f"there are {len(names)} for {frequency.shape[1]} columns of frequencies"
             raise InvalidValue("labels", names, bound, "give one a column")
-        set_fields(self, speeds=speeds, frequency=frequency, labels=names, **spread)
+        set_fields(self, speeds=speeds, frequency=frequency, labels=names)
+        set_doubts(self, frequency, "Hz")
         self._check_shapes()
         super().__post_init__()
 
@@ -89,7 +87,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
             return
         if self.positions is None or self.shapes is None:
             raise InvalidValue("shapes", self.shapes, "they need positions", "give positions and shapes")
-        positions, shapes = real_array("positions", self.positions), _table("shapes", self.shapes)
+        positions, shapes = real_array("positions", self.positions), table_of("shapes", self.shapes)
         if shapes.shape != (self.frequency.shape[1], len(positions)) or not np.isfinite(shapes).all():
             bound = f"they are to be {self.frequency.shape[1]} modes at {len(positions)} positions"
             raise InvalidValue("shapes", shapes, bound, "give each mode a finite number at each position")
@@ -106,12 +104,20 @@ class MeasuredFrequencies(ReadOnlyArrays):
         return self.rounding + 2 * np.nan_to_num(self.uncertainty)
 
 
-def _table(name: str, values: Any) -> np.ndarray:
+def table_of(name: str, values: Any) -> np.ndarray:
     """Rows of floats, of which some may be nan."""
     array = as_floats(values)
     if array is None or array.ndim > 2 or not array.size or np.isinf(array).any():
         raise InvalidValue(name, values, "it is to be a table of numbers", "give rows of equal lengths")
     return np.atleast_2d(array).astype(float)
+
+
+def set_doubts(data: Any, like: np.ndarray, unit: str) -> None:
+    """Set the fields `uncertainty` and `rounding` of data to arrays of the shape of their values, checked."""
+    spread = {name: _spread(name, getattr(data, name), like) for name in ("uncertainty", "rounding")}
+    _refuse_below("uncertainty", spread["uncertainty"], spread["uncertainty"] <= 0, "above 0", unit)
+    _refuse_below("rounding", spread["rounding"], ~(spread["rounding"] >= 0), "0 or more", unit)
+    set_fields(data, **spread)
 
 
 def _spread(name: str, values: Any, like: np.ndarray) -> np.ndarray:
@@ -120,10 +126,10 @@ def _spread(name: str, values: Any, like: np.ndarray) -> np.ndarray:
         assert array is not None
         return np.array(np.broadcast_to(array, like.shape), dtype=float)
     except (AssertionError, ValueError):
-        bound = f"it does not suit frequencies of shape {like.shape}"
-        raise InvalidValue(name, values, bound, "give one number, or one a frequency") from None
+        bound = f"it does not suit values of shape {like.shape}"
+        raise InvalidValue(name, values, bound, "give one number, or one a value") from None
 
 
-def _refuse_below(name: str, values: np.ndarray, bad: np.ndarray, bound: str) -> None:
+def _refuse_below(name: str, values: np.ndarray, bad: np.ndarray, bound: str, unit: str) -> None:
     if bad.any():
-        raise InvalidValue(name, float(values[bad][0]), f"it must be {bound}", "", "Hz")
+        raise InvalidValue(name, float(values[bad][0]), f"it must be {bound}", "", unit)

@@ -11,12 +11,14 @@ from rich.text import Text
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.results.columns import Column, Columns
+from beamdyn.common.results.columns import Column, Columns, name_in_heads
 from beamdyn.common.results.display_units import percent
 from beamdyn.common.results.pictures import figure_of
+from beamdyn.studies.beside_data.curve_comparison import say
 from beamdyn.studies.beside_data.single_numbers import say_value
 
 if TYPE_CHECKING:
+    from beamdyn.studies.beside_data.curve_comparison import CurveComparison
     from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
     from beamdyn.studies.beside_data.identification import Identification
 
@@ -76,6 +78,49 @@ def comparison_csv(result: FrequencyComparison) -> Columns:
     return Columns(*columns)
 
 
+def curve_columns(result: CurveComparison) -> Columns:
+    """A row a curve: its largest values, how far the whole differs, what may be off, and the verdict."""
+    units = result.unit
+
+    def sizes(values: np.ndarray) -> list[str]:
+        return [in_files(say(float(value), unit)) for value, unit in zip(values, units, strict=True)]
+
+    shift = {"time": ("behind [s]", f"{result.delay:.4g}"), "frequency": ("phase ahead [deg]", "")}
+    head, late = shift.get(result.along, ("", ""))
+    phases = [late or f"{np.degrees(value):.3g}" for value in result.phase]
+    at = result.places, np.arange(len(units))
+    own = result.allowance[at] / np.where(result.peak == 0, np.inf, result.peak)
+    return Columns(
+        Column("name", result.name, words="curve"),
+        Column("peak", (), cells=sizes(result.peak), words="largest measured"),
+        Column("computed", (), cells=sizes(result.computed_peak), words="computed"),
+        Column("deviation", (), cells=_percents(result.deviation, "+")),
+        Column("rms", (), cells=_percents(result.rms), words="whole differs by"),
+        Column("phase", (), cells=phases, words=head or None),
+        Column("allowance", (), cells=_percents(own), words="data may be off"),
+        Column("model_error", (), cells=_percents(result.model_error), words="left out"),
+        Column("verdict", result.verdict),
+        title=f"Measured and computed over {result.along}, by {result.provenance.method}",
+        note="\n".join(in_files(said, result.display_units) for said in result.sentences()),
+    )
+
+
+def curve_csv(result: CurveComparison) -> Columns:
+    """A row a time, position or frequency: each curve as measured and computed, and what may be off."""
+    units = {"time": "s", "position": "m", "frequency": "Hz"}
+    columns = [Column(result.along, result.x, units[result.along])]
+    for k, (name, unit) in enumerate(zip(result.name, result.unit, strict=True)):
+        for what in ("measured", "computed"):
+            values, number = getattr(result, what)[:, k], name_in_heads(name)
+            responds = result.along == "frequency"
+            columns.append(Column(what, np.abs(values) if responds else values, unit, number))
+            if np.iscomplexobj(values):
+                columns.append(Column(f"{what}_phase", np.angle(values), "rad", number))
+        for what in ("allowance", "error"):
+            columns.append(Column(what, getattr(result, what)[:, k], unit, name_in_heads(name)))
+    return Columns(*columns)
+
+
 def identification_tables(result: Identification) -> Group:
     """The numbers with their intervals, what is not told, and the data beside the scene found."""
 
@@ -114,6 +159,12 @@ def identification_csv(result: Identification) -> Columns:
 VIEWS = {
     "FrequencyComparison": View(
         comparison_tables, comparison_csv, 2, lambda result: figure_of(result.plot, (8.5, 5.5))
+    ),
+    "CurveComparison": View(
+        lambda result: table_of(curve_columns(result), result.display_units, keys=1),
+        curve_csv,
+        1,
+        lambda result: figure_of(result.plot, (8.5, 2.0 + 3.0 * len(result.name))),
     ),
     "Identification": View(
         identification_tables, identification_csv, 1, lambda result: figure_of(result.plot, (8.5, 5.5))

@@ -1,4 +1,4 @@
-"""Comparison of measured natural frequencies with a scene's."""
+"""Comparison of measured natural frequencies, histories, loads and responses with a scene's."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
+from typing import overload
 
 import numpy as np
 
@@ -16,8 +17,15 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds, unannounced
 from beamdyn.common.words import Words
 from beamdyn.modes.modes import Modes, natural_modes
+from beamdyn.scene.measured_curves import MeasuredCurves, MeasuredHistory, MeasuredLoads, MeasuredResponse
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.beside_data.computed_curves import (
+    computed_history,
+    computed_loads,
+    computed_response,
+)
+from beamdyn.studies.beside_data.curve_comparison import CurveComparison
 from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.beside_data.single_numbers import explain
@@ -25,8 +33,21 @@ from beamdyn.studies.beside_data.single_numbers import explain
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
 
 
-def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
-    """Compare measured natural frequencies with those of a scene, and find what would explain deviations.
+@overload
+def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison: ...
+
+
+@overload
+def compare(scene: Scene, data: MeasuredCurves) -> CurveComparison: ...
+
+
+def compare(
+    scene: Scene, data: MeasuredFrequencies | MeasuredCurves
+) -> FrequencyComparison | CurveComparison:
+    """Compare measured values with those of a scene, and find what would explain deviations of frequencies.
+
+    Histories are compared with the scene's motion from rest, aligned in time within half a period of the
+    first mode; loads with those in equilibrium, and responses at their frequencies, both at a steady speed.
 
     Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
     where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
@@ -36,18 +57,19 @@ def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.
-    data : MeasuredFrequencies
-        The measured frequencies.
+        The scene; its motion is used for histories alone.
+    data : MeasuredFrequencies, MeasuredHistory, MeasuredLoads or MeasuredResponse
+        The measured values.
 
     Returns
     -------
-    FrequencyComparison
+    FrequencyComparison or CurveComparison
 
     Raises
     ------
     ValueError
-        If the data are of another kind, or shapes are at positions beyond the beam.
+        If the data are of another kind, shapes or loads are at positions beyond the beam, a history is
+        shorter than a period of the first mode, or the scene has no motion for it.
 
     References
     ----------
@@ -60,6 +82,9 @@ def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     >>> found.explanations[0].explains
     True
     """
+    check_scene(scene)
+    if isinstance(data, MeasuredCurves):
+        return _beside_curves(scene, data)
     found = beside(scene, data)
     if OUTSIDE not in found.verdict or scene.physics.large_deflection:
         return found
@@ -68,7 +93,7 @@ def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
 
 
 def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
-    """The comparison without explanations; arguments as of `compare`."""
+    """The comparison of frequencies without explanations; arguments as of `compare`."""
     start = perf_counter()
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
@@ -91,6 +116,38 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
         ),
         scene=scene,
         source=data.source,
+    )
+
+
+def _beside_curves(scene: Scene, data: MeasuredCurves) -> CurveComparison:
+    """The comparison of curves of any kind."""
+    start = perf_counter()
+    match data:
+        case MeasuredHistory():
+            found = computed_history(scene, data)
+        case MeasuredLoads():
+            found = computed_loads(scene, data)
+        case MeasuredResponse():
+            found = computed_response(scene, data)
+        case _:
+            raise TypeError(f"data = {data!r}: give a MeasuredHistory, MeasuredLoads or MeasuredResponse")
+    made = found.result.provenance
+    return CurveComparison(
+        tuple(data.names),
+        found.unit,
+        data.along[0],
+        data.x,
+        data.columns,
+        found.value,
+        data.allowance,
+        np.broadcast_to(found.error, found.value.shape),
+        np.full(len(data.names), float(found.result.left_out_effects.total_of_known)),
+        found.delay,
+        np.full(len(data.names), found.phase),
+        tuple(found.result.warnings),
+        Provenance(__version__, made.method, made.compared_with, perf_counter() - start),
+        scene,
+        data.source,
     )
 
 

@@ -1,0 +1,184 @@
+"""Files of histories, loads along the span, frequency responses and mode shapes, as tables with units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, check_places, read_csv
+from beamdyn.common.edge.data_text import DataText, plain_name
+from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.files.program_tables import head_line
+from beamdyn.linear.inputs_outputs import as_excitation, as_observation
+from beamdyn.scene.measured_curves import MeasuredCurves, MeasuredHistory, MeasuredLoads, MeasuredResponse
+from beamdyn.scene.measured_frequencies import MeasuredFrequencies
+
+_SPREAD = "uncertainty"
+_SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *\w+)\s*(?=[,;\t]|$)", re.IGNORECASE)
+_OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
+_RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
+_MOST = 40  # shapes
+_REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
+
+Half = Callable[[str], float]
+
+
+def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequencies] | None:
+    """What reads a table, by its heads; None of a table of frequencies."""
+    line = text.lines[head_line(text) - 1].lower()
+    heads = {plain_name(re.sub(r"[\[(].*", "", cell)) for cell in re.split(r"[,;\t]", line)}
+    if "time" in heads:
+        return read_history
+    if heads & {"position", "x"}:
+        return read_shapes if "shape" in line else read_loads
+    return read_response if "frequency" in heads and re.search(r" by ", line) else None
+
+
+def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHistory:
+    """Read histories: a column of times, and at least one of "tip", "root moment" and so on."""
+    if speed is not None:
+        raise InvalidValue("speeds", speed, "histories are compared with the scene's motion", "leave it out")
+    table, columns = _read(text, MeasuredHistory)
+    times = table.named()["time"].values
+    if later := next((k for k in range(1, len(times)) if times[k] <= times[k - 1]), 0):
+        said = f"time = {times[later]:g} s follows {times[later - 1]:g} s; expected times that ascend"
+        raise text.refusal(table.lines[later], said)
+    return MeasuredHistory(times, **_values(table, columns, half))
+
+
+def read_loads(text: DataText, half: Half, speed: float | None) -> MeasuredLoads:
+    """Read loads along the span: a column of positions, and at least one of "moment", "shear" and so on."""
+    table, columns = _read(text, MeasuredLoads)
+    check_places(table, "position")
+    return MeasuredLoads(
+        table.named()["position"].values, speed=speed or 0.0, **_values(table, columns, half)
+    )
+
+
+def _read(text: DataText, kind: type[MeasuredHistory | MeasuredLoads]) -> tuple[CsvTable, list[CsvColumn]]:
+    """The table, and its columns of values."""
+    along, unit = kind.along
+    known = {along: Quantity(unit, least=0.0)} | {name: Quantity(unit) for name, unit in kind.units.items()}
+    known |= {f"{name} {_SPREAD}": Quantity(unit, above=0.0) for name, unit in kind.units.items()}
+    names = {plain_name(name): name for name in known} | ({"x": along} if along == "position" else {})
+    table = read_csv(text, known, names)
+    columns = [column for column in table.columns if column.name in kind.units]
+    if not columns:
+        others = [column.head for column in table.columns if not column.name]
+        remedy = _REMEDY.format(name=next(iter(kind.units)), head=others[0] if others else "Head")
+        said = (
+            f"expected a column such as {', '.join(kind.units)}; the heads are {', '.join(others)}; {remedy}"
+        )
+        raise text.refusal(table.head_line, said)
+    return table, columns
+
+
+def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, Any]:
+    """Fields of the data that all kinds of columns have."""
+    values, named = np.array([column.values for column in columns]).T, table.named()
+    none = np.full(len(values), np.nan)
+    spreads = [named.get(f"{column.name} {_SPREAD}") for column in columns]
+    return {
+        "value": values,
+        "names": [column.name for column in columns],
+        "uncertainty": np.array([none if each is None else each.values for each in spreads]).T,
+        "rounding": np.array([[*map(half, c.written)] for c in columns]).T * [_size(c) for c in columns],
+        "source": table.text.path.name,
+    }
+
+
+def _size(column: CsvColumn) -> float:
+    """The unit of a column in SI."""
+    si = (MeasuredHistory.units | MeasuredLoads.units)[column.name]
+    return quantity(f"1 {column.unit}", si) if si else 1.0
+
+
+# Responses ----------------------------------------------------------------------------------------
+
+
+def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredResponse:
+    """Read a frequency response: "frequency [Hz], tip by tip force [mm/N], phase [deg]"."""
+    known = {"frequency": Quantity("Hz", least=0.0), "phase": Quantity("rad")}
+    table = read_csv(text, known, {name: name for name in known})
+    others = [column for column in table.columns if not column.name]
+    if len(others) != 1:
+        said = f"expected one column such as 'tip by tip force [mm/N]', found {len(others)}"
+        raise text.refusal(table.head_line, said)
+    (column,), named = others, table.named()
+    size, output, input = _response_head(table, column)
+    return MeasuredResponse(
+        named["frequency"].values,
+        size * np.array(column.values),
+        named["phase"].values if "phase" in named else None,
+        output,
+        input,
+        speed or 0.0,
+        rounding=size * np.array([*map(half, column.written)]),
+        source=text.path.name,
+    )
+
+
+def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]:
+    """Unit of a response in SI, and its output and input by their words."""
+    match = _RESPONSE.fullmatch(column.head)
+    try:
+        assert match is not None
+        seen, drive = as_observation("output", match[1]), as_excitation("input", match[2])
+    except (AssertionError, ValueError) as error:
+        said = f"expected a head such as 'tip by tip force [mm/N]', found '{column.head}'"
+        more = f": {error}" if isinstance(error, ValueError) else ""
+        raise table.text.refusal(table.head_line, said + more) from None
+    for sign in re.finditer(r"/| per ", column.unit):  # at which the unit of the input may begin
+        above, below = (
+            part.strip(" ()") for part in (column.unit[: sign.start()], column.unit[sign.end() :])
+        )
+        try:
+            size = quantity(f"1 {above}", seen.unit) if seen.unit else float(above.replace("-", "1") or 1)
+            return size / quantity(f"1 {below}", drive.unit), match[1], match[2]
+        except (InvalidInput, ValueError):
+            continue
+    expected = f"expected a unit like [{seen.unit or '1'} per {drive.unit}] for {column.head}"
+    raise table.text.refusal(table.head_line, f"{expected}, found [{column.unit}]")
+
+
+# Shapes -------------------------------------------------------------------------------------------
+
+
+def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFrequencies:
+    """Read mode shapes: a column of positions, and one a mode, such as "shape at 62.1 Hz"."""
+    line = head_line(text)
+    given = _SHAPE.findall(text.lines[line - 1])
+    numbers = iter(range(1, _MOST + 1))
+    heads = _SHAPE.sub(lambda _: f" shape {next(numbers)}", text.lines[line - 1])
+    other = next((o for o in _OTHER_SHAPE.findall(heads) if not re.fullmatch(r"shape \d+", o)), "")
+    if other or not given:
+        raise text.refusal(line, f"expected heads such as 'shape at 62.1 Hz', found '{other or heads}'")
+    known = {"position": Quantity("m", least=0.0)} | {f"shape {k}": Quantity() for k in range(1, _MOST + 1)}
+    names = {plain_name(name): name for name in known} | {"x": "position"}
+    laid = replace(text, lines=(*text.lines[: line - 1], heads, *text.lines[line:]))
+    table = read_csv(laid, known, names)
+    check_places(table, "position")
+    try:
+        frequency = [Quantity("Hz", above=0.0).parse(each) for each in given]
+    except InvalidInput as error:
+        raise text.refusal(line, f"shape at {error.value}: {error.bound}") from None
+    written = [each.split()[0].rstrip("HzkM") for each in given]
+    halves = [half(cell) * f / float(cell) for cell, f in zip(written, frequency, strict=True)]
+    named = table.named()
+    shapes = [named[f"shape {k}"].values for k in range(1, len(given) + 1)]
+    labels = [f"shape {k}" for k in range(1, len(given) + 1)]
+    return MeasuredFrequencies(
+        [frequency],
+        [speed or 0.0],
+        rounding=[halves],
+        labels=labels,
+        positions=named["position"].values,
+        shapes=shapes,
+        source=text.path.name,
+    )

@@ -1,0 +1,255 @@
+"""Histories, loads along the span and frequency responses that were measured or computed elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import (
+    InvalidValue,
+    as_floats,
+    ascending,
+    kind,
+    one_of,
+    real,
+    real_array,
+    refuse,
+    set_fields,
+    several,
+)
+from beamdyn.common.results.read_only import ReadOnlyArrays
+from beamdyn.scene.measured_frequencies import set_doubts, table_of
+
+
+@dataclass(frozen=True)
+class MeasuredCurves(ReadOnlyArrays):
+    """Base of measured values over time, position or frequency.
+
+    Attributes
+    ----------
+    along : tuple of str
+        Over what the values are given, and its unit.
+    """
+
+    along: ClassVar[tuple[str, str]]
+
+    @property
+    def x(self) -> np.ndarray:
+        """Times [s], positions [m] or frequencies [Hz], shape (n,)."""
+        return getattr(self, self.along[0])
+
+    @property
+    def columns(self) -> np.ndarray:
+        """The values, shape (n, C)."""
+        return getattr(self, "value")  # noqa: B009  (of subclasses)
+
+    @property
+    def allowance(self) -> np.ndarray:
+        """Allowance of each value: half of its last digit and twice its uncertainty, shape (n, C)."""
+        rounding, spread = (np.asarray(getattr(self, name)) for name in ("rounding", "uncertainty"))
+        return (rounding + 2 * np.nan_to_num(spread)).reshape(self.columns.shape)
+
+    def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
+        """Keep values, names and their doubts, checked."""
+        names = several("names", names, str, "give names in a list")
+        for name in names:
+            one_of("names", name, (*units,))
+        array = as_floats(given)
+        values = table_of("value", given if array is None or array.ndim != 1 else array[:, None])
+        if values.shape != (len(self.x), len(names)) or not np.isfinite(values).all():
+            bound = f"it is to have {len(self.x)} rows of {len(names)} finite values, one a name"
+            raise InvalidValue("value", given, bound, "give a row for each and a name for each column")
+        kind("source", getattr(self, "source", ""), str)
+        set_fields(self, value=values, names=names)
+        set_doubts(self, values, "")
+
+
+@dataclass(frozen=True)
+class MeasuredHistory(MeasuredCurves):
+    """Deflections, strain or moments over time, from a laboratory or another program.
+
+    Parameters
+    ----------
+    time : array-like, shape (n,)
+        Times [s], ascending, counted from the beginning of the scene's motion.
+    value : array-like, shape (n,) or (n, C)
+        The values [m, N m, or a plain number for strain], a column a name.
+    names : sequence of str, shape (C,)
+        What the columns are: "tip", "tip across", "root moment", "root moment across" or "root strain".
+    uncertainty : float or array-like, broadcast to (n, C)
+        Standard uncertainties [unit of the value]; nan where they are not known.
+    rounding : float or array-like, broadcast to (n, C)
+        Half a unit of the last digit that was written down [unit of the value].
+    source : str
+        Where the values come from, such as the name of a file.
+
+    Raises
+    ------
+    ValueError
+        If times do not ascend or values do not fit.
+
+    Examples
+    --------
+    >>> bd.MeasuredHistory([0.0, 0.1, 0.2], [0.0, 1e-3, -1e-3]).value.shape
+    (3, 1)
+    """
+
+    time: Any
+    value: Any
+    names: Sequence[str] = ("tip",)
+    uncertainty: Any = np.nan
+    rounding: Any = 0.0
+    source: str = ""
+
+    along: ClassVar[tuple[str, str]] = ("time", "s")
+    units: ClassVar[dict[str, str]] = {
+        "tip": "m",
+        "tip across": "m",
+        "root moment": "N m",
+        "root moment across": "N m",
+        "root strain": "",
+    }
+
+    def __post_init__(self) -> None:
+        time = ascending("time", self.time)
+        refuse(time < 0, "time", time, "s", "it counts from the beginning of the motion", "give 0 or more")
+        set_fields(self, time=time)
+        self._check_columns(self.value, self.names, self.units)
+        super().__post_init__()
+
+
+@dataclass(frozen=True)
+class MeasuredLoads(MeasuredCurves):
+    """Moments and forces along the span in equilibrium at a speed, from a laboratory or another program.
+
+    Parameters
+    ----------
+    position : array-like, shape (n,)
+        Distances from the root [m], ascending; one that is given twice stands for both sides of a jump.
+    value : array-like, shape (n,) or (n, C)
+        The loads [N m or N], a column a name, with the signs of `SpanLoads`.
+    names : sequence of str, shape (C,)
+        What the columns are: "moment", "moment across", "shear", "shear across" or "axial".
+    speed : float
+        Speed [rad/s].
+    uncertainty : float or array-like, broadcast to (n, C)
+        Standard uncertainties [unit of the value]; nan where they are not known.
+    rounding : float or array-like, broadcast to (n, C)
+        Half a unit of the last digit that was written down [unit of the value].
+    source : str
+        Where the values come from, such as the name of a file.
+
+    Raises
+    ------
+    ValueError
+        If positions descend or values do not fit.
+
+    Examples
+    --------
+    >>> bd.MeasuredLoads([0.0, 0.025], [0.47, 0.26], ["axial"], speed=50.0).value.shape
+    (2, 1)
+    """
+
+    position: Any
+    value: Any
+    names: Sequence[str] = ("moment",)
+    speed: float = 0.0
+    uncertainty: Any = np.nan
+    rounding: Any = 0.0
+    source: str = ""
+
+    along: ClassVar[tuple[str, str]] = ("position", "m")
+    units: ClassVar[dict[str, str]] = {
+        "moment": "N m",
+        "moment across": "N m",
+        "shear": "N",
+        "shear across": "N",
+        "axial": "N",
+    }
+
+    def __post_init__(self) -> None:
+        position = real_array("position", self.position)
+        if not position.size:
+            raise InvalidValue("position", self.position, "it is empty", "give at least one value")
+        refuse(np.diff(position, prepend=0.0) < 0, "position", position, "m", "positions ascend from 0")
+        set_fields(self, position=position, speed=real("speed", self.speed, "rad/s"))
+        self._check_columns(self.value, self.names, self.units)
+        super().__post_init__()
+
+
+@dataclass(frozen=True)
+class MeasuredResponse(MeasuredCurves):
+    """A frequency response at a steady speed, from a laboratory or another program.
+
+    Parameters
+    ----------
+    frequency : array-like, shape (n,)
+        Frequencies of the excitation [Hz], ascending.
+    magnitude : array-like, shape (n,)
+        Amplitude of the output per unit of the input [SI].
+    phase : array-like, shape (n,), optional
+        Phase by which the output leads the input [rad]; without it magnitudes alone are compared.
+    output, input : str
+        What was observed and what drove the beam, in the words of `frequency_response`.
+    speed : float
+        Speed [rad/s].
+    uncertainty : float or array-like, broadcast to (n,)
+        Standard uncertainties of the amplitude [SI]; nan where they are not known.
+    rounding : float or array-like, broadcast to (n,)
+        Half a unit of the last digit of the amplitude that was written down [SI].
+    source : str
+        Where the values come from, such as the name of a file.
+
+    Raises
+    ------
+    ValueError
+        If frequencies do not ascend, an amplitude is negative, or values do not fit.
+
+    Examples
+    --------
+    >>> bd.MeasuredResponse([50.0, 60.0], [1e-5, 3e-5]).columns.shape
+    (2, 1)
+    """
+
+    frequency: Any
+    magnitude: Any
+    phase: Any = None
+    output: str = "tip"
+    input: str = "bending"
+    speed: float = 0.0
+    uncertainty: Any = np.nan
+    rounding: Any = 0.0
+    source: str = ""
+
+    along: ClassVar[tuple[str, str]] = ("frequency", "Hz")
+
+    def __post_init__(self) -> None:
+        given = {"frequency": ascending("frequency", self.frequency)}
+        given["magnitude"] = real_array("magnitude", self.magnitude)
+        if self.phase is not None:
+            given["phase"] = real_array("phase", self.phase)
+        for name, value in given.items():
+            if len(value) != len(given["frequency"]):
+                bound = f"there are {len(value)} for {len(given['frequency'])} frequencies"
+                raise InvalidValue(name, value, bound, "give one a frequency")
+        size = given["magnitude"]
+        refuse(size < 0, "magnitude", size, "", "an amplitude is 0 or more", "put the sign into the phase")
+        for name in ("output", "input", "source"):
+            kind(name, getattr(self, name), str)
+        set_fields(self, **given, speed=real("speed", self.speed, "rad/s"))
+        set_doubts(self, size, "")
+        super().__post_init__()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of the one column, such as "tip by tip force"."""
+        return (f"{self.output} by {self.input}",)
+
+    @property
+    def columns(self) -> np.ndarray:
+        """The response, shape (n, 1): complex where the phase is known."""
+        turned = self.magnitude if self.phase is None else self.magnitude * np.exp(1j * self.phase)
+        return turned[:, None]

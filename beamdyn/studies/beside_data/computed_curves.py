@@ -1,0 +1,167 @@
+"""Curves of a scene at the times, positions or frequencies of measured ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.announced import unannounced
+from beamdyn.equations.effects import modelled_directions
+from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
+from beamdyn.loads.static_loads import StaticLoads, static_loads
+from beamdyn.loads.transient_loads import transient_loads
+from beamdyn.modes.modes import natural_modes
+from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredResponse
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.simulate import Transient, simulate
+
+_DELAYS = 33  # delays tried within a period
+_COMPARED = 4000  # times at which histories are aligned; at most twice as many
+_SHARP = 1e-9  # accuracy of a delay over the period
+_LOADS = {
+    "moment": ("moment", 0),
+    "moment across": ("moment", 1),
+    "axial": ("force", 0),
+    "shear": ("force", 1),
+    "shear across": ("force", 2),
+}
+
+
+@dataclass(frozen=True)
+class ComputedCurves:
+    """Curves of a scene: values (n, C) and errors that broadcast to them, and the result they are from."""
+
+    value: np.ndarray
+    error: np.ndarray
+    unit: tuple[str, ...]
+    result: StaticLoads | FrequencyResponse | Transient
+    delay: float = 0.0
+    phase: float = np.nan
+
+
+# Loads and responses ------------------------------------------------------------------------------
+
+
+def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
+    """Loads at the positions of measured ones, in equilibrium at their speed."""
+    with unannounced():
+        found = static_loads(scene, data.speed, data.position)
+    places = [_LOADS[name] for name in data.names]
+    for name, (quantity, k) in zip(data.names, places, strict=True):
+        _check_modelled(name, k < found.values(quantity).shape[2])
+    value, error = (
+        np.array([of(quantity)[0, :, k] for quantity, k in places]).T for of in (found.values, found.error_of)
+    )
+    return ComputedCurves(value, error, tuple(data.units[name] for name in data.names), found)
+
+
+def _check_modelled(name: str, modelled: bool) -> None:
+    """Refuse what a beam of one plane does not have."""
+    if not modelled:
+        bound = "the scene bends in one plane"
+        raise InvalidValue("names", name, bound, "give physics.planes = 2, or leave the column out")
+
+
+def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
+    """Response at the frequencies of a measured one."""
+    with unannounced():
+        found = frequency_response(scene, data.speed, data.frequency, data.input, data.output)
+    value = found.response
+    if value.shape[1] != 1:
+        bound = "a turning beam answers it at two frequencies"
+        raise InvalidValue(
+            "input", data.input, bound, "give bending, across, n3 or a force that turns with it"
+        )
+    phase = np.nan
+    if data.phase is None:
+        value = np.abs(value)
+    else:
+        largest = int(data.magnitude.argmax())
+        phase = float(np.angle(data.columns[largest, 0] * value[largest, 0].conj()))
+    return ComputedCurves(value, found.error, (found.unit,), found, phase=phase)
+
+
+# Histories ----------------------------------------------------------------------------------------
+
+
+def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
+    """Histories of the scene's motion, later by the delay with which they come nearest to measured ones."""
+    period = _period(scene, data)
+    with unannounced():
+        run = simulate(scene, float(data.time[-1]) + period / 2)
+    curves = [*_curves(run, data.names)]
+
+    def at(t: np.ndarray) -> np.ndarray:
+        within = np.clip(t, 0.0, run.path.end)
+        return np.array([curve(within) for curve, _ in curves]).T
+
+    value, error, delay = at(data.time), np.array([each for _, each in curves]), 0.0
+    off = np.sqrt(((data.value - value) ** 2).mean(axis=0))
+    if not (off <= np.sqrt((data.allowance**2).mean(axis=0)) + error).all():
+        delay = _delay(at, data, period)
+        value = at(data.time - delay)
+    phase = -2 * np.pi * _main_frequency(data) * delay
+    units = tuple(data.units[name] for name in data.names)
+    return ComputedCurves(value, np.broadcast_to(error, value.shape), units, run, delay, phase)
+
+
+def _period(scene: Scene, data: MeasuredHistory) -> float:
+    """Period of the first mode at rest [s]; a ValueError if the history is shorter."""
+    with unannounced():
+        frequency = float(natural_modes(scene, 0.0, 1).frequency[0])
+    period, length = 1 / frequency if frequency > 0 else 0.0, float(data.time[-1] - data.time[0])
+    if length < period:
+        bound = f"the history is {length:.4g} s long, shorter than a period of the first mode, {period:.4g} s"
+        raise InvalidValue("time", float(data.time[-1]), bound, "give a longer one", "s")
+    return period
+
+
+def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
+    """Yield each quantity as a function of time, with its error."""
+    for name in names:
+        k = int(name.endswith("across"))
+        if name == "root strain":
+            yield run.root_strain, run.root_strain_error
+        elif name.startswith("root moment"):
+            loads = transient_loads(run, at=[0.0])
+            _check_modelled(name, k < loads.moment.shape[2])
+            place = range(*loads.path.outputs.places["moment"].indices(loads.path.outputs.matrix.shape[1]))[k]
+            yield partial(_at_root, loads.path.at, place), float(loads.moment_error[0, k])
+        else:
+            _check_modelled(name, k < len(modelled_directions(run.scene)))
+            yield partial(run.deflection, direction=k), run.time_error + run.mode_error * run.largest
+
+
+def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndarray) -> np.ndarray:
+    return outputs(t)[:, 0, place]
+
+
+def _delay(at: Callable[[np.ndarray], np.ndarray], data: MeasuredHistory, period: float) -> float:
+    """Delay [s] within half a period either way by which the curves come nearest to the measured ones."""
+    some = slice(None, None, 1 + len(data.time) // _COMPARED)
+    t, values = data.time[some], data.value[some]
+    sizes = np.abs(data.value).max(axis=0)
+    sizes[sizes == 0] = 1.0
+
+    def misfit(delay: float) -> float:
+        return float((((values - at(t - delay)) / sizes) ** 2).sum())
+
+    tried = np.linspace(-period / 2, period / 2, _DELAYS)
+    best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
+    between = max(best - step, tried[0]), min(best + step, tried[-1])
+    options = {"xatol": _SHARP * period}
+    return float(minimize_scalar(misfit, bounds=between, method="bounded", options=options).x)  # pyright: ignore
+
+
+def _main_frequency(data: MeasuredHistory) -> float:
+    """Frequency of the largest line of the first column [Hz], by its transform on equal steps."""
+    t = np.linspace(data.time[0], data.time[-1], len(data.time))
+    values = np.interp(t, data.time, data.value[:, 0])
+    lines = np.abs(np.fft.rfft(values - values.mean()))
+    return float(np.fft.rfftfreq(len(t), t[1] - t[0])[lines.argmax()])

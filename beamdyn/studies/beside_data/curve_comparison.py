@@ -1,0 +1,245 @@
+"""Measured histories, loads and frequency responses beside computed ones, and a verdict on each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.one_line import counted, number, warned
+from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.words import Words, amount
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, OUTSIDE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+UNKNOWN = "not known"  # verdict where the numerical error is not
+_DIGITS = 5  # of values in sentences
+_FEW = 100  # values up to which they are drawn as points
+_WIDE = 0.8  # width of lines through more values than a picture has dots
+
+
+@dataclass(frozen=True)
+class CurveComparison(Result):
+    """Measured curves over time, position or frequency beside those of a scene.
+
+    Parameters
+    ----------
+    name : tuple of str, shape (C,)
+        What each curve is, such as "tip" or "tip by tip force".
+    unit : tuple of str, shape (C,)
+        Unit of each curve.
+    along : str
+        Over what they are given: "time", "position" or "frequency".
+    x : ndarray, shape (n,)
+        Times [s], positions [m] or frequencies [Hz].
+    measured, computed : ndarray, shape (n, C)
+        The values [unit of the curve]; computed ones at times later by `delay`.  Responses are complex where
+        the phase was measured.
+    allowance : ndarray, shape (n, C)
+        By how much measured values may be off [same unit]: half of the last digit, and twice the uncertainty.
+    error : ndarray, shape (n, C)
+        Estimated numerical errors of the computed values [same unit].
+    model_error : ndarray, shape (C,)
+        What the effects that the model leaves out would change, over the largest value, as far as known.
+    delay : float
+        Time by which the histories are behind the computed ones [s], which is taken out; 0 of other curves.
+    phase : ndarray, shape (C,)
+        Phase by which the measured curve leads [rad]: of a history by the delay, at its main frequency; of a
+        response where it is largest; nan where it is not known.
+    warnings : tuple of str
+        Limits of the answer.
+    provenance : Provenance
+        How the curves were computed.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> pressed = [-0.3729, -0.1742]  # N, as the beam points inward
+    >>> data = bd.MeasuredLoads([0.0, 0.025], pressed, ["axial"], speed=50.0, rounding=5e-5)
+    >>> bd.compare(scene, data).verdict
+    ('agrees',)
+    """
+
+    name: tuple[str, ...]
+    unit: tuple[str, ...]
+    along: str
+    x: np.ndarray
+    measured: np.ndarray
+    computed: np.ndarray
+    allowance: np.ndarray
+    error: np.ndarray
+    model_error: np.ndarray
+    delay: float
+    phase: np.ndarray
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+    source: str = field(default="", repr=False)
+
+    field_units: ClassVar[dict[str, str]] = {"s": "delay", "rad": "phase"}
+
+    def headline(self) -> Iterator[str]:
+        """Yield the parts of the result's one line; see `Result.headline`."""
+        yield f"{self.verdict.count(AGREES)} of {counted(len(self.name), 'curve')} agree"
+        yield f"largest values within {percent(float(np.abs(self.deviation).max()))}"
+        yield f"rms {percent(float(self.rms.max()))}"
+        yield warned(self.warnings)
+
+    @property
+    def places(self) -> np.ndarray:
+        """Index of the largest measured value of each curve, shape (C,)."""
+        return np.abs(self.measured).argmax(axis=0)
+
+    @property
+    def peak(self) -> np.ndarray:
+        """Largest measured magnitude of each curve [unit of the curve], shape (C,)."""
+        return np.abs(self.measured).max(axis=0)
+
+    @property
+    def computed_peak(self) -> np.ndarray:
+        """Largest computed magnitude of each curve at the same x [unit of the curve], shape (C,)."""
+        return np.abs(self.computed).max(axis=0)
+
+    @property
+    def deviation(self) -> np.ndarray:
+        """Largest measured less largest computed value over the computed one, shape (C,)."""
+        return _over(self.peak - self.computed_peak, self.computed_peak)
+
+    @property
+    def rms(self) -> np.ndarray:
+        """Root mean square of the difference over that of the computed curve, shape (C,)."""
+        return _over(_rms(self.measured - self.computed), _rms(self.computed))
+
+    @property
+    def verdict(self) -> tuple[str, ...]:
+        """Verdict on each curve: "agrees", "within the model error", "outside" or "not known"; shape (C,).
+
+        Both the largest value and the root mean square of the difference have to be within the bounds.
+        """
+        at = self.places, np.arange(len(self.name))
+        off = np.array([np.abs(self.peak - self.computed_peak), _rms(self.measured - self.computed)])
+        sure = np.array([(self.allowance + self.error)[at], _rms(self.allowance) + _rms(self.error)])
+        left_out = self.model_error * np.array([self.computed_peak, _rms(self.computed)])
+        each = [
+            ~np.isfinite(sure).all(axis=0),
+            (off <= sure).all(axis=0),
+            (off <= sure + left_out).all(axis=0),
+        ]
+        return tuple(np.select(each, [UNKNOWN, AGREES, LEFT_OUT], OUTSIDE).tolist())
+
+    @property
+    def agrees(self) -> bool:
+        """Whether all curves agree within their own uncertainty, half of their last digit and our error."""
+        return set(self.verdict) == {AGREES}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
+        names = "peak", "computed_peak", "deviation", "rms", "verdict"
+        more = {name: plain(getattr(self, name)) for name in names}
+        return super().to_dict() | more | {"sentences": plain(self.sentences())}
+
+    def sentences(self) -> tuple[str, ...]:
+        """A sentence on each curve, with its verdict."""
+        return tuple(self._say(k) for k in range(len(self.name)))
+
+    def _say(self, k: int) -> Words:
+        """The sentence on one curve."""
+        deviation, at = float(self.deviation[k]), float(self.x[self.places[k]])
+        side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'}" if deviation else "the same"
+        where = amount(at) if self.along == "position" else number(at, "s" if self.along == "time" else "Hz")
+        return Words(
+            f"{self.name[k]}: the largest, ",
+            say(self.peak[k], self.unit[k]),
+            " at ",
+            where,
+            f", is {side} of ",
+            say(self.computed_peak[k], self.unit[k]),
+            f", and the whole differs by {percent(float(self.rms[k]))} (root mean square)",
+            self._shifted(k),
+            f": {self._reason(k)}.",
+        )
+
+    def _shifted(self, k: int) -> str:
+        """What the phase is, in words; empty if there is nothing to say."""
+        phase = float(np.degrees(self.phase[k]))
+        if not np.isfinite(phase):
+            return ""
+        side = "ahead" if phase > 0 else "behind"
+        if self.along == "frequency":
+            return f", {abs(phase):.2g} deg {side} there" if phase else ""
+        late = f"{abs(self.delay):.3g} s ({abs(phase):.2g} deg of its main frequency)"
+        return f", with {late} {side} taken out" if self.delay else ""
+
+    def _reason(self, k: int) -> str:
+        """The verdict on one curve in words."""
+        left_out = percent(float(self.model_error[k]))
+        own = percent(float(_over(self.allowance[self.places[k], k], self.peak[k])))
+        return {
+            AGREES: f"within the data's uncertainty ({own} of the largest) and the numerical error",
+            LEFT_OUT: f"within what the model leaves out ({left_out})",
+            OUTSIDE: f"outside what the model leaves out ({left_out}) and the data's uncertainty ({own})",
+            UNKNOWN: "no verdict, as the numerical error is not known",
+        }[self.verdict[k]]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw each curve as measured and as computed, and the phases of a response."""
+        curves = [(self._axis(k), *self._drawn(k)) for k in range(len(self.name))]
+        if np.iscomplexobj(self.measured):
+            turned = np.unwrap(np.angle(self.computed[:, 0]))
+            ahead = np.angle(self.measured[:, 0] * self.computed[:, 0].conj())
+            curves.append(("phase [deg]", np.degrees(turned + ahead), np.degrees(turned)))
+        ax, places = panels(len(curves), ax, columns=1)
+        x = self.display_units.length_unit("m") if self.along == "position" else None
+        label = f"{self.along} [{x.name if x else {'time': 's'}.get(self.along, 'Hz')}]"
+        for place, (name, measured, computed) in zip(places, curves, strict=True):
+            set_up_axes(place, label if place is places[-1] else "", name)
+            self._draw(place, x.of(self.x) if x else self.x, measured, computed)
+        if self.along == "frequency" and (self.peak > 0).all():
+            places[0].set_yscale("log")
+        places[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.01), ncols=2, borderaxespad=0, fontsize=10)
+        return ax
+
+    def _axis(self, k: int) -> str:
+        return f"{self.name[k]} [{self._unit_shown(k) or '-'}]"
+
+    def _unit_shown(self, k: int) -> str:
+        return self.display_units.length_unit().name if self.unit[k] == "m" else self.unit[k]
+
+    def _drawn(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """A measured and a computed curve in the unit of the picture; magnitudes of a response."""
+        size = self.display_units.length_unit().per_si if self.unit[k] == "m" else 1.0
+        shown = abs if self.along == "frequency" else np.real
+        return size * shown(self.measured[:, k]), size * shown(self.computed[:, k])
+
+    def _draw(self, ax: Axes, x: np.ndarray, measured: np.ndarray, computed: np.ndarray) -> None:
+        width = 1.8 if len(x) <= _FEW else _WIDE
+        ax.plot(x, computed, color=COLOURS[0], linewidth=width, label="computed")
+        style = (
+            {"marker": "o", "linestyle": "", "markerfacecolor": "white"} if len(x) <= _FEW else {"ls": "--"}
+        )
+        ax.plot(x, measured, color="black", linewidth=width, label=self.source or "measured", **style)  # pyright: ignore[reportArgumentType]
+
+
+def say(value: float, unit: str) -> str:
+    """A value with a few digits and its unit; lengths as each medium has them."""
+    rounded = float(f"{value:.{_DIGITS}g}")
+    return amount(rounded) if unit == "m" else f"{rounded:.{_DIGITS}g} {unit}".rstrip()
+
+
+def _rms(values: np.ndarray) -> np.ndarray:
+    return np.sqrt((np.abs(values) ** 2).mean(axis=0))
+
+
+def _over(values: Any, sizes: Any) -> np.ndarray:
+    """Values over sizes; 0 where both are 0, inf where the size alone is."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.asarray(values) == 0, 0.0, np.asarray(values) / sizes)

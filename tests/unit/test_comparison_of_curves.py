@@ -1,0 +1,127 @@
+"""Measured histories, loads and responses beside a scene: alignment, figures, verdicts, refusals, files."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli.program import main
+from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
+
+T = np.linspace(0.05, 0.28, 300)
+RUN = bd.simulate(SHORT_SPIN_UP, 0.3)
+DAMPED = replace(HARVESTER, damping_ratio=0.02)
+F = np.linspace(20.0, 100.0, 17)
+
+
+def test_a_history_of_the_scene_itself_agrees_without_delay():
+    found = bd.compare(SHORT_SPIN_UP, bd.MeasuredHistory(T, np.round(RUN.deflection(T), 9), rounding=5e-10))
+    assert found.agrees
+    assert found.delay == 0.0
+    assert "within the data's uncertainty" in found.sentences()[0]
+
+
+def test_a_delay_is_found_and_taken_out():
+    late = 1.7e-3
+    data = bd.MeasuredHistory(T, 1.02 * RUN.deflection(T - late), rounding=1e-9)
+    found = bd.compare(SHORT_SPIN_UP, data)
+    # The misfit is quadratic about its least: a factor shifts it by none; runs of two ends differ by 1e-5.
+    np.testing.assert_allclose(found.delay, late, rtol=1e-3)
+    np.testing.assert_allclose(found.deviation, 0.02, rtol=1e-2)  # runs of two ends differ by 1e-5
+    np.testing.assert_allclose(found.rms, 0.02, rtol=1e-2)
+    assert found.phase[0] < 0
+    assert "behind taken out" in found.sentences()[0]
+
+
+def test_moment_and_strain_at_the_root_have_one_clock():
+    loads = bd.transient_loads(RUN, at=[0.0], t=T)
+    values = np.c_[RUN.root_strain(T), loads.moment[:, 0, 0]]
+    data = bd.MeasuredHistory(
+        T, values, ["root strain", "root moment"], rounding=1e-4 * np.abs(values).max(axis=0)
+    )
+    found = bd.compare(SHORT_SPIN_UP, data)
+    assert found.unit == ("", "N m")
+    assert found.agrees
+
+
+def test_verdicts_ask_the_data_first_then_the_model():
+    with_doubt = bd.MeasuredLoads([0.0, 0.02], [-0.38, -0.22], ["axial"], 50.0, uncertainty=0.01)
+    found = bd.compare(HARVESTER, with_doubt)
+    assert found.verdict == ("agrees",)
+    sure = replace(with_doubt, uncertainty=np.nan)
+    assert bd.compare(HARVESTER, sure).verdict == ("outside",)
+    assert replace(found, model_error=np.ones(1), allowance=np.zeros((2, 1))).verdict == (
+        "within the model error",
+    )
+    assert replace(found, error=np.full((2, 1), np.inf)).verdict == ("not known",)
+
+
+def test_a_largest_value_that_is_off_is_outside_though_the_whole_is_near():
+    response = bd.frequency_response(DAMPED, 0.0, F).response[:, 0]
+    spread = 0.2 * np.abs(response).max()
+    data = bd.MeasuredResponse(F, np.abs(response), np.angle(response), uncertainty=spread)
+    assert bd.compare(DAMPED, data).agrees
+    k = int(np.abs(response).argmax())
+    high = np.where(np.arange(len(F)) == k, 1.5, 1.0) * np.abs(response)
+    found = bd.compare(DAMPED, replace(data, magnitude=high))
+    assert found.rms[0] < 0.5
+    assert found.verdict == ("outside",)
+
+
+def test_a_phase_that_is_off_is_told_where_the_response_is_largest():
+    response = bd.frequency_response(DAMPED, 0.0, F).response[:, 0]
+    data = bd.MeasuredResponse(F, np.abs(response), np.angle(response) + 0.1)
+    found = bd.compare(DAMPED, data)
+    np.testing.assert_allclose(found.phase, 0.1, rtol=1e-9)  # of rounding alone
+    np.testing.assert_allclose(found.rms, abs(np.exp(0.1j) - 1), rtol=1e-9)
+    assert "5.7 deg ahead there" in found.sentences()[0]
+    assert bd.compare(DAMPED, replace(data, phase=None)).rms[0] < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("scene", "data", "said"),
+    [
+        (
+            SHORT_SPIN_UP,
+            bd.MeasuredHistory([0.1, 0.11], [0.0, 1.0]),
+            "shorter than a period of the first mode",
+        ),
+        (HARVESTER, bd.MeasuredHistory([0.1, 0.2], [0.0, 1.0]), "a transient needs a motion"),
+        (SHORT_SPIN_UP, bd.MeasuredHistory([0.1, 0.2], [0.0, 1.0], ["tip across"]), "physics.planes = 2"),
+        (HARVESTER, bd.MeasuredLoads([0.0, 0.06], [1.0, 1.0]), r"at = 0.06 m: stations lie"),
+        (HARVESTER, bd.MeasuredLoads([0.0], [1.0], ["shear across"]), "physics.planes = 2"),
+        (DAMPED, bd.MeasuredResponse([50.0], [1.0], input="n2", speed=50.0), "at two frequencies"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(scene, data, said):
+    with pytest.raises(ValueError, match=said):
+        bd.compare(scene, data)
+
+
+def test_the_command_writes_all_forms_and_takes_names_and_doubts(tmp_path, capsys):
+    file = tmp_path / "loads.csv"
+    file.write_text("x [mm], Axial [N]\n0, -0.37\n20, -0.22\n")
+    names = {kind: tmp_path / f"out.{kind}" for kind in ("json", "csv", "html", "png")}
+    options = zip(("--json", "--csv", "--report", "--plot"), map(str, names.values()), strict=True)
+    command = ["compare", "examples/tyre_harvester.toml", str(file), "--speeds", "50 rad/s"]
+    assert main([*command, "--uncertainty", "10 %", *(word for pair in options for word in pair)]) == 0
+    assert "agrees" in capsys.readouterr().out
+    written = json.loads(names["json"].read_text())
+    assert written["verdict"] == ["agrees"]
+    assert names["csv"].read_text().startswith("position_mm,measured_N_axial,computed_N_axial")
+    assert names["png"].stat().st_size > 1000
+    assert main([*command, "--uncertainty", "1 N"]) == 2
+    assert 'a column "tip uncertainty [mm]"' in " ".join(capsys.readouterr().err.split())
+    assert main(["identify", *command[1:3], "--free", "length"]) == 2
+    assert "identify takes natural frequencies" in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize("text", ["tip", "= x", ";"])
+def test_columns_are_given_in_pairs(text, capsys):
+    command = ["compare", "examples/tyre_harvester.toml", "examples/epps.csv", "--columns", text]
+    assert main(command) == 2
+    assert "tip = TipDxb1; root moment" in " ".join(capsys.readouterr().err.split())
