@@ -32,8 +32,8 @@ Data = Annotated[
     READ_SECOND,
     Parameter(
         name="DATA.csv",
-        help='Measured values, by the heads of their columns: "speed [rpm], frequency 1 [Hz], frequency 2 '
-        '[Hz]", "time [s], tip [mm]", "position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]", '
+        help='Measured values, by the heads of their columns: "speed [rpm], frequency 1 [Hz]", '
+        '"time [s], tip [mm]", "position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
         '"position [mm], shape at 62.1 Hz"; lists of ANSYS, output of FAST, universal files.',
     ),
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
@@ -11,6 +12,7 @@ import numpy as np
 from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
 from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity
+from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import InvalidValue, real_array
 from beamdyn.common.results.files import as_path
 from beamdyn.files.measured_curve_files import reader_of
@@ -23,9 +25,20 @@ _MOST = 40  # columns of frequencies
 _SPEED, _OF_ALL = "speed", "uncertainty"
 _KNOWN = {
     _SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED),
-    _OF_ALL: Quantity("Hz", above=0.0),
 }
-_FREQUENCY, _SPREAD = Quantity("Hz", above=0.0), Quantity("Hz", above=0.0)
+
+
+class _Frequency(Quantity):
+    """A frequency, which papers give as an angular one, too."""
+
+    def convert(self, given: object) -> float:
+        """The frequency [Hz]."""
+        if isinstance(given, str) and given.rstrip().endswith("rad/s"):
+            return quantity(given, "rad/s") / (2 * math.pi)
+        return super().convert(given)
+
+
+_FREQUENCY = _SPREAD = _Frequency("Hz", above=0.0)
 _STEMS = ("frequency", "f", "mode", "flap", "edge", "lag", "chord", "bending", "torsion")
 _SET_LIST = re.compile(r"\s*SET\s+TIME/FREQ\s+LOAD STEP\s+SUBSTEP\s+CUMULATIVE", re.IGNORECASE)
 _SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
@@ -53,8 +66,8 @@ def read_measurements(
         Speeds [rad/s] of the rows where a file of frequencies has none; the one speed of loads, shapes or a
         response.  A single row is at rest if they are not given.
     columns : mapping of str to str, optional
-        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the
-        file has none: {"tip by tip force [mm/N]": "UY_2"}.
+        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the file
+        has none: {"tip by tip force [mm/N]": "UY_2"}.
 
     Returns
     -------
@@ -99,7 +112,7 @@ def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
         isinstance(each, str) for each in (*columns, *columns.values())
     )
     if not texts:
-        raise InvalidValue("columns", columns, "give a dictionary of texts", 'such as {"tip": "TipDxb1"}')
+        raise InvalidValue("columns", columns, "give a dictionary of texts", 'such as {"tip [mm]": "UY_2"}')
     return columns
 
 
@@ -152,7 +165,7 @@ def half_unit(cell: str) -> float:
 
 
 def _from_csv(text: DataText) -> _Read:
-    known, names = dict(_KNOWN), {plain_name(name): name for name in (_SPEED, "uncertainty")}
+    known, names = _KNOWN | {_OF_ALL: _SPREAD}, {plain_name(name): name for name in (_SPEED, "uncertainty")}
     names |= {"omega": _SPEED, "rotationspeed": _SPEED, "uncertainties": _OF_ALL}
     columns = [(stem, k) for stem in _STEMS for k in ("", *map(str, range(1, _MOST + 1)))]
     for stem, k in columns:

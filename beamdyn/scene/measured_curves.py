@@ -55,6 +55,8 @@ class MeasuredCurves(ReadOnlyArrays):
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
         """Keep values, names and their doubts, checked."""
         names = several("names", names, str, "give names in a list")
+        if not names:
+            raise InvalidValue("names", names, "it is empty", f"give {', '.join(units)}")
         for name in names:
             one_of("names", name, (*units,))
         array = as_floats(given)

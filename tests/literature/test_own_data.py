@@ -6,11 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import beamdyn as bd
 from beamdyn import published
+from beamdyn.published import load
 from beamdyn.reproduce.inward_beam import first_frequencies
+from beamdyn.reproduce.printed_tables import cases, entries_of_case
 from beamdyn.studies.beside_data.compare import beside
+from beamdyn.studies.beside_data.computed_curves import computed_history
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -24,6 +28,24 @@ def test_tables_of_the_inward_beam_have_the_verdicts_of_reproduce():
         for value, verdict in zip(found.measured.tolist(), found.verdict, strict=True):
             agreeing = {each.agrees for each in known if each.published == value}
             assert agreeing == {verdict == "agrees"}, (source, value)
+
+
+@pytest.mark.parametrize(("paper", "scene"), [("bir_2009", "bir"), ("bir_2010", "bir_tip")])
+def test_tables_in_rad_per_s_have_the_verdicts_of_reproduce(paper, scene):
+    found = beside(bd.load_scene(EXAMPLES / f"{scene}.toml"), bd.read_measurements(EXAMPLES / f"{paper}.csv"))
+    entries = [entry for case in cases(paper) for entry in entries_of_case(case, "ritz")]
+    assert [verdict == "agrees" for verdict in found.verdict] == [entry.agrees for entry in entries]
+    assert "outside" in found.verdict  # a print that errs is found
+
+
+def test_a_run_of_another_integrator_agrees_to_the_digits_of_its_file():
+    data = bd.read_measurements(EXAMPLES / "resonance_radau.csv")
+    found = computed_history(bd.load_scene(EXAMPLES / "rolling_harvester.toml"), data)
+    assert found.delay == 0.0
+    off = np.abs(found.value - data.columns)
+    assert (off <= data.allowance + found.error).all()
+    exact = load("lee_yoo_2019")["reference"]["largest_deflection"]["whole_run"]["value"]
+    np.testing.assert_allclose(np.abs(data.columns).max(), exact, rtol=1e-4)  # five digits, between samples
 
 
 def test_the_measured_blade_is_paired_with_its_flap_and_torsional_modes():

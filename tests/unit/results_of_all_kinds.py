@@ -116,6 +116,9 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "FrequencyComparison": lambda: bd.compare(
         HARVESTER, bd.MeasuredFrequencies([62.1, 389.0], uncertainty=0.5)
     ),
+    "CurveComparison": lambda: bd.compare(
+        HARVESTER, bd.MeasuredLoads([0.0, 0.025], [-0.37, -0.17], ["axial"], 50.0, rounding=0.005)
+    ),
     "Identification": lambda: bd.identify(
         HARVESTER,
         bd.MeasuredFrequencies([62.1, 389.0], uncertainty=0.5),

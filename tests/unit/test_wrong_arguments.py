@@ -249,6 +249,22 @@ CALLS = {
         {"frequency": [65.0], "speeds": [0.0], "uncertainty": 0.1, "rounding": 0.05, "labels": ["flap 1"]}
         | {"positions": [0.0, 0.05], "shapes": [[0.0, 1.0]], "source": "a.csv", "speed_unit": "rpm"},
     ),
+    "MeasuredHistory": (
+        bd.MeasuredHistory,
+        {"time": [0.0, 0.1, 0.2], "value": [0.0, 1.0, 0.0], "names": ["tip"], "uncertainty": 0.1}
+        | {"rounding": 0.05, "source": "a.csv"},
+    ),
+    "MeasuredLoads": (
+        bd.MeasuredLoads,
+        {"position": [0.0, 0.1, 0.2], "value": [0.0, 1.0, 0.0], "names": ["moment"], "speed": 5.0}
+        | {"uncertainty": 0.1, "rounding": 0.05, "source": "a.csv"},
+    ),
+    "MeasuredResponse": (
+        bd.MeasuredResponse,
+        {"frequency": [1.0, 2.0, 3.0], "magnitude": [0.0, 1.0, 0.0], "phase": [0.0, 1.0, 0.0]}
+        | {"output": "tip", "input": "bending", "speed": 5.0, "uncertainty": 0.1, "rounding": 0.05}
+        | {"source": "a.csv"},
+    ),
     "compare": (bd.compare, {"scene": SCENE, "data": bd.MeasuredFrequencies([65.0])}),
     "identify": (
         bd.identify,
@@ -257,7 +273,7 @@ CALLS = {
     ),
     "read_measurements": (
         bd.read_measurements,
-        {"path": "examples/strip_shells.csv", "speeds": None},
+        {"path": "examples/strip_shells.csv", "speeds": None, "columns": None},
     ),
     "critical_speed_sensitivities": (
         bd.critical_speed_sensitivities,
@@ -295,7 +311,11 @@ ALLOWED = {
     "load_scene.path": {"text"},
     "read_deck.path": {"text"},
     "read_measurements.path": {"text"},
+    "read_measurements.columns": {"dictionary"},
     "MeasuredFrequencies.source": {"text"},
+    **{f"{name}.source": {"text"} for name in ("MeasuredHistory", "MeasuredLoads", "MeasuredResponse")},
+    **{f"{name}.uncertainty": {"nan"} for name in ("MeasuredHistory", "MeasuredLoads", "MeasuredResponse")},
+    **{f"MeasuredResponse.{name}": {"text"} for name in ("output", "input")},
     "MeasuredFrequencies.labels": {"empty", "empty array"},
     "MeasuredFrequencies.uncertainty": {"nan"},
     "MeasuredFrequencies.speed_unit": {"text"},
