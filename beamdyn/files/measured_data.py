@@ -66,8 +66,8 @@ def read_measurements(
         Speeds [rad/s] of the rows where a file of frequencies has none; the one speed of loads, shapes or a
         response.  A single row is at rest if they are not given.
     columns : mapping of str to str, optional
-        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the file
-        has none: {"tip by tip force [mm/N]": "UY_2"}.
+        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the
+        file has none: {"tip by tip force [mm/N]": "UY_2"}.
 
     Returns
     -------

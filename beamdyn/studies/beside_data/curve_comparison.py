@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, number, warned
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS, new_axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.words import Words, amount
 from beamdyn.scene.scene import Scene
@@ -197,7 +197,11 @@ class CurveComparison(Result):
             turned = np.unwrap(np.angle(self.computed[:, 0]))
             ahead = np.angle(self.measured[:, 0] * self.computed[:, 0].conj())
             curves.append(("phase [deg]", np.degrees(turned + ahead), np.degrees(turned)))
-        ax, places = panels(len(curves), ax, columns=1)
+        if len(curves) > 1:
+            ax, places = panels(len(curves), ax, columns=1)
+        else:
+            ax = new_axes() if ax is None else ax
+            places = [ax]
         x = self.display_units.length_unit("m") if self.along == "position" else None
         label = f"{self.along} [{x.name if x else {'time': 's'}.get(self.along, 'Hz')}]"
         for place, (name, measured, computed) in zip(places, curves, strict=True):
