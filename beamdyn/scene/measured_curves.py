@@ -8,18 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import (
-    InvalidValue,
-    as_floats,
-    ascending,
-    kind,
-    one_of,
-    real,
-    real_array,
-    refuse,
-    set_fields,
-    several,
-)
+from beamdyn.common.inputs import checks
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.read_only import ReadOnlyArrays
 from beamdyn.scene.measured_frequencies import set_doubts, table_of
 
@@ -54,18 +44,18 @@ class MeasuredCurves(ReadOnlyArrays):
 
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
         """Keep values, names and their doubts, checked."""
-        names = several("names", names, str, "give names in a list")
+        names = checks.several("names", names, str, "give names in a list")
         if not names:
             raise InvalidValue("names", names, "it is empty", f"give {', '.join(units)}")
         for name in names:
-            one_of("names", name, (*units,))
-        array = as_floats(given)
+            checks.one_of("names", name, (*units,))
+        array = checks.as_floats(given)
         values = table_of("value", given if array is None or array.ndim != 1 else array[:, None])
         if values.shape != (len(self.x), len(names)) or not np.isfinite(values).all():
             bound = f"it is to have {len(self.x)} rows of {len(names)} finite values, one a name"
             raise InvalidValue("value", given, bound, "give a row for each and a name for each column")
-        kind("source", getattr(self, "source", ""), str)
-        set_fields(self, value=values, names=names)
+        checks.kind("source", getattr(self, "source", ""), str)
+        checks.set_fields(self, value=values, names=names)
         set_doubts(self, values, "")
 
 
@@ -116,9 +106,11 @@ class MeasuredHistory(MeasuredCurves):
     }
 
     def __post_init__(self) -> None:
-        time = ascending("time", self.time)
-        refuse(time < 0, "time", time, "s", "it counts from the beginning of the motion", "give 0 or more")
-        set_fields(self, time=time)
+        time = checks.ascending("time", self.time)
+        checks.refuse(
+            time < 0, "time", time, "s", "it counts from the beginning of the motion", "give 0 or more"
+        )
+        checks.set_fields(self, time=time)
         self._check_columns(self.value, self.names, self.units)
         super().__post_init__()
 
@@ -173,11 +165,13 @@ class MeasuredLoads(MeasuredCurves):
     }
 
     def __post_init__(self) -> None:
-        position = real_array("position", self.position)
+        position = checks.real_array("position", self.position)
         if not position.size:
             raise InvalidValue("position", self.position, "it is empty", "give at least one value")
-        refuse(np.diff(position, prepend=0.0) < 0, "position", position, "m", "positions ascend from 0")
-        set_fields(self, position=position, speed=real("speed", self.speed, "rad/s"))
+        checks.refuse(
+            np.diff(position, prepend=0.0) < 0, "position", position, "m", "positions ascend from 0"
+        )
+        checks.set_fields(self, position=position, speed=checks.real("speed", self.speed, "rad/s"))
         self._check_columns(self.value, self.names, self.units)
         super().__post_init__()
 
@@ -229,19 +223,21 @@ class MeasuredResponse(MeasuredCurves):
     along: ClassVar[tuple[str, str]] = ("frequency", "Hz")
 
     def __post_init__(self) -> None:
-        given = {"frequency": ascending("frequency", self.frequency)}
-        given["magnitude"] = real_array("magnitude", self.magnitude)
+        given = {"frequency": checks.ascending("frequency", self.frequency)}
+        given["magnitude"] = checks.real_array("magnitude", self.magnitude)
         if self.phase is not None:
-            given["phase"] = real_array("phase", self.phase)
+            given["phase"] = checks.real_array("phase", self.phase)
         for name, value in given.items():
             if len(value) != len(given["frequency"]):
                 bound = f"there are {len(value)} for {len(given['frequency'])} frequencies"
                 raise InvalidValue(name, value, bound, "give one a frequency")
         size = given["magnitude"]
-        refuse(size < 0, "magnitude", size, "", "an amplitude is 0 or more", "put the sign into the phase")
+        checks.refuse(
+            size < 0, "magnitude", size, "", "an amplitude is 0 or more", "put the sign into the phase"
+        )
         for name in ("output", "input", "source"):
-            kind(name, getattr(self, name), str)
-        set_fields(self, **given, speed=real("speed", self.speed, "rad/s"))
+            checks.kind(name, getattr(self, name), str)
+        checks.set_fields(self, **given, speed=checks.real("speed", self.speed, "rad/s"))
         set_doubts(self, size, "")
         super().__post_init__()
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.announced import unannounced
+from beamdyn.common.results.statements import unannounced
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
 from beamdyn.loads.static_loads import StaticLoads, static_loads
