@@ -62,6 +62,25 @@ def test_stiffness_and_density_are_not_told_apart_by_frequencies_alone(uncertain
         _ = found.scene_found
 
 
+@pytest.mark.parametrize(
+    ("names", "rows", "told"),
+    [
+        (("beam.thickness", "beam.youngs_modulus"), 2, False),  # h^2 E alone, at any speed
+        (("beam.thickness", "beam.density"), 2, False),
+        (("beam.length", "beam.youngs_modulus"), 1, False),  # E / L^4 at rest
+        (("beam.length", "beam.youngs_modulus"), 2, True),  # the radius over the length, in rotation
+        (("beam.width",), 2, False),
+    ],
+)
+def test_pairs_that_make_up_for_each_other_are_named(names, rows, told):
+    speeds = np.array([0.0, 150.0])[:rows]
+    frequency = bd.frequency_locus(OUTWARD, speeds, 3).frequency
+    data = bd.MeasuredFrequencies(frequency, speeds, uncertainty=0.05)
+    found = bd.identify(OUTWARD, data, dict.fromkeys(names))
+    assert np.isfinite(found.value).tolist() == [told] * len(names)
+    assert [pair.names for pair in found.not_separable] == ([] if told else [names])
+
+
 def test_a_known_body_tells_stiffness_and_density_apart():
     body = with_numbers(OUTWARD, {"beam.tip.mass": 4e-4})
     frequency = bd.frequency_locus(body, SPEEDS, 3).frequency
