@@ -7,6 +7,7 @@ from beamdyn.common.words import Named, Words
 FROM_STIFFNESS = Named("Beam.from_stiffness", "mass_per_length and bending_stiffness in [beam]")
 RECTANGULAR = Named("Beam.rectangular", "width and thickness in [beam]")
 ROLLING_WHEEL = Named("a RollingWheel", 'a table [motion] with kind = "rolling"')
+REPEATING = Named("a PulsatingRotation", 'a table [motion] with kind = "pulsating"')
 
 GIVE_IT = Words("give it to ", FROM_STIFFNESS)
 GIVE_OR_COMPUTE = Words(GIVE_IT, "; ", RECTANGULAR, " computes it")

@@ -6,6 +6,7 @@ is accurate to 1.5e-8 rad.  At a jump, a motion takes the values after it.
 """
 
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, check_consistent, check_picklable
+from beamdyn.scene.motion.pulsating import PulsatingRotation, ShakenCarrier
 from beamdyn.scene.motion.records import SampledTranslation
 from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
 from beamdyn.scene.motion.rotations import Rotation, RotationFunction, SampledRotation, SpinUp, SteadyRotation
@@ -16,6 +17,8 @@ KINDS: dict[str, type[Motion]] = {
     "sampled": SampledRotation,
     "rolling": RollingWheel,
     "sampled_translation": SampledTranslation,
+    "pulsating": PulsatingRotation,
+    "shaken": ShakenCarrier,
 }
 """Motions by the kind that names them in files and forms; the first is the default."""
 
@@ -24,12 +27,14 @@ __all__ = [
     "Line",
     "Motion",
     "MotionSample",
+    "PulsatingRotation",
     "RoadWave",
     "RollingWheel",
     "Rotation",
     "RotationFunction",
     "SampledRotation",
     "SampledTranslation",
+    "ShakenCarrier",
     "SpinUp",
     "SteadyRotation",
     "UserMotion",

@@ -13,6 +13,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, real_array
 from beamdyn.common.results.one_line import OneLine
+from beamdyn.common.words import Words
+from beamdyn.scene.names_elsewhere import REPEATING
 
 _ROUNDING = 1e-12  # relative to the end of a motion: times beyond it by less differ by rounding only
 
@@ -87,7 +89,8 @@ class Motion(OneLine, ABC):
        `steady_start` is the time from which the speed is constant, `end` the last time.
     5. A translation that lasts at steady speed gives `lines`, `road_multiple`, `road_acceleration` and
        `steady_acceleration`, on which the steady response and the resonance speeds rest.
-    6. To be named in files and forms, it stands in `KINDS` of `beamdyn.scene.motion`.
+    6. A motion that repeats itself gives `rates`, on which its stability rests.
+    7. To be named in files and forms, it stands in `KINDS` of `beamdyn.scene.motion`.
 
     Examples
     --------
@@ -132,6 +135,18 @@ class Motion(OneLine, ABC):
     def road_multiple(self) -> float | None:
         """Phase of the road per angle of rotation: waves of the road per turn; None without a road."""
         return None
+
+    @property
+    def rates(self) -> tuple[float, ...]:
+        """Rates [rad/s] of the phases of which the motion is a periodic function, that of rotation first.
+
+        Raises
+        ------
+        ValueError
+            If the motion does not repeat itself.
+        """
+        kind = type(self).__name__
+        raise ValueError(Words(f"motion: a {kind} does not repeat itself; simulate it, or use ", REPEATING))
 
     @property
     def picklable(self) -> bool:

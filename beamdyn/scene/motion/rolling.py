@@ -183,6 +183,12 @@ class RollingWheel(Motion):
         return None if self.road is None else self.rolling_radius * self.road.wavenumber
 
     @property
+    def rates(self) -> tuple[float, ...]:
+        """Rates of the rotation, and on a wavy road that of its phase [rad/s]: see `Motion.rates`."""
+        rates, waves = self.rotation.rates, self.road_multiple
+        return rates if waves is None else (*rates, waves * rates[0])
+
+    @property
     def lines(self) -> tuple[Line, ...]:
         """Excitation lines of the road, whose frequency the rotation splits into two."""
         if (kappa := self.road_multiple) is None:

@@ -85,6 +85,11 @@ class SteadyRotation(Rotation):
         """0 s: the speed is constant."""
         return 0.0
 
+    @property
+    def rates(self) -> tuple[float, ...]:
+        """The speed [rad/s]: see `Motion.rates`."""
+        return (self.speed,)
+
     def kinematics(self, t: np.ndarray) -> Kinematics:
         """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         return self.speed * t, np.full(t.shape, self.speed), np.zeros(t.shape)

@@ -1,0 +1,1 @@
+"""Stability of the beam in periodic motion, by Floquet theory: points, and charts over two numbers."""

@@ -1,0 +1,102 @@
+"""The monodromy matrix: the free motion over a period, as a linear map of its state at the beginning.
+
+The steps are those of the transients, Gauss collocation of order 16, which keeps the symplectic form of
+undamped motion.  Displacements are multiplied by the frequencies at rest, so that in free vibration at rest
+each mode turns by an orthogonal map.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.floquet.period import period_of
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.gauss import step_maps, tableau
+from beamdyn.transient.system import ModalSystem
+
+_STAGES = 8
+_ANGLE = 2.0  # of the fastest mode in a step [rad]: its error is then some 1e-14
+_FEWEST = 12  # steps of a period of the motion, for its own harmonics
+_COARSER = 2 / 3  # steps of the second solution, over those of the first
+_EXCESS = 100.0  # error of the second solution over that of the first, which is (3/2)^16 = 650 in the limit
+_SAMPLES = 64  # times of a period at which the largest stiffness is sought
+_ROUNDING = 4 * np.finfo(float).eps  # of a step, over the matrix
+
+
+@dataclass(frozen=True)
+class Monodromy:
+    """Monodromy matrix of the equations of a scene in modal coordinates.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (2 n, 2 n)
+        Map of the state (w q, q') over a period.
+    error : float
+        Estimated error, as the norm of a matrix.
+    period : float
+        The period [s].
+    form : ndarray, shape (2 n, 2 n), or None
+        The antisymmetric matrix J of the form that undamped motion keeps: matrix^T J matrix = J.  None with
+        damping.
+    """
+
+    matrix: np.ndarray
+    error: float
+    period: float
+    form: np.ndarray | None
+
+
+def monodromy(scene: Scene, equations: Equations) -> Monodromy:
+    """Integrate the free motion of a scene over its period.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with a periodic motion.
+    equations : Equations
+        Its equations in modal coordinates of unit mass.
+
+    Returns
+    -------
+    Monodromy
+        Its error is estimated by a second solution, with two thirds of the steps.
+    """
+    assert scene.motion is not None
+    system, period = ModalSystem(equations, scene.motion), period_of(scene)
+    C, K, _ = system.coefficients(period * np.arange(_SAMPLES) / _SAMPLES)
+    n, frequency = system.size, np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
+    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
+    fastest = np.sqrt(np.abs(K).sum(axis=-1).max())
+    periods = max(1.0, period * max(map(abs, scene.motion.rates)) / (2 * math.pi))
+    steps = math.ceil(max(_FEWEST * periods, period * fastest / _ANGLE))
+    fine, coarse = (_propagate(system, period, math.ceil(each)) for each in (steps, _COARSER * steps))
+    scale = np.concatenate([frequency, np.ones(n)])
+    fine, coarse = (scale[:, None] * each / scale for each in (fine, coarse))
+    error = np.linalg.norm(fine - coarse, 2) / _EXCESS + _ROUNDING * steps * np.linalg.norm(fine, 2)
+    form = None if scene.is_damped else _form(None if C is None else C[0], scale)
+    return Monodromy(fine, float(error), period, form)
+
+
+def _propagate(system: ModalSystem, period: float, steps: int) -> np.ndarray:
+    """Map (2 n, 2 n) of the state (q, q') over a period, in equal steps."""
+    h = period / steps
+    maps = step_maps(system, h * np.arange(steps), h, tableau(_STAGES)).step[:, :, 1:]
+    return reduce(lambda before, step: step @ before, maps)
+
+
+def _form(C: np.ndarray | None, scale: np.ndarray) -> np.ndarray:
+    """The form of undamped motion, with the gyroscopic matrix at its beginning, in scaled states.
+
+    q1^T q2' - q1'^T q2 + q1^T C q2 of two motions is constant, as C = -C^T and K - C'/2 is symmetric.
+    """
+    n = len(scale) // 2
+    J = np.zeros((2 * n, 2 * n))
+    J[:n, n:], J[n:, :n] = np.eye(n), -np.eye(n)
+    if C is not None:
+        J[:n, :n] = C
+    return J / scale[:, None] / scale

@@ -1,0 +1,121 @@
+"""Floquet multipliers, eigenvalues of monodromy matrices, and what they say of stability.
+
+An error d of a matrix moves a multiplier by up to k d, k its condition, the product of the lengths of its
+left and right vector over their product.  Where two multipliers meet, k has no bound, but k times their
+distance has: they are m +- sqrt(s), and an error D of s moves them by at most sqrt(D).
+
+Undamped motion keeps a form, so that with each multiplier its reciprocal is one.  A multiplier on the unit
+circle, further from the others than the errors, has no other to be the reciprocal of: it lies on the circle.
+Where several meet, they stay on it if the form has one sign on their vectors (Krein).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
+_EIGENVALUES = 8 * np.finfo(float).eps  # backward error of an eigenvalue solver, over the matrix
+_SAFETY = 2.0  # of the bounds to first order
+_DEFINITE = 1e-6  # value of the form of a vector over its largest, beyond which its sign is known
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """Multipliers of P monodromy matrices.
+
+    Parameters
+    ----------
+    value : ndarray of complex, shape (P, m)
+        The multipliers, the largest first.
+    error : ndarray, shape (P, m)
+        Their estimated errors.
+    sign : ndarray, shape (P, m), or None
+        Signs of the form of undamped motion on their vectors: 1 or -1, 0 where it is not known, as for all
+        that do not lie on the unit circle.  None with damping.
+    """
+
+    value: np.ndarray
+    error: np.ndarray
+    sign: np.ndarray | None
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """Distances from 0, (P, m)."""
+        return np.abs(self.value)
+
+    @cached_property
+    def verdict(self) -> np.ndarray:
+        """Whether each of the motions is "stable", "unstable" or "undecided": (P,)."""
+        outside = (self.size - self.error > 1).any(axis=1)
+        if self.sign is None:
+            stable = (self.size + self.error < 1).all(axis=1)
+        else:
+            stable = ~self._may_leave(self.sign)
+        return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
+
+    def _may_leave(self, sign: np.ndarray) -> np.ndarray:
+        """Whether multipliers of undamped motion may lie beside the circle: those that meet others, (P,)."""
+        reach = self.error[:, :, None] + self.error[:, None, :]
+        meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
+        of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
+        meet &= ~of_one_sign & ~np.eye(self.value.shape[1], dtype=bool)
+        beside = np.abs(self.size - 1) > self.error
+        return (meet.any(axis=2) | beside).any(axis=1)
+
+    def growth(self, period: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Largest growth rates over periods [s] (P,), and their errors [1/s]; 0 of undamped stable motion."""
+        with np.errstate(divide="ignore"):
+            rate = np.log(self.size).max(axis=1) / period
+            most = np.log(self.size + self.error).max(axis=1) / period
+            least = np.log(np.maximum(self.size - self.error, 0.0)).max(axis=1) / period
+        error = np.maximum(most - rate, rate - least)
+        rests = (self.verdict == STABLE) & (self.sign is not None)
+        return np.where(rests, 0.0, rate), np.where(rests, 0.0, error)
+
+
+def multipliers_of(matrix: np.ndarray, error: np.ndarray, form: np.ndarray | None) -> Multipliers:
+    """Compute multipliers and their errors.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (P, m, m)
+        Monodromy matrices.
+    error : ndarray, shape (P,)
+        Errors of the matrices.
+    form : ndarray, shape (P, m, m), or None
+        Forms that undamped motions keep; None with damping.
+    """
+    value, right = np.linalg.eig(matrix)
+    order = np.argsort(-np.abs(value), axis=1, kind="stable")
+    value = np.take_along_axis(value, order, axis=1)
+    right = np.take_along_axis(right, order[:, None, :], axis=2)
+    condition = np.linalg.norm(_inverse(right), axis=2) * np.linalg.norm(right, axis=1)
+    moved = error + _EIGENVALUES * np.linalg.norm(matrix, axis=(1, 2))
+    first = condition * moved[:, None]
+    own = np.where(np.eye(value.shape[1], dtype=bool), np.inf, 0.0)
+    gap = (np.abs(value[:, :, None] - value[:, None, :]) + own).min(axis=2)
+    with np.errstate(invalid="ignore"):
+        bound = np.fmin(_SAFETY * first, np.sqrt(_SAFETY * first * gap))
+    sign = None if form is None else _krein_sign(value, bound, right, form)
+    return Multipliers(value, np.nan_to_num(bound, nan=np.inf), sign)
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    """Inverses of matrices (P, m, m); inf where one is singular."""
+    try:
+        return np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        if len(matrix) == 1:
+            return np.full_like(matrix, np.inf)
+        return np.concatenate([_inverse(matrix[i : i + 1]) for i in range(len(matrix))])
+
+
+def _krein_sign(value: np.ndarray, error: np.ndarray, right: np.ndarray, form: np.ndarray) -> np.ndarray:
+    """Signs (P, m) of i x^* J x on vectors of multipliers on the unit circle, where they are known."""
+    inside = np.real(1j * np.einsum("pim,pij,pjm->pm", right.conj(), form, right))
+    largest = np.einsum("pim,pij,pjm->pm", np.abs(right), np.abs(form), np.abs(right))
+    known = (np.abs(inside) > _DEFINITE * largest) & (np.abs(np.abs(value) - 1) <= error)
+    return np.where(known, np.sign(inside), 0.0)

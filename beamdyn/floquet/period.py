@@ -1,0 +1,52 @@
+"""The period of the equations of motion of a scene, from the rates of the phases of its motion."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.scene.motion import Rotation
+from beamdyn.scene.scene import Scene
+
+MOST_TURNS = 64  # periods of the slowest and of any other phase, in which they must meet again
+_COMMENSURATE = 1e-12  # distance of a ratio of rates from a fraction, over it, that rounding makes
+
+
+def period_of(scene: Scene) -> float:
+    """Smallest time after which the coefficients of the equations of motion repeat themselves [s].
+
+    The angle of rotation counts where gravity, or an acceleration of the carrier, has a fixed direction.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no motion, it does not repeat itself, or its phases do not meet again within 64 periods.
+    """
+    motion = scene.motion
+    if motion is None:
+        remedy = "such as PulsatingRotation(50.0, fluctuation=0.1, frequency=20.0)"
+        raise InvalidValue("scene.motion", None, "stability needs a periodic motion", remedy)
+    rates = tuple(map(abs, motion.rates))
+    if isinstance(motion, Rotation) and not scene.gravity and len(rates) > 1:
+        rates = rates[1:]
+    rates = tuple(rate for rate in rates if rate)
+    if not rates:
+        bound = "it stands still, and nothing pulsates"
+        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it turn or pulsate")
+    fractions = [_fraction(rate, rates[0]) for rate in rates]
+    return 2 * math.pi / rates[0] * math.lcm(*(each.denominator for each in fractions))
+
+
+def _fraction(rate: float, first: float) -> Fraction:
+    """Ratio of two rates as a fraction; refused if it is none of small numbers."""
+    ratio = rate / first
+    found = Fraction(ratio).limit_denominator(MOST_TURNS)
+    if abs(found - Fraction(ratio)) > _COMMENSURATE * ratio or found.numerator > MOST_TURNS**2:
+        bound = f"its rates {first:.9g} and {rate:.9g} rad/s never meet again: their ratio is {ratio:.9g}"
+        remedy = (
+            f"take the nearest, {found.numerator}/{found.denominator}; at a steady speed steady_response says "
+            "where motion with two such rates is stable"
+        )
+        raise InvalidValue("scene.motion", ratio, bound, remedy)
+    return found
