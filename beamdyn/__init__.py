@@ -21,7 +21,7 @@ SHOWN_BY.update(
         "analyses.results.of_linear_models": ("linear",),
         "analyses.results.of_loads": ("loads",),
         "analyses.results.of_modes": ("equations", "modes", "scene"),
-        "analyses.results.of_motion": ("steady", "transient"),
+        "analyses.results.of_motion": ("floquet", "steady", "transient"),
         "analyses.results.of_studies": ("studies",),
     }.items()
     for room in rooms
@@ -52,6 +52,8 @@ if TYPE_CHECKING:
     from beamdyn.files.decks.deck import Deck, read_deck
     from beamdyn.files.measured_data import read_measurements
     from beamdyn.files.scenes import load_scene
+    from beamdyn.floquet.chart import StabilityChart, stability_chart
+    from beamdyn.floquet.point import FloquetMultipliers, floquet_multipliers
     from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
     from beamdyn.linear.inputs_outputs import (
         AccelerationAt,
@@ -95,12 +97,14 @@ if TYPE_CHECKING:
         Line,
         Motion,
         MotionSample,
+        PulsatingRotation,
         RoadWave,
         RollingWheel,
         Rotation,
         RotationFunction,
         SampledRotation,
         SampledTranslation,
+        ShakenCarrier,
         SpinUp,
         SteadyRotation,
         UserMotion,

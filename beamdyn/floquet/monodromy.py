@@ -14,11 +14,12 @@ from functools import reduce
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.floquet.period import period_of
+from beamdyn.floquet.period import Period
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
+COARSER = "two thirds of the steps in time"  # with which errors are estimated
 _STAGES = 8
 _ANGLE = 2.0  # of the fastest mode in a step [rad]: its error is then some 1e-14
 _FEWEST = 12  # steps of a period of the motion, for its own harmonics
@@ -30,56 +31,66 @@ _ROUNDING = 4 * np.finfo(float).eps  # of a step, over the matrix
 
 @dataclass(frozen=True)
 class Monodromy:
-    """Monodromy matrix of the equations of a scene in modal coordinates.
+    """Monodromy matrices of P scenes with the same modal coordinates.
 
     Parameters
     ----------
-    matrix : ndarray, shape (2 n, 2 n)
-        Map of the state (w q, q') over a period.
-    error : float
-        Estimated error, as the norm of a matrix.
-    period : float
-        The period [s].
-    form : ndarray, shape (2 n, 2 n), or None
-        The antisymmetric matrix J of the form that undamped motion keeps: matrix^T J matrix = J.  None with
+    matrix : ndarray, shape (P, 2 n, 2 n)
+        Maps of the state (w q, q') over a period.
+    error : ndarray, shape (P,)
+        Estimated errors, as norms of matrices.
+    period : ndarray, shape (P,)
+        The periods [s].
+    form : ndarray, shape (P, 2 n, 2 n), or None
+        Antisymmetric matrices J of the forms that undamped motions keep: matrix^T J matrix = J.  None with
         damping.
+    turns : int
+        Turns of the first phase in a period, the same of all.
     """
 
     matrix: np.ndarray
-    error: float
-    period: float
+    error: np.ndarray
+    period: np.ndarray
     form: np.ndarray | None
+    turns: int
 
 
-def monodromy(scene: Scene, equations: Equations) -> Monodromy:
+def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     """Integrate the free motion of a scene over its period.
 
     Parameters
     ----------
     scene : Scene
         The scene, with a periodic motion.
+    period : Period
+        Its period.
     equations : Equations
         Its equations in modal coordinates of unit mass.
 
     Returns
     -------
     Monodromy
-        Its error is estimated by a second solution, with two thirds of the steps.
+        Of this scene.  Its error is estimated by a second solution, with two thirds of the steps.
     """
     assert scene.motion is not None
-    system, period = ModalSystem(equations, scene.motion), period_of(scene)
-    C, K, _ = system.coefficients(period * np.arange(_SAMPLES) / _SAMPLES)
-    n, frequency = system.size, np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
-    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
-    fastest = np.sqrt(np.abs(K).sum(axis=-1).max())
-    periods = max(1.0, period * max(map(abs, scene.motion.rates)) / (2 * math.pi))
-    steps = math.ceil(max(_FEWEST * periods, period * fastest / _ANGLE))
-    fine, coarse = (_propagate(system, period, math.ceil(each)) for each in (steps, _COARSER * steps))
-    scale = np.concatenate([frequency, np.ones(n)])
-    fine, coarse = (scale[:, None] * each / scale for each in (fine, coarse))
+    system = ModalSystem(equations, scene.motion)
+    C, K, _ = system.coefficients(period.time * np.arange(_SAMPLES) / _SAMPLES)
+    steps = _count_steps(K, period.time, scene.motion.rates)
+    frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
+    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period.time)
+    scale = np.concatenate([frequency, np.ones(system.size)])
+    counts = steps, math.ceil(_COARSER * steps)
+    fine, coarse = (scale[:, None] * _propagate(system, period.time, each) / scale for each in counts)
     error = np.linalg.norm(fine - coarse, 2) / _EXCESS + _ROUNDING * steps * np.linalg.norm(fine, 2)
-    form = None if scene.is_damped else _form(None if C is None else C[0], scale)
-    return Monodromy(fine, float(error), period, form)
+    form = None if scene.is_damped else _form(None if C is None else C[0], scale)[None]
+    return Monodromy(fine[None], np.array([error]), np.array([period.time]), form, period.turns)
+
+
+def _count_steps(K: np.ndarray, period: float, rates: tuple[float, ...]) -> int:
+    """Steps that resolve the fastest mode and the motion, by stiffnesses K over a period [s]."""
+    fastest = np.sqrt(np.abs(K).sum(axis=-1).max())
+    turns = max(1.0, period * max(map(abs, rates)) / (2 * math.pi))
+    return math.ceil(max(_FEWEST * turns, period * fastest / _ANGLE))
 
 
 def _propagate(system: ModalSystem, period: float, steps: int) -> np.ndarray:

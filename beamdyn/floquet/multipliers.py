@@ -16,6 +16,8 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.floquet.monodromy import Monodromy
+
 STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
 _EIGENVALUES = 8 * np.finfo(float).eps  # backward error of an eigenvalue solver, over the matrix
 _SAFETY = 2.0  # of the bounds to first order
@@ -35,11 +37,14 @@ class Multipliers:
     sign : ndarray, shape (P, m), or None
         Signs of the form of undamped motion on their vectors: 1 or -1, 0 where it is not known, as for all
         that do not lie on the unit circle.  None with damping.
+    period : ndarray, shape (P,)
+        Periods of the motions [s].
     """
 
     value: np.ndarray
     error: np.ndarray
     sign: np.ndarray | None
+    period: np.ndarray
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -65,42 +70,34 @@ class Multipliers:
         beside = np.abs(self.size - 1) > self.error
         return (meet.any(axis=2) | beside).any(axis=1)
 
-    def growth(self, period: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Largest growth rates over periods [s] (P,), and their errors [1/s]; 0 of undamped stable motion."""
+    @cached_property
+    def growth(self) -> tuple[np.ndarray, np.ndarray]:
+        """Largest growth rates (P,), and their errors [1/s]; 0 of undamped stable motion."""
         with np.errstate(divide="ignore"):
-            rate = np.log(self.size).max(axis=1) / period
-            most = np.log(self.size + self.error).max(axis=1) / period
-            least = np.log(np.maximum(self.size - self.error, 0.0)).max(axis=1) / period
+            rate = np.log(self.size).max(axis=1) / self.period
+            most = np.log(self.size + self.error).max(axis=1) / self.period
+            least = np.log(np.maximum(self.size - self.error, 0.0)).max(axis=1) / self.period
         error = np.maximum(most - rate, rate - least)
         rests = (self.verdict == STABLE) & (self.sign is not None)
         return np.where(rests, 0.0, rate), np.where(rests, 0.0, error)
 
 
-def multipliers_of(matrix: np.ndarray, error: np.ndarray, form: np.ndarray | None) -> Multipliers:
-    """Compute multipliers and their errors.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (P, m, m)
-        Monodromy matrices.
-    error : ndarray, shape (P,)
-        Errors of the matrices.
-    form : ndarray, shape (P, m, m), or None
-        Forms that undamped motions keep; None with damping.
-    """
+def multipliers_of(motion: Monodromy) -> Multipliers:
+    """Compute the multipliers of monodromy matrices, and their errors."""
+    matrix, form = motion.matrix, motion.form
     value, right = np.linalg.eig(matrix)
     order = np.argsort(-np.abs(value), axis=1, kind="stable")
     value = np.take_along_axis(value, order, axis=1)
     right = np.take_along_axis(right, order[:, None, :], axis=2)
     condition = np.linalg.norm(_inverse(right), axis=2) * np.linalg.norm(right, axis=1)
-    moved = error + _EIGENVALUES * np.linalg.norm(matrix, axis=(1, 2))
+    moved = motion.error + _EIGENVALUES * np.linalg.norm(matrix, axis=(1, 2))
     first = condition * moved[:, None]
     own = np.where(np.eye(value.shape[1], dtype=bool), np.inf, 0.0)
     gap = (np.abs(value[:, :, None] - value[:, None, :]) + own).min(axis=2)
     with np.errstate(invalid="ignore"):
         bound = np.fmin(_SAFETY * first, np.sqrt(_SAFETY * first * gap))
     sign = None if form is None else _krein_sign(value, bound, right, form)
-    return Multipliers(value, np.nan_to_num(bound, nan=np.inf), sign)
+    return Multipliers(value, np.nan_to_num(bound, nan=np.inf), sign, motion.period)
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.motion import Rotation
@@ -13,8 +14,23 @@ MOST_TURNS = 64  # periods of the slowest and of any other phase, in which they 
 _COMMENSURATE = 1e-12  # distance of a ratio of rates from a fraction, over it, that rounding makes
 
 
-def period_of(scene: Scene) -> float:
-    """Smallest time after which the coefficients of the equations of motion repeat themselves [s].
+class Period(NamedTuple):
+    """Time after which the coefficients of the equations of motion repeat themselves.
+
+    Parameters
+    ----------
+    time : float
+        The time [s].
+    turns : int
+        Turns of the first phase in it.
+    """
+
+    time: float
+    turns: int
+
+
+def period_of(scene: Scene) -> Period:
+    """Smallest time after which the coefficients of the equations of motion repeat themselves.
 
     The angle of rotation counts where gravity, or an acceleration of the carrier, has a fixed direction.
 
@@ -34,8 +50,8 @@ def period_of(scene: Scene) -> float:
     if not rates:
         bound = "it stands still, and nothing pulsates"
         raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it turn or pulsate")
-    fractions = [_fraction(rate, rates[0]) for rate in rates]
-    return 2 * math.pi / rates[0] * math.lcm(*(each.denominator for each in fractions))
+    turns = math.lcm(*(_fraction(rate, rates[0]).denominator for rate in rates))
+    return Period(2 * math.pi / rates[0] * turns, turns)
 
 
 def _fraction(rate: float, first: float) -> Fraction:
