@@ -18,6 +18,7 @@ _COMMANDS = (
     ("about_motion", "resonances steady"),
     ("about_designs", "study"),
     ("about_motion", "simulate sweep"),
+    ("about_stability", "floquet stability-chart"),
     ("about_data", "compare identify"),
 )
 COMMANDS = {name: module for module, names in _COMMANDS for name in names.split()}

@@ -158,7 +158,7 @@ def study(
         raise ValueError(f'give {OPTION} "name=start:stop:count unit", such as "speed=0:100:11 rad/s"')
     varied = (text.partition("=") for text in varying.vary)
     scene = in_unit_of(scene, speed, *(values for key, _, values in varied if key.strip() == "speed"))
-    known = _inputs(scene)
+    known = inputs_of(scene)
     axes = [parse_axis(known, text, OPTION, MOST_DESIGNS) for text in varying.vary]
     check_designs(designs_of(axes, varying.combine), option=OPTION)
     how = {
@@ -179,7 +179,7 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
-    units = {axis.input.path: _unit_of(axis) for axis in axes if axis.unit}
+    units = {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
     warnings = warnings_of(result, how["tolerance"], word=partial(_as_given, axes))
     none = ""
     if not result.answered.any():
@@ -222,7 +222,7 @@ def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
     return None
 
 
-def _inputs(scene: Scene) -> list[Input]:
+def inputs_of(scene: Scene) -> list[Input]:
     """The numbers of a scene that a study varies, as files describe them, and the speed."""
 
     class ByWholeName(Input):
@@ -240,7 +240,7 @@ def _inputs(scene: Scene) -> list[Input]:
     return [known.get(path) or described(path) for path in paths_of(scene)]
 
 
-def _unit_of(axis: Axis) -> tuple[str, float]:
+def unit_given(axis: Axis) -> tuple[str, float]:
     """The unit in which the values of an input were given, and that unit in SI."""
     place = abs(axis.given).argmax()
     return axis.unit, float(axis.values[place] / axis.given[place])

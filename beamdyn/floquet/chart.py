@@ -16,7 +16,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending
-from beamdyn.common.inputs.designs import MOST_DESIGNS, Designs, VariedInput, check_designs
+from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability import plot_stability_chart
 from beamdyn.common.results.announced import announced_of_plain_beam
@@ -197,9 +197,7 @@ def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray], modes: int) 
         raise InvalidValue("vary", vary, bound, remedy)
     paths = [check_path("vary", path) for path in vary]
     values = [ascending(f"vary[{path!r}]", each) for path, each in vary.items()]
-    inputs = [
-        VariedInput(path, unit_of(path) or "", each) for path, each in zip(paths, values, strict=True)
-    ]
+    inputs = [VariedInput(path, unit_of(path) or "", each) for path, each in zip(paths, values, strict=True)]
     check_designs(Designs(inputs), most=_MOST_ENTRIES // (2 * modes) ** 2)
     return tuple(inputs)
 
@@ -235,7 +233,7 @@ class _Grid:
         undecided = np.flatnonzero(found["status"] == UNDECIDED)
         if integrated == len(motion.period):  # nothing was interpolated
             undecided = undecided[:0]
-        for place in undecided:
+        for place in undecided.tolist():
             for name, value in _verdicts(self.scenes.monodromy(self.numbers(place))).items():
                 found[name][place] = value[0]
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
@@ -263,7 +261,9 @@ class _Grid:
         flat = on_grid.value.reshape(-1, 2 * size**2 + 1)
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
         error = np.full(len(flat), max(errors) + on_grid.error)
-        return Monodromy(matrix, error, 1 / flat[:, -1], None if True in damped else form, max(turns)), on_grid.samples
+        return Monodromy(
+            matrix, error, 1 / flat[:, -1], None if True in damped else form, max(turns)
+        ), on_grid.samples
 
 
 def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:

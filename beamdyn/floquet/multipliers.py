@@ -68,7 +68,7 @@ class Multipliers:
         of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
         meet &= ~of_one_sign & ~np.eye(self.value.shape[1], dtype=bool)
         beside = np.abs(self.size - 1) > self.error
-        return (meet.any(axis=2) | beside).any(axis=1)
+        return np.asarray((meet.any(axis=2) | beside).any(axis=1))
 
     @cached_property
     def growth(self) -> tuple[np.ndarray, np.ndarray]:

@@ -61,8 +61,8 @@ def _fraction(rate: float, first: float) -> Fraction:
     if abs(found - Fraction(ratio)) > _COMMENSURATE * ratio or found.numerator > MOST_TURNS**2:
         bound = f"its rates {first:.9g} and {rate:.9g} rad/s never meet again: their ratio is {ratio:.9g}"
         remedy = (
-            f"take the nearest, {found.numerator}/{found.denominator}; at a steady speed steady_response says "
-            "where motion with two such rates is stable"
+            f"take the nearest, {found.numerator}/{found.denominator}; at steady speed, steady_response "
+            "says where motion with two such rates is stable"
         )
         raise InvalidValue("scene.motion", ratio, bound, remedy)
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class PeriodicScenes(FieldsOnly):
     scene: Scene
     modes: int
     discretization: DiscretizationChoice
-    _models: dict[Scene, tuple[Model, Equations]] = field(default_factory=dict, repr=False, compare=False)
+    _models: dict[Any, tuple[Model, Equations]] = field(default_factory=dict, repr=False, compare=False)
 
     def at(self, values: Mapping[str, float]) -> Scene:
         """The scene with other numbers, and in motion at another speed if that is one of them."""
@@ -64,7 +65,7 @@ class PeriodicScenes(FieldsOnly):
     def modal(self, scene: Scene) -> tuple[Model, Equations]:
         """Model and equations in modes at rest of a scene, or of one that differs in how its root moves."""
         still = replace(scene.mount, radius=0.0, setting_angle=0.0)
-        key = replace(scene, motion=None, gravity=0.0, mount=still)
+        key = scene.beam, still, scene.physics, scene.damping_ratio, scene.damping
         if key not in self._models:
             model = choose_model(scene, self.discretization, speeds_of(scene), self.modes)
             self._models[key] = model, model.modal_equations(self.modes)
@@ -73,8 +74,9 @@ class PeriodicScenes(FieldsOnly):
 
 def speeds_of(scene: Scene) -> np.ndarray:
     """The slowest and the fastest speed of a periodic motion [rad/s]."""
+    period = period_of(scene)
     assert scene.motion is not None
-    return np.array(find_speed_range(scene.motion, period_of(scene).time))
+    return np.array(find_speed_range(scene.motion, period.time))
 
 
 def check_periodic(scene: Scene, modes: int, discretization: DiscretizationChoice) -> PeriodicScenes:

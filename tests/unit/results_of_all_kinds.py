@@ -37,6 +37,7 @@ BENT = bd.Scene(
     physics=bd.Physics(large_deflection=True),
 )
 DAMPED = replace(HARVESTER, damping_ratio=0.01)
+PULSATING = bd.Scene(HARVESTER.beam, HARVESTER.mount, bd.PulsatingRotation(50.0, 0.1, 123.9))
 BENDIX = forklift.BENDIX_12_5
 ROUGH = bd.PowerSpectrum([5.0, 60.0, 200.0], [1.0, 3.0, 0.2])
 SPEEDS = np.linspace(0.0, 100.0, 41)
@@ -124,6 +125,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
         bd.MeasuredFrequencies([62.1, 389.0], uncertainty=0.5),
         {"beam.thickness": None},
     ),
+    "FloquetMultipliers": lambda: bd.floquet_multipliers(PULSATING, 2),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
     "FromPedal": _from_pedal,
@@ -165,6 +167,9 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Stop": lambda: forklift.stop(TRUCK, STOP),
     "StoppingDistance": lambda: stop(mass=80.0, speed=5.0, pad_force=1e3, friction=0.4),
     "Study": lambda: bd.study(HARVESTER, {"beam.thickness": [1e-4, 2e-4]}, speed=20.0),
+    "StabilityChart": lambda: bd.stability_chart(
+        PULSATING, {"motion.frequency": [110.0, 123.9], "motion.fluctuation": [0.01, 0.1]}, 1
+    ),
     "Sweep": lambda: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=2),
     "Terms": lambda: bd.terms(SHORT_SPIN_UP),
     "Tradeoff": lambda: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.05),

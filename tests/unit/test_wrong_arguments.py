@@ -18,6 +18,7 @@ BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2))
 DAMPED = bd.Scene(BEAM, bd.Mount(0.2), damping_ratio=0.01)
 MOVING = bd.Scene(BEAM, bd.Mount(0.2), bd.RollingWheel(0.3, 20.0, bd.RoadWave(0.3, 0.01)))
+PULSATING = bd.Scene(BEAM, bd.Mount(0.2), bd.PulsatingRotation(5.0, 0.1, 100.0))
 RUN, RESPONSE = bd.simulate(MOVING, 0.02, 2, 1e-3), bd.steady_response(MOVING, [5.0], 2)
 LOADS = bd.transient_loads(RUN, at=[0.0])
 
@@ -91,6 +92,11 @@ CALLS = {
         {"times": [0.0, 1.0, 2.0], "along_n1": [0.0, 1.0, 2.0], "along_n2": (), "along_n3": ()}
         | {"rotation": 5.0, "interpolation": "linear"},
     ),
+    "PulsatingRotation": (bd.PulsatingRotation, {"speed": 5.0, "fluctuation": 0.1, "frequency": 3.0}),
+    "ShakenCarrier": (
+        bd.ShakenCarrier,
+        {"frequency": 3.0, "along_n1": 1.0, "along_n2": 0.0, "along_n3": 0.0, "rotation": 5.0},
+    ),
     "RotationFunction": (
         bd.RotationFunction,
         {"angle": lambda t: 5 * t, "speed": lambda t: 5 + 0 * t, "acceleration": lambda t: 0 * t}
@@ -143,6 +149,15 @@ CALLS = {
     "steady_response": (
         bd.steady_response,
         {"scene": MOVING, "speeds": [5.0, 6.0], "modes": 2, "harmonics": 1, "tolerance": 1e-3}
+        | {"discretization": "ritz"},
+    ),
+    "floquet_multipliers": (
+        bd.floquet_multipliers,
+        {"scene": PULSATING, "modes": 2, "discretization": "ritz"},
+    ),
+    "stability_chart": (
+        bd.stability_chart,
+        {"scene": PULSATING, "vary": {"speed": [5.0], "mount.radius": [0.1]}, "modes": 2}
         | {"discretization": "ritz"},
     ),
     "simulate": (

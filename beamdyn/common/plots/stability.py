@@ -30,7 +30,14 @@ def plot_multipliers(
         if some.any():
             at = multipliers[some]
             ax.errorbar(
-                at.real, at.imag, error[some], error[some], fmt="o", color=colour, label=name, capsize=2
+                np.real(at),
+                np.imag(at),
+                error[some],
+                error[some],
+                fmt="o",
+                color=colour,
+                label=name,
+                capsize=2,
             )
     ax.set_aspect("equal")
     return add_legend(ax)

@@ -166,10 +166,12 @@ class ShakenCarrier(Motion):
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Raise a ValueError: shaking has a frequency of its own, which phases at steady speed do not give."""
+        """Raise a ValueError: the shaking has a frequency of its own beside that of the rotation."""
         raise _never_steady(self)
 
 
 def _never_steady(motion: Motion) -> ValueError:
-    said = f"a {type(motion).__name__} pulsates, and has no steady state; simulate it, ask for its stability, "
+    said = (
+        f"a {type(motion).__name__} pulsates, and has no steady state; simulate it, ask for its stability, "
+    )
     return ValueError(Words(said, "or use ", ROLLING_WHEEL))

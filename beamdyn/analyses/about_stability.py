@@ -1,0 +1,67 @@
+"""Stability in periodic motion: the multipliers of one scene, and charts over two numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+import beamdyn as bd
+from beamdyn.analyses.about_designs import inputs_of, unit_given
+from beamdyn.analyses.analysis import Answer, analysis
+from beamdyn.analyses.options import Discretization, ModeCount
+from beamdyn.analyses.results.of_stability import chart_table
+from beamdyn.analyses.values import in_unit_of
+from beamdyn.common.edge.varied_inputs import parse_axis
+from beamdyn.common.edge.varying import OPTION
+from beamdyn.scene.numbers import SPEED
+
+if TYPE_CHECKING:
+    from beamdyn.floquet.point import FloquetMultipliers
+    from beamdyn.scene.scene import Scene
+
+
+@analysis(
+    "beamdyn floquet examples/pulsating_wheel.toml",
+    about_scene="The scene, in a motion that repeats itself.",
+    moving=lambda _: True,
+)
+def floquet(
+    scene: Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"
+) -> FloquetMultipliers:
+    """Whether free motion grows about a motion that repeats itself: Floquet multipliers over its period."""
+    return bd.floquet_multipliers(scene, modes, discretization)
+
+
+@analysis(
+    "beamdyn stability-chart examples/pulsating_wheel.toml "
+    '--vary "motion.frequency=100:150:51 Hz" --vary "motion.fluctuation=0:0.2:41"',
+    about_scene="The scene, in a motion that repeats itself.",
+    moving=lambda _: True,
+)
+def stability_chart(
+    scene: Scene,
+    *,
+    vary: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)] = (),
+    modes: ModeCount = 3,
+    discretization: Discretization = "ritz",
+) -> Answer:
+    """Where free motion grows, over two numbers of a scene whose motion repeats itself.
+
+    Parameters
+    ----------
+    vary
+        A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; give
+        the option twice. Names are those of the file, or speed.
+    """
+    if len(vary) != 2:
+        raise ValueError(f'{OPTION}: a chart is over two numbers; give two, such as "speed=50:60:21 rad/s"')
+    varied = (text.partition("=") for text in vary)
+    scene = in_unit_of(scene, *(values for key, _, values in varied if key.strip() == SPEED))
+    axes = [parse_axis(inputs_of(scene), text, OPTION) for text in vary]
+    inputs = {axis.input.path: axis.values for axis in axes}
+    units = {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
+    if len(inputs) < 2:
+        raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two numbers")
+    result = bd.stability_chart(scene, inputs, modes, discretization)
+    return Answer(result, tables=[chart_table(result, units)])

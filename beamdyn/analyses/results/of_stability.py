@@ -1,0 +1,103 @@
+"""Stability in periodic motion, as tables for reading and as columns of files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Group
+
+from beamdyn.common.edge.tables import table, table_of
+from beamdyn.common.edge.views import View
+from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
+from beamdyn.floquet.multipliers import STABLE, UNDECIDED
+
+if TYPE_CHECKING:
+    from beamdyn.floquet.chart import StabilityChart
+    from beamdyn.floquet.point import FloquetMultipliers
+
+_MOST_ROWS = 21  # values of the first number in a table
+_SI: Mapping[str, tuple[str, float]] = {}
+
+
+def multiplier_columns(result: FloquetMultipliers) -> Columns:
+    """A row a multiplier: size, angle, error and sign."""
+    size, value = np.abs(result.multipliers), result.multipliers
+    error = f"growth rate {result.growth_rate:.6g} 1/s, error {result.growth_rate_error:.1g} 1/s"
+    return Columns(
+        Column("multiplier", np.arange(1, len(size) + 1)),
+        Column("size", size, error=result.multiplier_errors, form=".10g"),
+        Column("angle", np.angle(value), "rad", form=".6f"),
+        Column("error", result.multiplier_errors, form=".1e"),
+        Column("krein_sign", result.krein_sign.astype(int), words="Krein sign"),
+        title=f"{result.status}: multipliers over {result.period:.6g} s, by {result.provenance.method}",
+        note=f"Largest {error} of the modes that are kept, {result.mode_error:.1g} 1/s by those left out.",
+    )
+
+
+def _multiplier_table(result: FloquetMultipliers) -> Group:
+    return table_of(multiplier_columns(result), result.display_units)
+
+
+def chart_table(result: StabilityChart, units: Mapping[str, tuple[str, float]] = _SI) -> Group:
+    """Where free motion is not stable along the second number, at some values of the first.
+
+    Parameters
+    ----------
+    result : StabilityChart
+        The chart.
+    units : mapping, optional
+        By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
+    """
+    names = [(each.name, *units.get(each.name, (each.unit, 1.0))) for each in result.inputs]
+    (first, *_), (second, *_) = heads = [(f"{n} [{u}]" if u else n, u, size) for n, u, size in names]
+    values = [each.values / size for each, (*_, size) in zip(result.inputs, heads, strict=True)]
+    number = len(values[0])
+    shown = np.linspace(0, number - 1, min(number, _MOST_ROWS)).round().astype(int)
+    rows = [
+        (
+            f"{values[0][k]:.6g}",
+            _where(result.status[k], values[1]),
+            f"{result.growth_rate[k].max():.4g}",
+            f"{result.growth_rate_error[k].max():.1g}",
+        )
+        for k in shown
+    ]
+    title = f"Where free motion grows, by {result.provenance.method}"
+    return table(title, (first, f"not stable at {second}", "largest growth rate [1/s]", "error"), rows, (1,))
+
+
+def _where(status: np.ndarray, values: np.ndarray) -> str:
+    """Ranges of values without stability, in words."""
+    said = []
+    for state, group in groupby(zip(status.tolist(), values.tolist(), strict=True), lambda pair: pair[0]):
+        within = [value for _, value in group]
+        if state != STABLE:
+            ends = " to ".join(dict.fromkeys(f"{each:.6g}" for each in (within[0], within[-1])))
+            said.append(f"{ends} (undecided)" if state == UNDECIDED else ends)
+    return ", ".join(said) or "-"
+
+
+def chart_columns(result: StabilityChart) -> Columns:
+    """A row a point: the two numbers, the verdict, growth rate, its error, and the largest multiplier."""
+    grids = np.meshgrid(*(each.values for each in result.inputs), indexing="ij")
+    numbers = (
+        column_named(name_in_heads(each.name), grid.ravel(), each.unit, words=each.name)
+        for each, grid in zip(result.inputs, grids, strict=True)
+    )
+    return Columns(
+        *numbers,
+        Column("status", result.status.ravel()),
+        Column("growth_rate", result.growth_rate.ravel(), "1/s", error=result.growth_rate_error.ravel()),
+        Column("growth_rate_error", result.growth_rate_error.ravel(), "1/s", form=".1e"),
+        Column("spectral_radius", result.spectral_radius.ravel()),
+        Column("period", result.period.ravel(), "s"),
+    )
+
+
+VIEWS = {
+    "FloquetMultipliers": View(_multiplier_table, multiplier_columns, 1),
+    "StabilityChart": View(chart_table, chart_columns, 2),
+}

@@ -1,0 +1,159 @@
+"""Motions that pulsate, periods, verdicts, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.floquet.interpolation import interpolate_on_grid
+from beamdyn.floquet.monodromy import Monodromy
+from beamdyn.floquet.multipliers import multipliers_of
+from beamdyn.floquet.period import period_of
+from beamdyn.scene.motion import check_consistent
+
+STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+PULSATING = bd.PulsatingRotation(50.0, 0.1, 20.0)
+MOUNT = bd.Mount(0.215)
+
+
+@pytest.mark.parametrize(
+    "motion", [PULSATING, bd.ShakenCarrier(20.0, 1.0, 2.0, 3.0, rotation=bd.SpinUp(50.0, 0.1))]
+)
+def test_pulsating_motions_are_consistent(motion):
+    check_consistent(motion, 0.3)
+
+
+def test_pulsating_motions_have_no_steady_response():
+    for motion in (PULSATING, bd.ShakenCarrier(20.0, 1.0)):
+        with pytest.raises(ValueError, match="pulsates"):
+            bd.steady_response(bd.Scene(STRIP, MOUNT, motion), [50.0], 1)
+
+
+@pytest.mark.parametrize(
+    ("motion", "gravity", "expected"),
+    [
+        (PULSATING, 0.0, 1 / 20),
+        (bd.PulsatingRotation(40 * math.pi, 0.1, 30.0), 9.81, 1 / 10),  # 20 turns and 30 beats a second
+        (bd.SteadyRotation(50.0), 9.81, 2 * math.pi / 50),
+        (bd.RollingWheel(0.3, 10.0, bd.RoadWave(0.6 * math.pi / 2.5, 0.01)), 0.0, 4 * math.pi / 10),
+        (bd.ShakenCarrier(20.0, 1.0), 9.81, 1 / 20),
+    ],
+)
+def test_periods(motion, gravity, expected):
+    found = period_of(bd.Scene(STRIP, MOUNT, motion, gravity=gravity)).time
+    assert found == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("motion", "gravity", "said"),
+    [
+        (None, 0.0, "needs a periodic motion"),
+        (bd.SteadyRotation(0.0), 0.0, "stands still"),
+        (bd.SpinUp(50.0, 1.0), 0.0, "does not repeat itself"),
+        (bd.PulsatingRotation(50.0, 0.1, 20.0), 9.81, "never meet again.*nearest"),
+        (bd.RollingWheel(0.3, 10.0, bd.RoadWave(0.3, 0.01)), 0.0, "never meet again"),
+    ],
+)
+def test_motions_without_a_period_are_refused(motion, gravity, said):
+    with pytest.raises(ValueError, match=said):
+        bd.floquet_multipliers(bd.Scene(STRIP, MOUNT, motion, gravity=gravity))
+
+
+def test_large_deflection_is_refused():
+    scene = bd.Scene(STRIP, MOUNT, PULSATING, physics=bd.Physics(large_deflection=True))
+    with pytest.raises(ValueError, match="straight beam"):
+        bd.floquet_multipliers(scene)
+
+
+@pytest.mark.parametrize(
+    ("vary", "said"),
+    [
+        ({"speed": [1.0, 2.0]}, "two numbers"),
+        ({"speed": [2.0, 1.0], "motion.frequency": [1.0]}, "ascend"),
+        ({"speed": [2.0], "motion.pulse": [1.0]}, "unknown input"),
+        ({"speed": [2.0], "motion.duration": [1.0]}, "no such number"),
+        ({"speed": np.linspace(1, 2, 3000), "motion.frequency": np.linspace(1, 2, 3000)}, "at most"),
+    ],
+)
+def test_charts_refuse(vary, said):
+    with pytest.raises(ValueError, match=said):
+        bd.stability_chart(bd.Scene(STRIP, MOUNT, PULSATING), vary)
+
+
+def test_charts_refuse_phases_that_meet_after_other_numbers_of_turns():
+    rotation = 10 * math.pi
+    motion, rates = bd.PulsatingRotation(rotation, 0.1, 10.0), [10.0, 12.5]
+    with pytest.raises(ValueError, match="other numbers of turns"):
+        scene = bd.Scene(STRIP, MOUNT, motion, gravity=9.81)
+        bd.stability_chart(scene, {"motion.frequency": rates, "mount.radius": [0.1, 0.2]}, 1)
+
+
+# Verdicts -----------------------------------------------------------------------------------------
+
+J = np.kron([[0, 1], [-1, 0]], np.eye(2))  # the form of two oscillators
+
+
+def turned(first, second):
+    """Monodromy matrix of two oscillators that turn by angles, the second perhaps backwards in energy."""
+    c, s = np.diag(np.cos([first, second])), np.diag(np.sin([first, second]))
+    return np.block([[c, s], [-s, c]])
+
+
+def verdict(matrix, error=1e-10, form=J):
+    found = multipliers_of(
+        Monodromy(matrix[None], np.array([error]), np.ones(1), None if form is None else form[None], 1)
+    )
+    return found.verdict[0], found.growth[0][0]
+
+
+def test_verdicts_without_damping():
+    assert verdict(turned(1.0, 2.0)) == ("stable", 0.0)
+    assert verdict(turned(1.0, 1.0))[0] == "stable"  # equal multipliers of one sign stay on the circle
+    assert verdict(turned(1.0, -1.0))[0] == "undecided"  # those of opposite signs may leave it
+    assert verdict(turned(1.0, np.pi))[0] == "undecided"  # a double multiplier -1
+    assert verdict(turned(1.0, 2.0), error=2.0)[0] == "undecided"
+    grown = np.diag([1.1, 1.0, 1 / 1.1, 1.0]) @ turned(0.0, 2.0)
+    state, rate = verdict(grown)
+    assert state == "unstable"
+    assert rate == pytest.approx(math.log(1.1), rel=1e-12)  # rounding
+
+
+def test_verdicts_with_damping():
+    assert verdict(0.9 * turned(1.0, -1.0), form=None)[0] == "stable"
+    assert verdict(1.1 * turned(1.0, 2.0), form=None)[0] == "unstable"
+    assert verdict((1 - 1e-12) * turned(1.0, 2.0), form=None)[0] == "undecided"
+
+
+def test_errors_cover_a_jordan_block():
+    """An error d of a double multiplier moves it by sqrt(d)."""
+    found = multipliers_of(
+        Monodromy(np.array([[[1.0, 1.0], [1e-12, 1.0]]]), np.array([1e-10]), np.ones(1), None, 1)
+    )
+    assert found.error[0].max() >= 0.9e-5
+    assert found.error[0].max() < 1e-4
+
+
+# Interpolation ------------------------------------------------------------------------------------
+
+
+def test_interpolation_states_its_error():
+    x, y = np.linspace(-1, 2, 150), np.linspace(0, 1, 5)
+
+    def wave(a, b):
+        return np.array([np.cos(9 * a + b), b])
+
+    found = interpolate_on_grid(wave, (x, y), lambda: 1e-9, slice(1))
+    exact = np.array([[wave(a, b) for b in y] for a in x])
+    assert found.samples <= 65 * 5
+    assert np.abs(found.value - exact).max() <= found.error + 1e-13
+    assert found.error < 1e-8
+
+
+def test_what_polynomials_do_not_resolve_is_taken_at_the_values():
+    x = np.linspace(-1, 1, 30)
+    found = interpolate_on_grid(lambda a, b: np.array([abs(a) + b]), (x, np.zeros(1)), lambda: 1e-9, slice(1))
+    np.testing.assert_array_equal(found.value[:, 0, 0], np.abs(x))
+    assert found.error == 0
