@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
@@ -14,11 +15,15 @@ from beamdyn.analyses.results.of_stability import chart_table
 from beamdyn.analyses.values import in_unit_of
 from beamdyn.common.edge.varied_inputs import parse_axis
 from beamdyn.common.edge.varying import OPTION
-from beamdyn.scene.numbers import SPEED
+from beamdyn.scene.numbers import SPEED, number_at
 
 if TYPE_CHECKING:
     from beamdyn.floquet.point import FloquetMultipliers
     from beamdyn.scene.scene import Scene
+
+_FREQUENCY = "motion.frequency"
+_AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"
+_VALUES = 41  # of an amplitude, where none are given
 
 
 @analysis(
@@ -34,8 +39,7 @@ def floquet(
 
 
 @analysis(
-    "beamdyn stability-chart examples/pulsating_wheel.toml "
-    '--vary "motion.frequency=100:150:51 Hz" --vary "motion.fluctuation=0:0.2:41"',
+    "beamdyn stability-chart examples/pulsating_wheel.toml",
     about_scene="The scene, in a motion that repeats itself.",
     moving=lambda _: True,
 )
@@ -52,8 +56,11 @@ def stability_chart(
     ----------
     vary
         A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; give
-        the option twice. Names are those of the file, or speed.
+        the option twice. Names are those of the file, or speed. Default: the frequency of what pulsates, by
+        a fifth either way, and its amplitude, up to twice as much.
     """
+    if not vary:
+        return Answer(bd.stability_chart(scene, _about(scene), modes, discretization))
     if len(vary) != 2:
         raise ValueError(f'{OPTION}: a chart is over two numbers; give two, such as "speed=50:60:21 rad/s"')
     varied = (text.partition("=") for text in vary)
@@ -65,3 +72,15 @@ def stability_chart(
         raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two numbers")
     result = bd.stability_chart(scene, inputs, modes, discretization)
     return Answer(result, tables=[chart_table(result, units)])
+
+
+def _about(scene: Scene) -> dict[str, np.ndarray]:
+    """Values of the frequency and the amplitude of what pulsates in a scene, about its own."""
+    numbers = {path: number_at(scene, path) for path in (_FREQUENCY, *_AMPLITUDES)}
+    there = [path for path in _AMPLITUDES if numbers[path]]
+    frequency = numbers[_FREQUENCY]
+    if not frequency or not there:
+        raise ValueError(f'give {OPTION} twice, such as "speed=50:60:21 rad/s": no amplitude of the motion')
+    largest = 2 * (numbers[there[0]] or 0.0)
+    amplitudes = np.linspace(min(largest, 0.0), max(largest, 0.0), _VALUES)
+    return {_FREQUENCY: frequency * np.linspace(0.8, 1.2, 2 * _VALUES - 1), there[0]: amplitudes}

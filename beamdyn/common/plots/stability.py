@@ -46,14 +46,14 @@ def plot_multipliers(
 def plot_stability_chart(
     inputs: Sequence[VariedInput], rate: np.ndarray, undecided: np.ndarray, ax: Axes | None = None
 ) -> Axes:
-    """Draw growth rates (A, B) over two inputs; nan, where motion is stable, stays white.
+    """Draw growth rates (A, B) over two inputs, with a line halfway between points with and without growth.
 
     Parameters
     ----------
     inputs : sequence of VariedInput
         The inputs, with A and B values.
     rate : ndarray, shape (A, B)
-        Growth rates [1/s].
+        Growth rates [1/s]; nan, where motion does not grow, stays white.
     undecided : ndarray of bool, shape (A, B)
         Points to mark.
     ax : Axes, optional
@@ -61,13 +61,25 @@ def plot_stability_chart(
     """
     ax = set_up_axes(ax, *(each.label for each in inputs))
     first, second = (each.values for each in inputs)
-    if np.isfinite(rate).any():
+    grows = np.isfinite(rate)
+    if grows.any():
         shown = ax.pcolormesh(first, second, rate.T, cmap="viridis_r", shading="nearest", rasterized=True)
         ax.figure.colorbar(shown, ax=ax, label="growth rate [1/s]")
+    x, y = _limit(first, second, grows)
+    ax.plot(x, y, color=COLOURS[-1], linewidth=0.8, label="limit of stability")
     if undecided.any():
         a, b = np.nonzero(undecided)
-        ax.plot(
-            first[a], second[b], "o", markersize=_FEW, color=COLOURS[1], label=f"undecided, {len(a)} points"
-        )
-        add_legend(ax)
-    return ax
+        name = f"undecided, {len(a)} points"
+        ax.plot(first[a], second[b], "o", markersize=_FEW, color=COLOURS[1], label=name)
+    return add_legend(ax)
+
+
+def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The line between what grows and what does not, its pieces apart by nan."""
+    from contourpy import contour_generator
+
+    if min(grows.shape) < 2:
+        return np.empty(0), np.empty(0)
+    pieces = contour_generator(first, second, grows.T.astype(float)).lines(0.5)
+    points = [point for piece in pieces for point in (piece, np.full((1, 2), np.nan))]
+    return tuple(np.concatenate(points).T) if points else (np.empty(0), np.empty(0))
