@@ -67,7 +67,7 @@ class FloquetMultipliers(JudgedByRepeating):
     >>> motion = bd.PulsatingRotation(50.0, fluctuation=0.1, frequency=123.9)
     >>> found = bd.floquet_multipliers(bd.Scene(strip, bd.Mount(radius=0.215), motion), modes=2)
     >>> found.status, round(found.growth_rate, 3)  # 1/s
-    ('unstable', 1.618)
+    ('unstable', 2.107)
     """
 
     status: str

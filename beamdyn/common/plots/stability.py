@@ -80,6 +80,7 @@ def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np
 
     if min(grows.shape) < 2:
         return np.empty(0), np.empty(0)
-    pieces = contour_generator(first, second, grows.T.astype(float)).lines(0.5)
-    points = [point for piece in pieces for point in (piece, np.full((1, 2), np.nan))]
-    return tuple(np.concatenate(points).T) if points else (np.empty(0), np.empty(0))
+    pieces = [np.asarray(each) for each in contour_generator(first, second, grows.T.astype(float)).lines(0.5)]
+    points = [np.empty((0, 2)), *(each for piece in pieces for each in (piece, [[np.nan, np.nan]]))]
+    x, y = np.concatenate(points).T
+    return x, y

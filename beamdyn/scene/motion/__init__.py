@@ -14,11 +14,11 @@ from beamdyn.scene.motion.rotations import Rotation, RotationFunction, SampledRo
 KINDS: dict[str, type[Motion]] = {
     "steady": SteadyRotation,
     "spin_up": SpinUp,
+    "pulsating": PulsatingRotation,
     "sampled": SampledRotation,
     "rolling": RollingWheel,
-    "sampled_translation": SampledTranslation,
-    "pulsating": PulsatingRotation,
     "shaken": ShakenCarrier,
+    "sampled_translation": SampledTranslation,
 }
 """Motions by the kind that names them in files and forms; the first is the default."""
 
