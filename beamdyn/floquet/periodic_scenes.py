@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count
-from beamdyn.common.results.pickling import FieldsOnly
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.floquet.monodromy import Monodromy, monodromy

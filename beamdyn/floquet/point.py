@@ -14,10 +14,9 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability import plot_multipliers
-from beamdyn.common.results.announced import announced_of_plain_beam
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement
+from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.floquet.monodromy import COARSER
 from beamdyn.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
 from beamdyn.floquet.periodic_scenes import check_periodic
@@ -48,9 +47,9 @@ class FloquetMultipliers(JudgedByRepeating):
     growth_rate_error : float
         Its estimated error [1/s], of the modes that are kept; see `mode_error`.
     multipliers : ndarray of complex, shape (2 n,)
-        The multipliers, the largest first.
+        The nondimensional multipliers, the largest first.
     multiplier_errors : ndarray, shape (2 n,)
-        Their estimated errors.
+        Their estimated errors, nondimensional.
     krein_sign : ndarray, shape (2 n,)
         Without damping 1 or -1 for multipliers on the unit circle, which leave it only where they meet one of
         the other sign; 0 of others.
@@ -147,8 +146,8 @@ def floquet_multipliers(
 
     References
     ----------
-    Floquet's theory, and Krein's of undamped motion (standard): Yakubovich and Starzhinskii (1975), Linear
-    Differential Equations with Periodic Coefficients; Hairer, Lubich and Wanner (2006), section II.1.3.
+    Theory of Floquet, and of Krein for undamped motion (standard): Nayfeh and Mook (1979), Nonlinear
+    Oscillations, chapter 5; integrated as Hairer, Lubich and Wanner (2006), section II.1.3.
 
     Examples
     --------
