@@ -91,7 +91,6 @@ if TYPE_CHECKING:
     from beamdyn.modes.modes import Modes, natural_modes
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
-    from beamdyn.scene.damping import Damping
     from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredResponse
     from beamdyn.scene.measured_frequencies import MeasuredFrequencies
     from beamdyn.scene.motion import (
@@ -110,7 +109,7 @@ if TYPE_CHECKING:
         SteadyRotation,
         UserMotion,
     )
-    from beamdyn.scene.mount import Mount
+    from beamdyn.scene.mount import Damping, Mount
     from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
     from beamdyn.scene.points import PointMass, PointSpring, TipMass
     from beamdyn.scene.profile import Profile, Table

@@ -18,7 +18,7 @@ from beamdyn.common.edge.varied_inputs import find_input, numbers
 from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_data import half_unit
 from beamdyn.files.scene_inputs import SceneInput
-from beamdyn.files.scene_text import with_numbers_in_text
+from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.scene.measured_curves import MeasuredCurves
 
 if TYPE_CHECKING:

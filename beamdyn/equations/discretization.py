@@ -1,14 +1,221 @@
-"""Interface of discretizations: function spaces on a beam, which integrate and evaluate."""
+"""Interface of discretizations: function spaces on a beam, which integrate by Gauss rules on its cells."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
+from numpy.polynomial import legendre
 
-from beamdyn.equations.quadrature import Cells
+from beamdyn.common.numerics import gauss_points_on, gauss_rule, gauss_weights_on, legendre_series
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Parts of the beam on which the trial functions of a discretization are smooth.
+
+    Parameters
+    ----------
+    ends : ndarray, shape (c + 1,)
+        Ends of the c cells, as x/L from 0 to 1.
+    points : int
+        Number p of Gauss points on each that resolve nonlinear functions of the trial functions.
+    """
+
+    ends: np.ndarray
+    points: int
+
+
+@dataclass(frozen=True)
+class ArcQuadrature:
+    """Gauss rule on cells, and integrals from the root to each of its points.
+
+    Parameters
+    ----------
+    cells : Cells
+        Cells and number of points.
+    """
+
+    cells: Cells
+
+    @cached_property
+    def xi(self) -> np.ndarray:
+        """Points on [0, 1], shape (N,)."""
+        return gauss_points_on(self.cells.ends, self.cells.points).ravel()
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Weights of the integral from 0 to 1, shape (N,)."""
+        return gauss_weights_on(self.cells.ends, self.cells.points)
+
+    @cached_property
+    def _half_lengths(self) -> np.ndarray:
+        return np.diff(self.cells.ends)[:, None] / 2
+
+    def integrate(self, values: np.ndarray) -> np.ndarray:
+        """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
+        p, N = self.cells.points, len(self.xi)
+        of_cells = values.reshape(-1, p)
+        shape = *values.shape[:-1], (len(self.cells.ends) - 1), p
+        ends = np.cumsum(
+            (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
+        )
+        integrals = np.empty((*values.shape[:-1], N + 1))  # new memory costs more than the arithmetic
+        inside = integrals[..., :N].reshape(shape)
+        np.multiply((of_cells @ integrals_between_points(p).T).reshape(shape), self._half_lengths, out=inside)
+        inside[..., 1:, :] += ends[..., :-1, None]
+        integrals[..., N] = ends[..., -1]
+        return integrals
+
+    def transposed(self, forces: np.ndarray) -> np.ndarray:
+        """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
+        p = self.cells.points
+        _, w = gauss_rule(p)
+        inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
+        of_cells = inside.sum(axis=-1)
+        beyond = np.cumsum(of_cells[..., ::-1], axis=-1)[..., ::-1] - of_cells + forces[..., -1:]
+        scaled = (inside @ integrals_between_points(p) + beyond[..., None] * w) * self._half_lengths
+        return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
+
+    def integrate_to(self, xi: np.ndarray) -> np.ndarray:
+        """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
+        cell, t, own = self._find(xi)
+        length, p = np.diff(self.cells.ends)[cell], self.cells.points
+        matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
+        np.put_along_axis(matrix, own, length[:, None] / 2 * _integrate_interpolant(t, p), axis=1)
+        return matrix
+
+    def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
+        """Weights (k, N) of the interpolants through the points of each cell at xi (k,)."""
+        _, t, own = self._find(xi)
+        matrix = np.zeros((len(xi), len(self.xi)))
+        values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
+        np.put_along_axis(matrix, own, values, axis=1)
+        return matrix
+
+    def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Cell (k,) of each xi, place in it from -1 to 1 (k,), and indices (k, p) of the cell's points."""
+        ends, p = self.cells.ends, self.cells.points
+        cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
+        t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
+        return cell, t, cell[:, None] * p + np.arange(p)
+
+
+@cache
+def integrals_between_points(points: int) -> np.ndarray:
+    """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
+    return _integrate_interpolant(gauss_rule(points)[0], points)
+
+
+def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
+    """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
+    integrals = legendre.legint(np.eye(points), lbnd=-1)
+    return legendre.legvander(t, points) @ integrals @ legendre_series(points)
+
+
+_OF_TENSION = 3  # degree of the moment of a linear mass
+
+
+class Sampler:
+    """Values of properties at the Gauss points of cells, each computed once.
+
+    Parameters
+    ----------
+    left, right : ndarray, shape (c,)
+        Ends of the cells, as x/L; properties are smooth within them.
+    points : int
+        Number of points on each.
+    """
+
+    def __init__(self, left: np.ndarray, right: np.ndarray, points: int) -> None:
+        self._left, self._right, self._points = left, right, points
+        self._known: dict[Profile, np.ndarray] = {}
+        self._placed: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
+
+    @classmethod
+    def on_cells(cls, cells: Cells) -> Sampler:
+        """Sample on cells that follow one another."""
+        return cls(cells.ends[:-1], cells.ends[1:], cells.points)
+
+    def __call__(self, profile: Profile) -> np.ndarray:
+        """Values (c points,) of a property."""
+        if profile not in self._known:
+            segment, polynomials = self._place(profile.breakpoints, profile.degree)
+            series = profile.series.T[segment]
+            values = np.einsum("cpd,cd->cp", polynomials[..., : profile.degree + 1], series)
+            self._known[profile] = values.ravel()
+        return self._known[profile]
+
+    def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
+        """Segment (c,) of each cell, and Legendre polynomials of the segment at its points (c, points, n).
+
+        They are those up to the degree, or to a higher one; most properties have the same segments.
+        """
+        placed = self._placed.get(breakpoints)
+        if placed is not None and placed[1].shape[2] > degree:
+            return placed
+        ends, left, right = np.array(breakpoints), self._left, self._right
+        segment = ends[1:-1].searchsorted((left + right) / 2, side="right")
+        a, b = ends[segment, None], ends[segment + 1, None]
+        xi = left[:, None] + (right - left)[:, None] * (1 + gauss_rule(self._points)[0]) / 2
+        polynomials = legendre.legvander(((xi - a) - (b - xi)) / (b - a), max(degree, _OF_TENSION))
+        self._placed[breakpoints] = segment, polynomials
+        return segment, polynomials
+
+
+class SampledSpace(FieldsOnly, ABC):
+    """Base class of spaces of functions that are smooth between the points of a Gauss rule on cells."""
+
+    @cached_property
+    @abstractmethod
+    def points(self) -> np.ndarray:
+        """Points of the rule on [0, 1], shape (k,)."""
+
+    @cached_property
+    @abstractmethod
+    def rule(self) -> np.ndarray:
+        """Weights of the rule, shape (k,)."""
+
+    @cached_property
+    @abstractmethod
+    def samples(self) -> list[np.ndarray]:
+        """Values of the functions and of each derivative at the points, each of shape (n, k)."""
+
+    @property
+    def size(self) -> int:
+        """Number n of functions."""
+        return len(self.samples[0])
+
+    @property
+    @abstractmethod
+    def coarse(self) -> np.ndarray | None:
+        """Indices of functions that span those of the coarser discretization; None where none do."""
+
+    def weights(self, weight: Profile) -> np.ndarray:
+        """Multiply the weights of the rule by a property."""
+        return self.rule * weight(self.points)
+
+    def gram(self, weight: Profile, order: int) -> np.ndarray:
+        """Integrate the weight times the `order`-th derivatives of functions i and j."""
+        phi = self.samples[order]
+        return (phi * self.weights(weight)) @ phi.T
+
+    def load(self, weight: Profile, order: int = 0) -> np.ndarray:
+        """Integrate the weight times the `order`-th derivative of function i."""
+        return self.samples[order] @ self.weights(weight)
+
+
+def product_of(
+    rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
+) -> np.ndarray:
+    """Integrate the weight times derivatives of functions i of one space and j of another, on one rule."""
+    return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
 class RootConditions(NamedTuple):

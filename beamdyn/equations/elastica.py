@@ -24,10 +24,9 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.discretization import ArcQuadrature, Discretization
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields.field import Deflection, Load, Term
-from beamdyn.equations.quadrature import ArcQuadrature
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import aligned_cos_sin

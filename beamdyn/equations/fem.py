@@ -12,8 +12,7 @@ from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, Linear
 
 from beamdyn.common.inputs.checks import count, one_of, refuse, set_fields
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.equations.discretization import HINGED, RootConditions
-from beamdyn.equations.quadrature import Cells
+from beamdyn.equations.discretization import HINGED, Cells, RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree

@@ -33,10 +33,15 @@ from scipy.linalg.lapack import dgeqp3, dorgqr
 
 from beamdyn.common.numerics import legendre_series, legendre_values
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.equations.discretization import RootConditions
-from beamdyn.equations.mass import axial_tension
-from beamdyn.equations.piecewise_polynomials import PiecewisePolynomials
-from beamdyn.equations.quadrature import ArcQuadrature, Cells, SampledSpace, Sampler, product_of
+from beamdyn.equations.discretization import (
+    ArcQuadrature,
+    Cells,
+    RootConditions,
+    SampledSpace,
+    Sampler,
+    product_of,
+)
+from beamdyn.equations.mass import PiecewisePolynomials, axial_tension
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree

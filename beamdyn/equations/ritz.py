@@ -12,9 +12,8 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
-from beamdyn.equations.discretization import RootConditions
+from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace, product_of
 from beamdyn.equations.moment_functions import MomentSpaces
-from beamdyn.equations.quadrature import Cells, SampledSpace, product_of
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree

@@ -20,9 +20,8 @@ from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Rotation
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
 from beamdyn.scene.points import PointMass, PointSpring, TipMass
 from beamdyn.scene.profile import Table

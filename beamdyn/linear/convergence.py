@@ -8,8 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
-from beamdyn.accuracy.refinement import refine
+from beamdyn.accuracy.refinement import LINEAR_MESHES, LINEAR_MODES, refine
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from beamdyn.accuracy.margins import LINEAR_MESHES
+from beamdyn.accuracy.refinement import LINEAR_MESHES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.words import Setting, Words

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.accuracy.margins import LINEAR_MESHES, LINEAR_MODES
+from beamdyn.accuracy.refinement import LINEAR_MESHES, LINEAR_MODES
 from beamdyn.linear.inputs_outputs import Excitation, Observation
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.transfer import ModalSum, modal_sums, respond

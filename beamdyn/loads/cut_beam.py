@@ -17,8 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.numerics import gauss_points_on, gauss_rule
-from beamdyn.equations.discretization import RootConditions, Space, Spaces
-from beamdyn.equations.quadrature import Cells, SampledSpace
+from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace, Space, Spaces
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 

@@ -23,13 +23,12 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.discretization import Cells, Discretization
 from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import FieldEquations
 from beamdyn.equations.fields.stretch import Stretch
-from beamdyn.equations.quadrature import Cells
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
 from beamdyn.loads.stations import SpanStations

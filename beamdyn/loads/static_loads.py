@@ -8,8 +8,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from beamdyn.accuracy.margins import BASES_OF_STATIC_LOADS
-from beamdyn.accuracy.refinement import refine
+from beamdyn.accuracy.refinement import BASES_OF_STATIC_LOADS, refine
 from beamdyn.common.inputs.checks import ascending, real, within
 from beamdyn.common.results.statements import announced
 from beamdyn.loads import span_loads

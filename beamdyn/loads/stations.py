@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import MODES_OF_FORCES, MODES_OF_MOMENTS
+from beamdyn.accuracy.refinement import MODES_OF_FORCES, MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, positive, real_array, refuse
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.scene.beam import Beam

@@ -15,7 +15,7 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn.accuracy.margins import SLOW_BASES
+from beamdyn.accuracy.refinement import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance

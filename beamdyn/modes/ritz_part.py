@@ -26,10 +26,9 @@ from numpy.polynomial import legendre
 from scipy.linalg import qr, solve_triangular
 
 from beamdyn.common.numerics import gauss_rule, legendre_series
-from beamdyn.equations.discretization import CLAMPED
+from beamdyn.equations.discretization import CLAMPED, ArcQuadrature, Cells
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.moment_functions import NODES, MomentSpaces, orthonormalize
-from beamdyn.equations.quadrature import ArcQuadrature, Cells
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass

@@ -16,11 +16,10 @@ from typing import Any, get_type_hints
 
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.inputs.described import description, kinds_of
-from beamdyn.common.inputs.paths import part_at, with_parts
+from beamdyn.common.inputs.designs import part_at, with_parts
 from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS, Beam, TipMass
-from beamdyn.scene.damping import Damping
 from beamdyn.scene.motion import KINDS, Motion
-from beamdyn.scene.mount import Mount
+from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.points import PointMass, PointSpring
 from beamdyn.scene.profile import Profile, as_profile, to_profile
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES

@@ -15,9 +15,8 @@ from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam
-from beamdyn.scene.damping import NO_DAMPING, Damping, check_one_kind_of_ratios
 from beamdyn.scene.motion import Motion
-from beamdyn.scene.mount import Mount, aligned_cos_sin
+from beamdyn.scene.mount import NO_DAMPING, Damping, Mount, aligned_cos_sin, check_one_kind_of_ratios
 from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
 from beamdyn.scene.points import ACROSS

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Legendre
 
-from beamdyn.accuracy.margins import STEPS
+from beamdyn.accuracy.refinement import STEPS
 from beamdyn.transient.gauss import Segment, StepMaps, interpolate, solve_steps, tableau
 from beamdyn.transient.record_steps import RecordSegment, RecordSteps, maps_of_record
 from beamdyn.transient.system import ModalSystem

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.accuracy.margins import MODES_OF_MOMENTS
+from beamdyn.accuracy.refinement import MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.plots.export import write_series
 from beamdyn.common.plots.plots import plot_transient

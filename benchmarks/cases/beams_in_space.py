@@ -12,8 +12,7 @@ from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, Bent
 from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
 from beamdyn.equations.beam_in_space.loaded_beam import LoadedBeam, TipLoad
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
-from beamdyn.equations.discretization import FIXED
-from beamdyn.equations.quadrature import ArcQuadrature, Cells
+from beamdyn.equations.discretization import FIXED, ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces
 from beamdyn.modes.modal.continuation import solve_at
 

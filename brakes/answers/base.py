@@ -33,8 +33,7 @@ from beamdyn.common.edge.input_sweep import (
 from beamdyn.common.edge.inputs import Input, describe
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.inputs.array_checks import solve_possible
-from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
-from beamdyn.common.inputs.paths import with_parts
+from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.result import Provenance, Result, plain

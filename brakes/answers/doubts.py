@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.paths import part_at, with_parts
+from beamdyn.common.inputs.designs import part_at, with_parts
 from brakes.answers.tables import format_number
 
 PART = 0.1  # by which friction varies, as makers of linings give it

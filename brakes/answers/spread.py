@@ -15,7 +15,7 @@ from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis, parse_spreads
 from beamdyn.common.edge.varying import SPREAD
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.paths import part_at
+from beamdyn.common.inputs.designs import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread

@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, RootConditions
-from beamdyn.equations.quadrature import Cells
+from beamdyn.equations.discretization import CLAMPED, FIXED, HINGED, Cells, RootConditions
 
 BENDING = (2, 3, 4)  # powers of x, which satisfy the conditions at the root
 STRETCH = (1, 2)

@@ -9,9 +9,8 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
-from beamdyn.equations.discretization import CLAMPED, FIXED
+from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Cells
 from beamdyn.equations.fields.transverse import axis_in_section
-from beamdyn.equations.quadrature import ArcQuadrature, Cells
 
 BASIS, LENGTH = bd.Ritz(2), 2.0
 MASS, TWIST = Polynomial([3.0, -1.5]), Polynomial([0.4, -0.7])

@@ -4,12 +4,12 @@ from importlib.util import find_spec
 
 import pytest
 
-from beamdyn.accuracy import margins
+from beamdyn.accuracy import refinement
 from beamdyn.accuracy.refinement import refine
 from beamdyn.equations.effects import EFFECTS, NEVER_MODELLED
 from beamdyn.scene.physics import Physics
 
-MARGINS = [value for value in vars(margins).values() if isinstance(value, margins.ErrorMargin)]
+MARGINS = [value for value in vars(refinement).values() if isinstance(value, refinement.ErrorMargin)]
 
 
 def test_refines_until_the_tolerance_is_met() -> None:
@@ -27,7 +27,7 @@ def test_keeps_what_meets_the_tolerance_and_the_last_where_nothing_does() -> Non
 
 
 @pytest.mark.parametrize("margin", MARGINS, ids=lambda margin: margin.distance)
-def test_evidence_of_a_margin_is_a_benchmark(margin: margins.ErrorMargin) -> None:
+def test_evidence_of_a_margin_is_a_benchmark(margin: refinement.ErrorMargin) -> None:
     """A reader can measure each margin again."""
     assert find_spec(f"benchmarks.{margin.evidence}") is not None
 

@@ -19,7 +19,7 @@ from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.wording import in_degrees
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.paths import with_parts
+from beamdyn.common.inputs.designs import with_parts
 from brakes import drum, forklift
 from brakes.answers.drum import BRAKE
 from brakes.answers.forklift import FORKLIFT as TYPE

@@ -16,8 +16,7 @@ import pytest
 import beamdyn as bd
 from beamdyn import cli as beams
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.results.result import Result
-from beamdyn.common.results.saved import seal
+from beamdyn.common.results.result import Result, seal
 from beamdyn.common.results.snapshots import LeftOut, decode, encode
 from beamdyn.equations.discretization import HINGED
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP

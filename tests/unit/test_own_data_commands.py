@@ -10,8 +10,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli.program import main
-from beamdyn.files.scene_text import with_numbers_in_text
-from beamdyn.files.scenes import parse_scene
+from beamdyn.files.scenes import parse_scene, with_numbers_in_text
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENE = str(EXAMPLES / "tyre_harvester.toml")

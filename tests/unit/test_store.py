@@ -15,7 +15,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.parallel.store import Store, fingerprint
-from beamdyn.common.results.saved import DamagedRecord
+from beamdyn.common.results.result import DamagedRecord
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ from typing import Any, Literal
 from cyclopts import App, CycloptsError
 from numpy.linalg import LinAlgError
 
-from beamdyn.common.edge.file_words import in_files, say, word
-from beamdyn.common.edge.option_words import TYPED, check_names, say_mistake
+from beamdyn.common.edge.file_words import TYPED, check_names, in_files, say, say_mistake, word
 from beamdyn.common.edge.progress import at_work, quiet
 from beamdyn.common.edge.tables import Terminal, spell_output
 from beamdyn.common.edge.units import InvalidInput, last_quantity

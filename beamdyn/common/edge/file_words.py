@@ -1,13 +1,82 @@
-"""Sentences of the core in the terms of files, commands and forms; a module without slow imports."""
+"""Sentences in the terms of files and commands, and mistakes in typing; a module without slow imports."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from itertools import pairwise
+from typing import Any, Literal, get_args, get_origin
+
+from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
 
 from beamdyn.common.words import Named, Part, Setting, Words, worded
+
+TYPED: ContextVar[tuple[App, Sequence[str]] | None] = ContextVar("typed", default=None)
+
+# Command lines that cannot be understood -------------------------------------------------------------
+
+
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # names under which options are looked for
+_KINDS: dict[Any, str] = {float: "a number", int: "a whole number", bool: "a value of a switch"}
+
+
+def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
+    """Say in a sentence what cannot be understood, and where help is.
+
+    Parameters
+    ----------
+    app : App
+        The program.
+    error : CycloptsError
+        Why its command line cannot be understood.
+    given : sequence of str
+        The words after the program's name.
+    """
+    command = [word for word in given[:1] if word in set(app.resolved_commands())]
+    if "-" in given:
+        said = "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
+    elif isinstance(error, UnknownOptionError):
+        said = _with_meant_option(error, given)
+    elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
+        said = _say_too_many(error.unused_tokens, given)
+    elif isinstance(error, CoercionError) and error.target_type in _KINDS and error.token and not error.msg:
+        option = error.token.keyword  # the oldest cyclopts that we admit omits what a switch is given
+        joined = next((text.partition("=")[2] for text in given if text.startswith(f"{option}=")), "")
+        wanted = _KINDS[error.target_type]
+        said = f'Invalid value for {option}: "{error.token.value or joined}" is not {wanted}.'
+    else:
+        said = f"{error}"
+    return f"{said} See {' '.join([app.name[0], *command])} --help."
+
+
+def check_names(given: Sequence[str]) -> None:
+    """Refuse an empty word in place of a file's name, which would be the current folder."""
+    if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
+        raise ValueError('one of the names is empty (""); give the name of a file')
+
+
+def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
+    """Say which words belong to no option, most often a unit that the shell has parted from its number."""
+    first = next((i for i, word in enumerate(given) if word == words[0]), 0)
+    option, value = given[first - 2 : first] if first > 1 else ("", "")
+    example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
+    said = " ".join(words)
+    return f"One word too many: {said}; leave it out, or put a value with spaces into quotes{example}."
+
+
+def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
+    """Say that an option is unknown, and which is meant: by a known other name, or by the value given."""
+    option = (error.token.keyword or error.token.value).partition("=")[0]
+    if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
+        return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
+    words = [word for text in given for word in text.split("=", 1)]
+    value = "".join(words[words.index(option) + 1 :][:1]) if option in words else ""
+    for argument in error.argument_collection:
+        if get_origin(argument.hint) is Literal and value in get_args(argument.hint):
+            return f"Unknown option: {option}. Did you mean {argument.name}?"
+    return f"{error}"
+
 
 _HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", default=None)
 

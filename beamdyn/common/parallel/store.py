@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.results.files import ASIDE, write_text
-from beamdyn.common.results.saved import DamagedRecord, seal, unseal
+from beamdyn.common.results.result import DamagedRecord, seal, unseal
 
 _PACKAGES = ("beamdyn", "brakes")  # fields of their classes that equality leaves out change no result
 _MARKER = "store.json"  # tells a store from a folder with other content

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from beamdyn.common.inputs.checks import InvalidValue, count, function
 from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.parallel.workers import Workers, one_blas_thread
-from beamdyn.common.results.saved import DamagedRecord
+from beamdyn.common.results.result import DamagedRecord
 from beamdyn.common.results.snapshots import decode, encode
 
 Progress = Callable[[int, int], object]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from beamdyn.equations.beam_in_space.finite_rotations import product, quaternion_about
-from beamdyn.equations.quadrature import ArcQuadrature, Sampler
+from beamdyn.equations.discretization import ArcQuadrature, Sampler
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import ONE, Profile
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from beamdyn.common.numerics import gauss_rule
-from beamdyn.equations.quadrature import Cells, integrals_between_points
+from beamdyn.equations.discretization import Cells, integrals_between_points
 
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 _ITERATIONS = 30  # of Picard's method, enough for a turn by 2 pi

@@ -21,10 +21,9 @@ from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, StationForces
-from beamdyn.equations.discretization import CLAMPED, FIXED, Discretization, RootConditions
+from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
 from beamdyn.equations.fields.field import Deflection, Load, Term
-from beamdyn.equations.quadrature import ArcQuadrature
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin

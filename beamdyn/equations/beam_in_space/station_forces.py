@@ -16,7 +16,7 @@ import numpy as np
 
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, skew, turn, turn_tensors
-from beamdyn.equations.quadrature import ArcQuadrature
+from beamdyn.equations.discretization import ArcQuadrature
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ import numpy as np
 from beamdyn.common.edge.csv_columns import CsvTable
 from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.inputs import Quantity
-from beamdyn.files.csv_files import RADIUS, read_station_file
 from beamdyn.files.decks.blade import Blade, ignore
+from beamdyn.files.scenes import RADIUS, read_station_file
 
 _STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # heads of twist in other programs, whose sense is the opposite
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}

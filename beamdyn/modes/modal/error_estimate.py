@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.margins import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
+from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver

@@ -1,13 +1,140 @@
-"""Eigensolver of equations that fall into parts without coupling, such as two planes of a straight beam."""
+"""Eigensolvers by the form of the equations: parts without coupling, such as two planes, and large ones.
+
+A few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse problem, with
+one factorization of the stiffness at each speed, in place of all eigenvalues of full matrices.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
+from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver
+from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS, forward_error, rounding_of_scene
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver, explained, rounding_of_factored
+from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
+from beamdyn.modes.modal.springs import solve_definite
+
+_EPS = np.finfo(float).eps
+_MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
+_RESTARTS = 50  # restarts of the iteration, which converges after a few, if at all
+
+
+class LargeSolver(Eigensolver):
+    """Eigensolver for the lowest few of many modes.
+
+    Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
+    `Solver` does.
+    """
+
+    @cached_property
+    def _at_rest(self) -> np.ndarray:
+        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
+        with explained():
+            return np.linalg.cholesky(self.pencil.K0 + self.pencil.shift * self.pencil.M)
+
+    @cached_property
+    def dense(self) -> Solver:
+        """Solver by full matrices."""
+        return Solver(self.pencil)
+
+    @cached_property
+    def lowest_at_rest(self) -> float:
+        """Inverse of the largest eigenvalue, which the iteration finds."""
+        with suppress(ArpackNoConvergence):
+            return float(1 / self._largest(self._at_rest, 1)[0][0])
+        return self.dense.lowest_at_rest
+
+    @property
+    def softening(self) -> float:
+        """The softening by full matrices."""
+        return self.dense.softening
+
+    @property
+    def critical_rounding(self) -> float:
+        """The rounding error by full matrices."""
+        return self.dense.critical_rounding
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Speed by speed."""
+        each = [self._solve_at(speed, count) for speed in speeds]
+        return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
+
+    def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+        """Speed by speed, by a factorization of the stiffness."""
+        return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
+
+    def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        with suppress(ArpackNoConvergence):
+            found = None if self.pencil.shift else self._lowest(speed, count)
+            if found is not None:
+                return found if self.pencil.conservative else self._lowest_coupled(speed, count)
+        eigen = self.dense.solve(np.array([speed]), count)
+        return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
+
+    # Conservative equations --------------------------------------------------------------------------
+
+    def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Lowest modes without damping and gyroscopic terms; None if the stiffness is not safely positive."""
+        try:
+            L = np.linalg.cholesky(self.pencil.K0 + speed**2 * self.pencil.K2) if speed else self._at_rest
+        except np.linalg.LinAlgError:
+            return None
+        mu, x = self._largest(L, count)
+        if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
+            return None
+        v, squared = solve_lower_transposed(L, x) / np.sqrt(mu), 1 / mu
+        by_matrices = rounding_of_factored(self.pencil, speed, squared, v)
+        found = squared[None], np.abs(v)[None], by_matrices[None]
+        rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)[0]
+        return 1j / np.sqrt(mu), v, rounding
+
+    def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Largest eigenvalues (k,) of L^-1 M L^-T, descending, and their vectors (n, k)."""
+
+        def product(x: np.ndarray) -> np.ndarray:
+            half = solve_lower_transposed(L, x.reshape(len(L), -1))
+            return solve_lower(L, self.pencil.M @ half).reshape(x.shape)
+
+        start = np.random.default_rng(0).standard_normal(self.size)
+        operator = _operator(product, self.size)
+        mu, x = eigsh(operator, count, which="LA", v0=start, tol=0, maxiter=_RESTARTS)
+        order = np.argsort(-mu)
+        return mu[order], x[:, order]
+
+    # Gyroscopic and damped equations -----------------------------------------------------------------
+
+    def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lowest modes of M q'' + C q' + K q = 0, by the largest 1/s."""
+        n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
+        factor = cho_factor(self.pencil.K0 + speed**2 * self.pencil.K2)
+        time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
+
+        def product(y: np.ndarray) -> np.ndarray:
+            q, v = y[:n], y[n:]
+            force = C @ q / time + M @ v / time**2
+            return np.concatenate([-cho_solve(factor, force, check_finite=False), q])
+
+        start = np.random.default_rng(0).standard_normal(2 * n)
+        sought = 2 * (count + _MORE)
+        operator = _operator(product, 2 * n)
+        inverse, y = eigs(operator, sought, which="LM", v0=start, tol=0, maxiter=_RESTARTS)
+        s, q = select_lowest(inverse * time, y[:n], count)
+        mass = np.sqrt(np.einsum("nk,nk->k", q.conj(), M @ q).real)
+        rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + self.size)
+        return s, q / mass, rounding
+
+
+def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearOperator:
+    return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
+
 
 LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
 
@@ -28,7 +155,7 @@ def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
     if len(pencil.M) <= LARGE:
         return Solver(pencil)
     # It is imported here for the time that sparse algebra takes to import.
-    from beamdyn.modes.modal.large import LargeSolver
+    from beamdyn.modes.modal.uncoupled import LargeSolver
 
     return LargeSolver(pencil)
 

@@ -17,8 +17,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from beamdyn.accuracy.margins import EFFECTS
-from beamdyn.accuracy.refinement import refine
+from beamdyn.accuracy.refinement import EFFECTS, refine
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.results.statements import INPUT, TOLERANCE, Statement
 from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_effects
