@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from beamdyn.app.program import BEAMDYN
-from beamdyn.cli.interactive import make_program as make_beamdyn
+from beamdyn.cli.commands import make_program as make_beamdyn
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer

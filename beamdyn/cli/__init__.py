@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from beamdyn.cli.program import command_line, main
+from beamdyn.cli.commands import command_line, main
 from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, INTERRUPTED, NO_ANSWER
 
 __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main"]

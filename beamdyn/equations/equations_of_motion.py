@@ -296,7 +296,8 @@ class Equations:
         self, matrices: Sequence[dict[Quantity, np.ndarray]], vectors: dict[Quantity, np.ndarray]
     ) -> SteadyPencil:
         """Equations at steady speed, by the matrices and loads of each quantity."""
-        rotating, shape, parts = root_motion(self.mount, MotionSample.steady(1.0)), _shape_of(matrices), []
+        rotating, parts = root_motion(self.mount, MotionSample.steady(1.0)), []
+        shape = matrices[2]["unity"].shape  # mass is there always
         nothing = np.zeros(shape)
         for of_order in matrices:  # what is there at rest, and what motion of the root adds to it
             moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
@@ -372,12 +373,6 @@ class Equations:
             shapes=shapes,
             coarse=None,
         )
-
-
-def _shape_of(matrices: Sequence[Mapping[Quantity, np.ndarray]]) -> tuple[int, int]:
-    """Shape of matrices, of which that of the mass is there always."""
-    rows, columns = matrices[2]["unity"].shape
-    return rows, columns
 
 
 def _sum_over_quantities(

@@ -235,9 +235,13 @@ def _spring(name: str, value: object) -> float:
         raise replace(refusal, bound="give a number of 0 or more, or inf") from None
 
 
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn."""
-    return _cos_sin(angle, ROUNDED_ANGLE)
+def exact_cos_sin(angle: float, least: float = ROUNDED_ANGLE) -> tuple[float, float]:
+    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn.
+
+    They are 0 where their magnitude is less than the least.
+    """
+    c, s = cos(angle), sin(angle)
+    return (0.0 if abs(c) < least else c), (0.0 if abs(s) < least else s)
 
 
 def aligned_cos_sin(angle: float) -> tuple[float, float]:
@@ -246,9 +250,4 @@ def aligned_cos_sin(angle: float) -> tuple[float, float]:
     For bending angles, by which frequencies change by the square of that, and for verdicts: no beam is
     mounted more exactly, and whether directions are coupled, or loaded across, hangs on no last digit.
     """
-    return _cos_sin(angle, RIGHT_ANGLE)
-
-
-def _cos_sin(angle: float, least: float) -> tuple[float, float]:
-    c, s = cos(angle), sin(angle)
-    return (0.0 if abs(c) < least else c), (0.0 if abs(s) < least else s)
+    return exact_cos_sin(angle, RIGHT_ANGLE)

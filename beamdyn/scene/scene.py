@@ -194,7 +194,8 @@ class Scene(OneLine):
     @property
     def models_width(self) -> bool:
         """Whether deflections vary across the width: rectangular sections camber or twist."""
-        return _models_width(self.beam, self.physics)
+        chosen = self.physics
+        return (chosen.camber or chosen.torsion) and _with_constants(self.beam, chosen).section is not None
 
     @property
     def is_slender_beam_in_one_plane(self) -> bool:
@@ -374,11 +375,6 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         raise InvalidValue("width", float(left[jumps[0] + 1]), bound, remedy, "m", where=where)
 
 
-def _models_width(beam: Beam, physics: Physics) -> bool:
-    """Whether deflections vary across the width."""
-    return _with_constants(beam, physics).section is not None and (physics.camber or physics.torsion)
-
-
 def _with_constants(beam: Beam, physics: Physics) -> Beam:
     """The beam as large deflection with torsion models it: a rectangle by its torsional stiffness alone."""
     section = beam.section
@@ -414,6 +410,6 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
     if beam.tip is not None and beam.tip.offset_across and not physics.torsion:
         given["tip"] = replace(beam.tip, offset_across=0.0)
-    if _models_width(beam, physics):
+    if beam.section is not None and (physics.camber or physics.torsion):  # deflections vary across the width
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beamdyn.cli.program import main as beamdyn
+from beamdyn.cli.commands import main as beamdyn
 from brakes.cli.answering import main as brakes
 
 EXAMPLES = Path("examples").resolve()

@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 import beamdyn as bd
-from beamdyn.cli.program import main
+from beamdyn.cli.commands import main
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.edge.views import rows_of, tables_of

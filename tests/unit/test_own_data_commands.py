@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.cli.program import main
+from beamdyn.cli.commands import main
 from beamdyn.files.scenes import parse_scene, with_numbers_in_text
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.cli.program import main
+from beamdyn.cli.commands import main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.files.scenes import parse_scene
 from beamdyn.modes.model_error.effect_choice import EffectSizes, choose_by, choose_for_motion

@@ -1,4 +1,4 @@
-"""The program ``beamdyn``: a command imports its own module alone, and the list of commands none of them."""
+"""The commands of ``beamdyn``: one imports its own module alone, and the list of commands none of them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,17 @@ from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cyclopts import App
 
 from beamdyn._version import __version__
 from beamdyn.analyses import COMMANDS, analyses
-from beamdyn.cli import interactive
 from beamdyn.common.edge import exit_codes
+from beamdyn.common.screens.app_command import add_command
+
+if TYPE_CHECKING:
+    from beamdyn.common.screens.screens import Program
 
 # Commands that are not analyses of a scene: the module here that adds each, and the function that it runs.
 _OTHERS = {
@@ -22,6 +26,14 @@ _OTHERS = {
     "import": ("decks", "import_deck"),
     "reproduce": ("reproduce_command", "reproduce"),
 }
+_SCREENS = "The interactive program in the browser: frequencies, rotor, mode shapes, responses of a beam."
+
+
+def make_program() -> Program:
+    """The interactive program, imported when it is wanted."""
+    from beamdyn.app.program import BEAMDYN
+
+    return BEAMDYN
 
 
 @cache
@@ -46,7 +58,7 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
         else:
             import_module(f"beamdyn.cli.{_OTHERS[name][0]}").add(app)
     if not command:
-        interactive.add(app)
+        add_command(app, make_program, port=8080, about=_SCREENS)
         exit_codes.add_completion(app)
     return app
 
