@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 from itertools import pairwise
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -55,6 +55,9 @@ class Ritz:
     3.516015269
     """
 
+    order: ClassVar[None] = None  # the error does not fall as a power of the size
+    rounding: ClassVar[float] = 0.0  # scaling of the functions keeps all digits of their integrals
+
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
 
@@ -70,16 +73,6 @@ class Ritz:
     def on_each_segment(self) -> bool:
         """Whether each segment between breakpoints has its own functions."""
         return self.basis == "legendre"
-
-    @property
-    def order(self) -> None:
-        """None: the error does not fall as a power of the size."""
-        return None
-
-    @property
-    def rounding(self) -> float:
-        """0: scaling of the functions keeps all digits of their integrals."""
-        return 0.0
 
     @property
     def converges_regularly(self) -> bool:
@@ -178,13 +171,9 @@ class RitzSpace(SampledSpace):
     spaces: RitzSpaces
     conditions: RootConditions
 
-    @property
+    @cached_property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
-        return self._coarse
-
-    @cached_property
-    def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
