@@ -91,11 +91,7 @@ def model_at_speed(
 
 
 def model_of_few_modes(
-    scene: Scene,
-    speed: float,
-    few: int,
-    discretization: DiscretizationChoice,
-    tolerance: float | None = None,
+    scene: Scene, speed: float, few: int, discretization: DiscretizationChoice, tolerance: float | None = None
 ) -> ModelAtSpeed:
     """Make the model of a few modes that nobody asked for: of fewer if the discretization has no more."""
     return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization, tolerance)

@@ -19,12 +19,7 @@ from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
 from beamdyn.linear.free_motion import free_motion
-from beamdyn.linear.inputs_outputs import (
-    BaseMotion,
-    Excitation,
-    PointForce,
-    as_excitation,
-)
+from beamdyn.linear.inputs_outputs import BaseMotion, Excitation, PointForce, as_excitation
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed, pole_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation

@@ -16,23 +16,8 @@ from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
-from beamdyn.linear import spectra
+from beamdyn.linear import inputs_outputs, mean_square, spectra
 from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
-from beamdyn.linear.inputs_outputs import (
-    AccelerationAt,
-    DeflectionAt,
-    Excitation,
-    Observation,
-    as_observation,
-)
-from beamdyn.linear.mean_square import (
-    ParametricTerm,
-    PartialFractions,
-    check_damped,
-    damped_motion,
-    parametric_term,
-    partial_fractions,
-)
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -103,7 +88,7 @@ class RandomResponse(JudgedByRepeating):
     psd: np.ndarray
     psd_error: np.ndarray
     input_rms: float
-    parametric: ParametricTerm
+    parametric: mean_square.ParametricTerm
     input: str
     output: str
     unit: str
@@ -136,8 +121,8 @@ def random_response(
     scene: Scene,
     speed: float,
     psd: spectra.PowerSpectrum | spectra.RoadRoughness | float,
-    input: Excitation | str | None = None,
-    output: Observation | str = "tip",
+    input: inputs_outputs.Excitation | str | None = None,
+    output: inputs_outputs.Observation | str = "tip",
     frequencies: Sequence[float] | np.ndarray | None = None,
     modes: int | str = "auto",
     tolerance: float = 1e-9,
@@ -198,11 +183,11 @@ def random_response(
     True
     """
     start = perf_counter()
-    seen = as_observation("output", output)
+    seen = inputs_outputs.as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
     drive, spectrum = spectra.random_input(scene, speed, psd, input)
-    check_damped(scene)
-    if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) is not DeflectionAt:
+    mean_square.check_damped(scene)
+    if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) is not inputs_outputs.DeflectionAt:
         bound = "by white noise its mean square is not finite, or takes all modes"
         raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
     top, loaded = spectra.highest_frequency(spectrum), with_forces(scene, [drive])
@@ -218,7 +203,7 @@ def random_response(
         f = ascending("frequencies", frequencies)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
     of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
-    parametric = parametric_term(model, drive, spectrum)
+    parametric = mean_square.parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
         rms=rms,
@@ -245,13 +230,13 @@ def random_response(
 
 
 def _frequencies(
-    spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: Excitation
+    spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: inputs_outputs.Excitation
 ) -> np.ndarray:
     """Frequencies of the response [Hz], such that straight lines between its densities have their area.
 
     Those to white noise end at ten times the lowest resonance.
     """
-    poles = damped_motion(model).poles
+    poles = mean_square.damped_motion(model).poles
     if isinstance(spectrum, spectra.PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)
@@ -263,13 +248,15 @@ def _frequencies(
     return spectra.one_of_each(np.concatenate([np.geomspace(bottom, top, _POINTS), between]))
 
 
-def _expand(model: ModelAtSpeed, drive: Excitation, seen: Observation) -> dict[int, PartialFractions]:
+def _expand(
+    model: ModelAtSpeed, drive: inputs_outputs.Excitation, seen: inputs_outputs.Observation
+) -> dict[int, mean_square.PartialFractions]:
     check_stable(model)
-    return {h: partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
+    return {h: mean_square.partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
 
 
 def _mean_square(
-    transfers: dict[int, PartialFractions], spectrum: spectra.PowerSpectrum | float, speed: float
+    transfers: dict[int, mean_square.PartialFractions], spectrum: spectra.PowerSpectrum | float, speed: float
 ) -> float:
     """Mean square over time and a turn: the sum of those of the harmonics, which are apart in frequency."""
     if isinstance(spectrum, spectra.PowerSpectrum):
@@ -278,7 +265,7 @@ def _mean_square(
 
 
 def _density(
-    transfers: dict[int, PartialFractions],
+    transfers: dict[int, mean_square.PartialFractions],
     spectrum: spectra.PowerSpectrum | float,
     speed: float,
     f: np.ndarray,
@@ -292,8 +279,10 @@ def _density(
     return total
 
 
-def _warnings(scene: Scene, seen: Observation, rms: float, parametric: ParametricTerm) -> Iterator[str]:
+def _warnings(
+    scene: Scene, seen: inputs_outputs.Observation, rms: float, parametric: mean_square.ParametricTerm
+) -> Iterator[str]:
     yield from warn_of_left_out(scene)
     yield from parametric.warnings()
-    if isinstance(seen, DeflectionAt) and not isinstance(seen, AccelerationAt):
+    if isinstance(seen, inputs_outputs.DeflectionAt) and not isinstance(seen, inputs_outputs.AccelerationAt):
         yield from warn_of_deflection(np.array([_SEVERAL * rms]), scene.beam.length)

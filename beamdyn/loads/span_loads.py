@@ -325,12 +325,7 @@ class AskedLoads:
         return cls(scene, stations, sections.outputs, sections.points, sections.notes, start)
 
     def result(
-        self,
-        values: np.ndarray,
-        errors: np.ndarray,
-        warnings: Iterable[str],
-        method: str,
-        compared_with: str,
+        self, values: np.ndarray, errors: np.ndarray, warnings: Iterable[str], method: str, compared_with: str
     ) -> dict[str, Any]:
         """Fields of a `SpanLoads`, with values and errors of the outputs (..., S, K)."""
         by_quantity = self.outputs.split(values)

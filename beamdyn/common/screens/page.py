@@ -11,13 +11,7 @@ from nicegui import background_tasks, run, ui
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens import page_tasks
-from beamdyn.common.screens.browser_memory import (
-    LinkedDesign,
-    call,
-    named_designs,
-    read_typed,
-    refused_name,
-)
+from beamdyn.common.screens.browser_memory import LinkedDesign, call, named_designs, read_typed, refused_name
 from beamdyn.common.screens.computations import download
 from beamdyn.common.screens.dialogs import DesignsDialog, FileDialog, LinkDialog
 from beamdyn.common.screens.examples import examples_of
