@@ -17,8 +17,17 @@ from beamdyn.analyses.results.of_studies import study_table
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed, parse_window
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
-from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
+from beamdyn.common.edge.varied_inputs import (
+    NO_SPREAD,
+    NOTHING_VARIED,
+    OPTION,
+    SpreadOptions,
+    VaryOptions,
+    designs_of,
+    numbers,
+    parse_axis,
+    parse_spreads,
+)
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
 from beamdyn.common.results.statements import InputValue
