@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.cli.program import main
+from beamdyn.cli.commands import main
 
 # The strip of the examples by its stiffness: of no width and thickness, few effects are left out.
 BEAM = bd.Beam.from_stiffness(0.05, 0.0157, 4 / 3e3, outer_fibre=1e-4)
