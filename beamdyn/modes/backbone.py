@@ -19,7 +19,8 @@ from beamdyn.accuracy.refinement import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.equations.elastica import DeflectedState
+from beamdyn.equations.beam_in_space.finite_rotations import longer_semi_axis
+from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
@@ -29,7 +30,7 @@ from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, refuse_bending_in_space
+from beamdyn.scene.validity import check_speeds
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,6 @@ def backbone(
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
-    refuse_bending_in_space(scene)
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
@@ -175,7 +175,7 @@ class FreeVibration:
 
     Parameters
     ----------
-    state : DeflectedState
+    state : BentState
         The equilibrium.
     speed, omega : float
         Speed, and angular frequency of the mode [rad/s].
@@ -183,7 +183,7 @@ class FreeVibration:
         The mode, for which the tip moves by the length of the beam.
     """
 
-    state: DeflectedState
+    state: BentState
     speed: float
     omega: float
     vector: np.ndarray
@@ -195,12 +195,9 @@ class FreeVibration:
         assert isinstance(solver, DeflectedSolver)
         found = solver.solve(np.array([speed]), mode)
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
-        assert isinstance(state, DeflectedState)
         v = found.vector[0][:, mode - 1].astype(complex)
-        angles, tip = state.elastica.angles, state.elastica.points.tip
-        along, across = tip(-state.sin * angles) @ v, tip(state.cos * angles) @ v
-        size = (abs(across + 1j * along) + abs(across - 1j * along)) / 2
-        return cls(state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.elastica.length / size)
+        size = longer_semi_axis(state.bent.tip_motions.T @ v)
+        return cls(state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.of.length / size)
 
     def coefficient(self, small: float) -> float:
         """Relative change of the frequency over the squared relative amplitude, extrapolated to none."""
@@ -238,7 +235,7 @@ class FreeVibration:
             np.real(np.sum([(1j * h * self.omega) ** k * wave for h, wave in waves.items()], axis=0))
             for k in range(3)
         )
-        elastica, sample = self.state.elastica, MotionSample.steady(np.full(_SAMPLES, self.speed))
+        elastica, sample = self.state.of, MotionSample.steady(np.full(_SAMPLES, self.speed))
         root = root_motion(elastica.linear.mount, sample)
         return elastica.at(self.state.q + q).work(rate, acceleration, root)
 

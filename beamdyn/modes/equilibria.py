@@ -192,7 +192,8 @@ def equilibrium(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
-    solver, coarse = _solver(solution.model), _solver(solution.model.coarser)
+    solver, coarse = _solver(solution.model), solution.model.coarse_solver
+    assert isinstance(coarse, DeflectedSolver)
     q = solver.equilibria(speeds)[0]
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
@@ -415,6 +416,6 @@ def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene
         name,
         np.sqrt([max(point.p, 0.0) for point in points]),
         _in_space(tips, scene),
-        np.array([count_negative(load, point) == 0 for point in points]),
+        np.array([count_negative(load, point.q, point.p) == 0 for point in points]),
         np.sqrt([point.p for point in turning]),
     )

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamdyn.equations.beam_in_space.finite_rotations import longer_semi_axis
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium
@@ -19,7 +20,6 @@ from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import refuse_bending_in_space
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance
 from beamdyn.steady.periodic_system import (
     Pair,
@@ -36,6 +36,7 @@ _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
 _MOST_INTERACTIONS = 5  # interactions with the periodic coefficients, for the response
 _MOST_UNKNOWNS = 2**17  # unknowns that are solved for at once: they fit the processor's cache
+_ACROSS_THEN_ALONG = [1, 2, 0]  # axes of the tip: the direction of bending, that across, along
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
 _NO_FREQUENCY = 1e-8  # frequency, over that of a clamped beam, that rounding makes of 0
 
@@ -117,19 +118,16 @@ def _about_equilibria(
 ) -> Vibration:
     """Equations about each equilibrium; where there is none, those of the straight beam hold the place.
 
-    The directions of the tip are that of bending, and along the beam axis.
+    The directions of the tip are that of bending, that across, and along the axis of the beam at the root.
     """
-    refuse_bending_in_space(model.scene)
-    q, elastica = find_equilibria(model, speeds), model.elastica
-    assert elastica is not None
+    q, bent = find_equilibria(model, speeds), model.bent
     missing = np.asarray(np.isnan(q).any(axis=1))
+    q = np.where(missing[:, None], 0.0, q)
     equations, tips = [], []
-    for speed, at in zip(np.abs(speeds).tolist(), np.where(missing[:, None], 0.0, q), strict=True):
-        state = elastica.at(at)
+    for speed, at in zip(np.abs(speeds).tolist(), q, strict=True):
+        state = bent.at(at)
         equations.append(reduce_to_modes(state.linearized(), replace(basis, speeds=(speed,))))
-        along = elastica.points.tip(-state.sin * elastica.angles)
-        (shape,) = equations[-1].shapes.values()
-        tips.append([equations[-1].tip, along @ shape.matrix])
+        tips.append((bent.basis_of(equations[-1]).T @ state.bent.tip_motions[:, _ACROSS_THEN_ALONG]).T)
     parts = split_uncoupled(periodic_system(equations, motion, speeds), equations[0])
     rate = np.zeros(len(missing))  # without the periodic coefficients
     if (known := ~missing).any():
@@ -137,7 +135,7 @@ def _about_equilibria(
     return Vibration(
         parts=parts,
         tips=np.array(tips),
-        static=elastica.tip(q)[:, ::-1] - [0.0, model.scene.beam.length],
+        static=np.where(missing[:, None], np.nan, bent.tip(q) - bent.tip(0 * q))[:, _ACROSS_THEN_ALONG],
         without_rate=missing,
         lost={_MISSING: missing, _UNSTABLE_MEAN: np.asarray(rate > 0)},
     )
@@ -254,12 +252,8 @@ def _solve_harmonics(
 
 
 def sizes_of(c: np.ndarray) -> np.ndarray:
-    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi: the longer semi-axes of ellipses.
-
-    The vectors (S, d, H) have a component in the direction of bending, and perhaps one across.
-    """
-    along, across = c[:, 0], 1j * c[:, 1:].sum(axis=1)
-    return (np.abs(along + across) + np.abs(along - across)) / 2  # radii of circles in either sense
+    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi, c of shape (S, d, H)."""
+    return longer_semi_axis(np.moveaxis(c, 1, 0))
 
 
 def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:

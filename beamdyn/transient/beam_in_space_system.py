@@ -1,10 +1,10 @@
-"""Equations of motion of a beam in space in modal coordinates, evaluated at times for the integrators."""
+"""Equations of motion of a bent beam in modal coordinates, evaluated at times for the integrators."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol, Self, TypeAlias
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from beamdyn.modes.modal.equilibrium import Branch
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
-from beamdyn.transient.elastica_system import BentSystem
+from beamdyn.transient.system import ModalSystem
 
 _STEP = 1e-5  # of differences, over the size of a coordinate: the tangent only guides Newton's method
 
@@ -51,8 +51,37 @@ class DriveInSpace(NamedTuple):
         return Carrier(*(np.moveaxis(values, -1, -2) for values in self))
 
 
+class Evaluated(Protocol):
+    """Equations at s sets of coordinates, rates and accelerations; derivatives of each set, or of one."""
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Residual of the equations of motion (s, n)."""
+        ...
+
+    @property
+    def elastic(self) -> np.ndarray:
+        """Elastic force (s, n)."""
+        ...
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Derivative by the accelerations (s or 1, n, n)."""
+        ...
+
+    @property
+    def damping(self) -> np.ndarray:
+        """Derivative by the rates (s or 1, n, n)."""
+        ...
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """Derivative by the coordinates (s or 1, n, n)."""
+        ...
+
+
 @dataclass(frozen=True)
-class BeamInSpaceSystem(BentSystem):
+class BeamInSpaceSystem:
     """Equations of motion of a beam that bends by any amount in space, at arrays of times.
 
     Parameters
@@ -70,16 +99,59 @@ class BeamInSpaceSystem(BentSystem):
     branch: Branch = "straight"
 
     @classmethod
-    def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> BeamInSpaceSystem:
+    def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> Self:
         """Equations of a model for large deflection in the coordinates of a modal basis."""
-        assert model.in_space is not None
-        modal = reduce_to_modes(model.in_space.about_straight, basis)
-        return cls(model.in_space.reduced(modal), motion, model.scene.physics.branch)
+        bends = model.scene.bends_in_space
+        modal = reduce_to_modes(model.bent.about_straight if bends else model.equations, basis)
+        return cls(model.bent.reduced(modal), motion, model.scene.physics.branch)
 
     @property
     def equations(self) -> Equations:
         """Equations of the same coordinates, linear about the straight beam."""
         return self.elastica.linear
+
+    @property
+    def size(self) -> int:
+        """Number n of coordinates."""
+        return self.elastica.size
+
+    @cached_property
+    def straight(self) -> ModalSystem:
+        """Equations of motion of the same coordinates, linear about the straight beam."""
+        return ModalSystem(self.equations, self.motion)
+
+    def root(self, t: np.ndarray) -> RootMotion:
+        """Motion of the root at times t [s]."""
+        return self.equations.root(self.motion.at(t))
+
+    def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Deflection [m] over a strip, whose sections keep their shape, at xi (k,), eta (l,): (T, k, l)."""
+        return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
+
+    def at(self, drive: Any, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluated:
+        """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
+        return self.evaluate(drive, np.stack([q, v, a]))
+
+    def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
+        q, v = np.split(y, 2)
+        return np.concatenate([v, self._acceleration(t, q, v)])
+
+    def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Accelerations (n,) at a time [s]."""
+        here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
+        return np.linalg.solve(here.mass[0], -here.residual[0])
+
+    def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        n = self.size
+        q, v = np.split(y, 2)
+        drive = self.drive(self.root(np.array([t])))
+        here = self.at(drive, q[None], v[None], self._acceleration(t, q, v)[None])
+        J = np.zeros((2 * n, 2 * n))
+        J[:n, n:] = np.eye(n)
+        J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
+        return J
 
     # Outputs ------------------------------------------------------------------------------------------
 
@@ -106,32 +178,31 @@ class BeamInSpaceSystem(BentSystem):
         The last is the potential of the centrifugal forces and of the acceleration of the root, which an
         angular acceleration has not; it is 0 where the beam is unloaded.
         """
-        drive = self.drive(self.root(t))
-        return self._moving(drive, q, v).energy - self._moving(drive, 0 * q, 0 * v).energy
+        carrier, beam = Carrier.of_root(self.elastica.axis, self.root(t)), self.elastica.beam
+        moving, rest = (MovingBeam(beam.at(k * q), k * v, carrier) for k in (1.0, 0.0))
+        return moving.energy - rest.energy
 
     # Equations ----------------------------------------------------------------------------------------
 
-    def drive(self, root: RootMotion) -> DriveInSpace:
+    def drive(self, root: RootMotion) -> Any:
         """Quantities of the root's motion as they enter the equations."""
-        axis = self.elastica.axis[:, None]
-        acceleration = [root.root_axial, root.root_transverse, root.root_across]
-        return DriveInSpace(
-            axis * root.speed[..., None, :],
-            axis * root.acceleration[..., None, :],
-            np.stack(acceleration, axis=-2),
-        )
+        carrier = Carrier.of_root(self.elastica.axis, root)
+        return DriveInSpace(*(np.moveaxis(values, -1, -2) for values in vars(carrier).values()))
 
-    def evaluate(self, drive: DriveInSpace, motion: np.ndarray) -> EvaluationInSpace:
-        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,)."""
+    def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
+        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).
+
+        What is returned has the attributes of `Evaluated`.
+        """
         return EvaluationInSpace(self, drive, motion)
-
-    def _moving(self, drive: DriveInSpace, q: np.ndarray, v: np.ndarray) -> MovingBeam:
-        return MovingBeam(self.elastica.beam.at(q), v, drive.carrier)
 
     def residual(self, drive: DriveInSpace, motion: np.ndarray) -> np.ndarray:
         """Residual of the equations of motion (s, n)."""
         q, v, a = motion
-        return self._moving(drive, q, v).residual(a)
+        return MovingBeam(self.elastica.beam.at(q), v, drive.carrier).residual(a)
+
+
+AnySystem: TypeAlias = ModalSystem | BeamInSpaceSystem
 
 
 @dataclass(frozen=True)

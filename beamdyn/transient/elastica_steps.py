@@ -19,7 +19,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from beamdyn.transient.elastica_system import BentSystem, Evaluated
+from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem, Evaluated
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, interpolate, step_maps, tableau
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
@@ -56,7 +56,7 @@ _MANY = 64  # number of pieces of a motion, such as one given by samples, above 
 _CHECKED = 48  # steps of a segment at which the interpolation is checked
 
 
-def rest_in_equilibrium(system: BentSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
+def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
     """The path of a beam that stays at rest, by a constant motion of the root and forces in equilibrium."""
     q, v = y0[None, : system.size], y0[None, system.size :]
     if system.motion.steady_start > 0 or v.any():
@@ -74,7 +74,11 @@ def rest_in_equilibrium(system: BentSystem, y0: np.ndarray, t_end: float) -> Tra
 
 
 def attempt_elastica(
-    system: BentSystem, y0: np.ndarray, t_end: float, step_size: StepSize, before: Attempt | None = None
+    system: BeamInSpaceSystem,
+    y0: np.ndarray,
+    t_end: float,
+    step_size: StepSize,
+    before: Attempt | None = None,
 ) -> Attempt:
     """Integrate twice with equal steps in each segment, of 8 and of 10 stages; shorter ones if not solved.
 
@@ -111,12 +115,12 @@ def attempt_elastica(
     return Attempt(step_size, Trajectory(fine), _error(system, coarse, fine), largest, method)
 
 
-def _tips(system: BentSystem, segment: Segment) -> np.ndarray:
+def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
     """Deflections of the tip at the ends of the steps [m]."""
     return system.deflections(segment.state[:, 1 : system.size + 1])[:, 0]
 
 
-def _error(system: BentSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
+def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
     """Error of the tip deflection: distance of two runs, divided among the coordinates."""
     tip, n, straight = 0.0, system.size, system.straight
     change = np.zeros(n)
@@ -134,7 +138,7 @@ def _error(system: BentSystem, coarse: tuple[Segment, ...], fine: tuple[Segment,
     return TimeError.of_coordinates(straight, modes, interpolation, phases > UNRESOLVED_PHASE)
 
 
-def _interpolation_error(system: BentSystem, segment: Segment) -> float:
+def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
     """Largest error of the tip's deflection between the ends of steps [m], by steps with more stages."""
     error, h = 0.0, segment.h
     for k in np.unique(np.linspace(0, len(segment.acceleration) - 1, _CHECKED).astype(int)):
@@ -158,7 +162,7 @@ class StepNotSolved(ArithmeticError):
 
 
 def propagate_elastica(
-    system: BentSystem,
+    system: BeamInSpaceSystem,
     t0: float,
     t1: float,
     steps: int,
@@ -171,7 +175,7 @@ def propagate_elastica(
 
     Parameters
     ----------
-    system : BentSystem
+    system : BeamInSpaceSystem
         The equations; smooth between t0 and t1.
     t0, t1 : float
         Beginning and end [s].
@@ -228,7 +232,7 @@ class Tangent(NamedTuple):
 class _Step:
     """Solution of steps of one length h [s] and one number of stages."""
 
-    def __init__(self, system: BentSystem, h: float, table: Tableau) -> None:
+    def __init__(self, system: BeamInSpaceSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
         self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
         self.to_motion = np.concatenate([self.to_q, self.to_v, np.eye(len(table.c))])

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from beamdyn.transient import record_steps
+from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.closed_form import propagate_in_closed_form
 from beamdyn.transient.elastica_steps import attempt_elastica, rest_in_equilibrium
-from beamdyn.transient.elastica_system import AnySystem, BentSystem
 from beamdyn.transient.gauss import Segment, propagate
 from beamdyn.transient.step_size import (
     Attempt,
@@ -72,7 +72,7 @@ def integrate(
     ArithmeticError
         If the steps of a bent beam cannot be solved at any size.
     """
-    if isinstance(system, BentSystem):
+    if isinstance(system, BeamInSpaceSystem):
         path = rest_in_equilibrium(system, y0, t_end)
         attempt = partial(attempt_elastica, system, y0, t_end)
     else:

@@ -22,7 +22,8 @@ from beamdyn.scene.motion import Motion
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.along_path import distance_along_path
-from beamdyn.transient.elastica_system import AnySystem, BentSystem, ElasticaSystem
+from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
+from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.gauss import growth_without_bound
 from beamdyn.transient.integration import follow_steps, integrate
 from beamdyn.transient.step_size import TooManySteps
@@ -249,7 +250,9 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
         if initial == "rest":
             return np.zeros(2 * n)
         if initial == "equilibrium":
-            found = _bent_equilibrium(system) if isinstance(system, BentSystem) else _equilibrium(system)
+            found = (
+                _bent_equilibrium(system) if isinstance(system, BeamInSpaceSystem) else _equilibrium(system)
+            )
             return np.concatenate([found, np.zeros(n)])
         raise ValueError(f"initial = {initial!r}: give 'rest', 'equilibrium' or an array")
     y0 = as_floats(initial)
@@ -297,7 +300,7 @@ class LoadAtOnce(SteadyLoad):
         return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
 
 
-def _bent_equilibrium(system: BentSystem) -> np.ndarray:
+def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
     """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0

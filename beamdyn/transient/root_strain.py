@@ -12,7 +12,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment, strain_per_moment
 from beamdyn.scene.names_elsewhere import GIVE_IT
 from beamdyn.scene.scene import Scene
-from beamdyn.transient.elastica_system import AnySystem, BentSystem
+from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
@@ -41,7 +41,7 @@ class RootStrain:
     @classmethod
     def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
         """Strain in the coordinates of the equations of a scene; a ValueError without an outer fibre."""
-        if isinstance(system, BentSystem):
+        if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
             remedy = "leave large_deflection out where the deflection is small"
             raise InvalidValue("physics.large_deflection", True, bound, remedy)

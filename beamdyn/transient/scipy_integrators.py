@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver, solve_ivp
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.transient.elastica_system import AnySystem, BentSystem
+from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.gauss import LinearSystem, Segment, StepMaps, step_maps, tableau
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.trajectory import SAMPLES
@@ -105,7 +105,7 @@ def integrate_by_solve_ivp(
     sizes = np.concatenate([np.abs(x).max(axis=0) for x in coarse.samples[1:]])
     options = {"rtol": tolerance, "atol": 0.1 * tolerance * sizes + 1e-300, **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
-        if isinstance(system, BentSystem):
+        if isinstance(system, BeamInSpaceSystem):
             bound = "it integrates linear equations only, and those of large_deflection are not"
             raise InvalidValue("method", method.__name__, bound, "give 'auto'")
         options = {"system": system, **options}

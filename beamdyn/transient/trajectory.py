@@ -9,7 +9,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from beamdyn.transient.elastica_system import AnySystem
+from beamdyn.transient.beam_in_space_system import AnySystem
 from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem

@@ -27,7 +27,7 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesMod
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
-from beamdyn.transient.elastica_system import AnySystem, BentSystem
+from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
 from beamdyn.transient.problem import Solution, TransientProblem, unless_unbounded
 from beamdyn.transient.root_strain import RootStrain
@@ -363,7 +363,7 @@ class TransientRequest(TransientProblem):
         yield from warn_of_peak(scene, largest)
         if scene.physics.large_deflection:
             t, q, _ = solution.path.samples
-            assert isinstance(solution.system, BentSystem)
+            assert isinstance(solution.system, BeamInSpaceSystem)
             bending = partial(solution.system.elastica.curvature, q)
             yield from warn_of_suppressed_camber(scene, bending, lambda k: f"at {t[k]:.4g} s")
         else:

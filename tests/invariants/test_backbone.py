@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.equations.elastica import DeflectedState
+from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
@@ -65,9 +65,9 @@ def test_bent_beams_against_harmonic_balance(angle: float, speed: float) -> None
     assert shift == pytest.approx(first.coefficient * amplitude**2, rel=0.01)  # amplitude^2 = 4e-4, times 25
 
 
-def _balance(state: DeflectedState, speed: float, omega: float, small: float) -> tuple[float, float]:
+def _balance(state: BentState, speed: float, omega: float, small: float) -> tuple[float, float]:
     """Frequency, and amplitude over the length, of a periodic motion by a balance of four harmonics."""
-    elastica, n, harmonics, samples = state.elastica, state.elastica.size, 4, 24
+    elastica, n, harmonics, samples = state.of, state.of.size, 4, 24
     phase = 2 * np.pi * np.arange(samples) / samples
     waves = np.array(
         [np.ones(samples)] + [f(h * phase) for h in range(1, harmonics + 1) for f in (np.cos, np.sin)]
@@ -76,7 +76,7 @@ def _balance(state: DeflectedState, speed: float, omega: float, small: float) ->
     derivative = np.zeros_like(waves)
     derivative[1::2], derivative[2::2] = -order[1::2, None] * waves[2::2], order[2::2, None] * waves[1::2]
     second = -(order[:, None] ** 2) * waves
-    move = elastica.points.tip(state.cos * elastica.angles), elastica.points.tip(-state.sin * elastica.angles)
+    move = state.bent.tip_motions[:, 1], state.bent.tip_motions[:, 0]
     sample = bd.MotionSample.steady(np.full(samples, speed))
     motion = root_motion(elastica.linear.mount, sample)
     pencil = state.linearized().steady()

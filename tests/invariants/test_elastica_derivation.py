@@ -21,7 +21,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
-from beamdyn.equations.elastica import Elastica, assemble_elastica
+from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam, assemble_beam_in_space
 from beamdyn.equations.root_motion import root_motion
 from tests.invariants.power_spaces import BENDING, PowerSeries
 
@@ -163,14 +163,14 @@ def derivative(function, at):
 
 
 @cache
-def elastica(quarters) -> Elastica:
+def elastica(quarters) -> RotatingBeam:
     x2, y2, z2 = TIP_MOMENTS
     tip = bd.TipMass(TIP_MASS, OFFSET, x2 + y2, x2 + z2, y2 + z2)
     beam = bd.Beam.from_stiffness(LENGTH, MASS, STIFFNESS, tip=tip, rotary_inertia=SECTIONS)
     mount = bd.Mount(RADIUS, SETTING, quarters * math.pi / 2, root_stiffness=SPRING)
     physics = bd.Physics(large_deflection=True, rotary_inertia=True)
     scene = bd.Scene(beam, mount, gravity=GRAVITY, physics=physics)
-    return assemble_elastica(scene, PowerSeries(), assemble_equations(scene, PowerSeries()))
+    return assemble_beam_in_space(scene, PowerSeries(), assemble_equations(scene, PowerSeries()))
 
 
 def root_of(quarters, carrier):

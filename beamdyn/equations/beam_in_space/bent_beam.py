@@ -42,7 +42,7 @@ STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", 
 
 @dataclass(frozen=True)
 class BeamInSpace(FieldsOnly):
-    """A clamped beam that bends, twists, shears and stretches by any amount.
+    """A beam, clamped or on a hinge, that bends, twists, shears and stretches by any amount.
 
     The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
 
@@ -65,6 +65,10 @@ class BeamInSpace(FieldsOnly):
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each cell of the rule begins: those of a beam whose axis
         has kinks, or does not begin along e1.
+    hinge : ndarray, shape (n,), optional
+        Turn of the root about e3 per coordinate [rad]; None where the root is clamped.
+    slopes : ndarray, shape (n, N + 1), optional
+        Integrals of the curvature, with the turn of the root, as exact as they are known.
     """
 
     stations: BeamStations
@@ -76,6 +80,8 @@ class BeamInSpace(FieldsOnly):
     fibres: np.ndarray
     pretwist: np.ndarray
     kinks: np.ndarray
+    hinge: np.ndarray | None = None
+    slopes: np.ndarray | None = None
 
     @property
     def size(self) -> int:
@@ -88,10 +94,26 @@ class BeamInSpace(FieldsOnly):
         return self.stations.length
 
     @cached_property
+    def flat_functions(self) -> np.ndarray:
+        """Strains per coordinate (n, 6 N)."""
+        return self.functions.reshape(self.size, -1)
+
+    @cached_property
     def angles(self) -> np.ndarray:
         """Integrated strains per coordinate, by which changes are measured: shape (n, k)."""
-        used = self.functions.any(axis=(0, 2))
-        return self.stations.to_sections(self.functions[:, used]).reshape(self.size, -1)
+        if self.is_planar and self.slopes is not None:
+            return self.slopes
+        used, turned = self.functions.any(axis=(0, 2)), self.stations.to_sections(self.functions)
+        if self.hinge is not None:
+            turned[:, -1] += self.hinge[:, None]
+        return turned[:, used].reshape(self.size, -1)
+
+    def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
+        """Turning rates (..., 3, N + 1) by rates (..., n) and curvatures' rates (..., 3, N) in space."""
+        turning = self.stations.to_sections(bending)
+        if self.hinge is not None:
+            turning[..., 2, :] += (rates @ self.hinge)[..., None]
+        return turning
 
     @cached_property
     def shears(self) -> bool:
@@ -110,11 +132,18 @@ class BeamInSpace(FieldsOnly):
             functions=np.tensordot(basis.T, self.functions, 1),
             stiffness=basis.T @ self.stiffness @ basis,
             damping=basis.T @ self.damping @ basis,
+            hinge=None if self.hinge is None else self.hinge @ basis,
+            slopes=None if self.slopes is None else basis.T @ self.slopes,
         )
+
+    @cached_property
+    def is_planar(self) -> bool:
+        """Whether the beam bends in the plane of e1 and e2 alone, inextensible, from a straight axis."""
+        return not (self.initial.any() or self.kinks[:, 1:].any() or self.functions[:, :-1].any())
 
     def at(self, q: np.ndarray) -> BentBeam:
         """The beam at coordinates q (..., n)."""
-        return BentBeam(self, q)
+        return BentInPlane(self, q) if self.is_planar else BentBeam(self, q)
 
 
 def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
@@ -156,7 +185,8 @@ class BentBeam(FieldsOnly):
     @cached_property
     def strains(self) -> np.ndarray:
         """Strains (..., 6, N)."""
-        return self.beam.initial + np.tensordot(self.q, self.beam.functions, 1)
+        beam = self.beam
+        return beam.initial + (self.q @ beam.flat_functions).reshape(*self.q.shape[:-1], *beam.initial.shape)
 
     @property
     def _shortening(self) -> np.ndarray:
@@ -166,9 +196,10 @@ class BentBeam(FieldsOnly):
     @cached_property
     def rotations(self) -> np.ndarray:
         """Axes of the sections, in columns (..., 3, 3, N + 1)."""
-        stations = self.beam.stations
+        beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
-        return integrate_curvature(stations.quadrature.cells, curvature, self.beam.kinks)
+        turn_of_root = 0.0 if beam.hinge is None else self.q @ beam.hinge
+        return integrate_curvature(stations.quadrature.cells, curvature, beam.kinks, turn_of_root)
 
     @cached_property
     def _within(self) -> np.ndarray:
@@ -178,6 +209,8 @@ class BentBeam(FieldsOnly):
     @cached_property
     def tangents(self) -> np.ndarray:
         """Derivative r' of the position (..., 3, N)."""
+        if not (self.beam.shears or self.beam.initial[:3].any()):
+            return self._within[..., :, 0, :]
         extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
         both = twist + beam.initial[3] + 2 * beam.pretwist
         extended[..., 0, :] += 1 - beam.fibres / 2 * both * (twist - beam.initial[3])
@@ -226,7 +259,7 @@ class BentBeam(FieldsOnly):
     @cached_property
     def _turned(self) -> np.ndarray:
         """Rotations W (n, 3, N + 1) by the coordinates."""
-        return self.beam.stations.to_sections(self._turning)
+        return self.beam.turning_rate(np.eye(self.beam.size), self._turning)
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
@@ -243,33 +276,53 @@ class BentBeam(FieldsOnly):
         motions[:, 3:, : stations.sections] = self._turned
         return motions
 
+    @property
+    def tip_motions(self) -> np.ndarray:
+        """Displacements of the tip by the coordinates (n, 3)."""
+        return self.motions[:, :3, self.beam.stations.sections - 1]
+
     # Work of forces on the stations -------------------------------------------------------------------
 
-    def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces n and moments m (..., 3, N) by what acts beyond, times the weights of the rule."""
+    def under(self, forces: StationForces) -> ForcedBeam:
+        """The beam with forces on its stations."""
+        return ForcedBeam(self, forces)
+
+    def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forces n, moments m (..., 3, N) by what acts beyond, times weights, and all the moment (..., 3)."""
         stations = self.beam.stations
         n = stations.from_all(force[..., :3, :])
         moments = force[..., 3:, : stations.sections].copy()
         moments[..., :-1] += cross(self.tangents, n)
-        return n, stations.from_sections(moments)
+        return n, stations.from_sections(moments), moments.sum(axis=-1)
 
     def work(self, force: np.ndarray) -> np.ndarray:
         """Virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
-        stress = np.concatenate([turn_back(self._within, each) for each in self.resultants(force)], axis=-2)
-        stress[..., 3, :] += self._shortening * stress[..., 0, :]
-        return stress.reshape(*stress.shape[:-2], -1) @ self.beam.functions.reshape(self.beam.size, -1).T
+        return self.work_of(*self.resultants(force))
+
+    def work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
+        """Virtual work (..., n) of given resultants (..., 3, N), and of the moment at the root (..., 3)."""
+        beam, stress, functions = self.beam, turn_back(self._within, m), self.beam.flat_functions
+        if beam.shears:
+            stress = np.concatenate([turn_back(self._within, n), stress], axis=-2)
+            stress[..., 3, :] += self._shortening * stress[..., 0, :]
+        flat = stress.reshape(*m.shape[:-2], -1)
+        work = flat @ functions[:, functions.shape[1] - flat.shape[-1] :].T
+        return work if beam.hinge is None else work + at_root[..., 2:] * beam.hinge
 
     def work_change(self, forces: StationForces) -> np.ndarray:
-        """Derivative (n, n) of the virtual work by the coordinates."""
-        n, m = self.resultants(forces.force)
-        W = self._turned[..., :-1]
+        """Derivative (n, n) of the virtual work of forces by the coordinates."""
+        return self.under(forces).work_change
+
+    def change_by(self, n: np.ndarray, m: np.ndarray) -> np.ndarray:
+        """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
+        beam, W = self.beam, self._turned[..., :-1]
         change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
-        if self.beam.shears:
+        if beam.shears:
             change += _product(self._straining, cross(n, W))
-        if self.beam.shortens:
-            twist, along = self.beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
-            change -= _product(twist * (self.beam.fibres * along), twist)
-        return change + self.of_stations(forces.tangent)
+        if beam.shortens:
+            twist, along = beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
+            change -= _product(twist * (beam.fibres * along), twist)
+        return change
 
     def of_stations(self, matrices: np.ndarray) -> np.ndarray:
         """Matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
@@ -279,6 +332,84 @@ class BentBeam(FieldsOnly):
     def mass(self) -> np.ndarray:
         """Mass matrix (n, n)."""
         return self.of_stations(self.masses.matrix)
+
+
+class BentInPlane(BentBeam):
+    """A beam that bends in the plane of e1 and e2 alone: its sections turn about e3 by angles that add up."""
+
+    @cached_property
+    def rotations(self) -> np.ndarray:
+        """Axes of the sections, in columns (..., 3, 3, N + 1)."""
+        angle = self.q @ self.beam.angles
+        axes = np.zeros((*angle.shape[:-1], 3, 3, angle.shape[-1]))
+        axes[..., 0, 0, :] = axes[..., 1, 1, :] = np.cos(angle)
+        axes[..., 1, 0, :], axes[..., 2, 2, :] = np.sin(angle), 1.0
+        axes[..., 0, 1, :] = -axes[..., 1, 0, :]
+        return axes
+
+    @cached_property
+    def _turned(self) -> np.ndarray:
+        """Rotations W (n, 3, N + 1) by the coordinates."""
+        return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
+
+    @cached_property
+    def _moved_rates(self) -> np.ndarray:
+        """Derivatives (n, 2, N) of the displacements in the plane by the coordinates."""
+        return np.stack([-self.tangents[1], self.tangents[0]]) * self.beam.angles[:, None, :-1]
+
+    @cached_property
+    def _moved(self) -> np.ndarray:
+        """Displacements in the plane by the coordinates (n, 2, N + 1 + k)."""
+        return self.beam.stations.to_all(self._moved_rates)
+
+    @cached_property
+    def displacement_rates(self) -> np.ndarray:
+        """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
+        return np.pad(self._moved_rates, ((0, 0), (0, 1), (0, 0)))
+
+    def change_by(self, n: np.ndarray, m: np.ndarray) -> np.ndarray:
+        """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
+        rates = self._moved_rates
+        return self.beam.angles[:, :-1] @ (rates[:, 0] * n[1] - rates[:, 1] * n[0]).T
+
+    def of_stations(self, matrices: np.ndarray) -> np.ndarray:
+        """Matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
+        motions, parts = self._moved, [0, 1]
+        if matrices[5].any() or matrices[:, 5].any():
+            turned = self.beam.stations.of_all(self.beam.angles)
+            motions, parts = np.concatenate([motions, turned[:, None]], axis=1), [0, 1, 5]
+        return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(parts, parts)], motions))
+
+
+@dataclass(frozen=True)
+class ForcedBeam(FieldsOnly):
+    """A bent beam with forces on its stations.
+
+    Parameters
+    ----------
+    bent : BentBeam
+        The beam.
+    forces : StationForces
+        The forces.
+    """
+
+    bent: BentBeam
+    forces: StationForces
+
+    @cached_property
+    def resultants(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """As `BentBeam.resultants`."""
+        return self.bent.resultants(self.forces.force)
+
+    @cached_property
+    def work(self) -> np.ndarray:
+        """Virtual work (n,) per coordinate."""
+        return self.bent.work_of(*self.resultants)
+
+    @cached_property
+    def work_change(self) -> np.ndarray:
+        """Derivative (n, n) of the virtual work by the coordinates."""
+        return self.bent.change_by(*self.resultants[:2]) + self.bent.of_stations(self.forces.tangent)
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

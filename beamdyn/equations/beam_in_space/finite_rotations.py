@@ -17,10 +17,8 @@ _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion with which
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Vector products of vectors (..., 3, N), which are broadcast."""
-    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        product[..., i, :] = a[..., j, :] * b[..., k, :] - a[..., k, :] * b[..., j, :]
-    return product
+    (a1, a2, a3), (b1, b2, b3) = ((v[..., 0, :], v[..., 1, :], v[..., 2, :]) for v in (a, b))
+    return np.stack([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1], axis=-2)
 
 
 def skew(a: np.ndarray) -> np.ndarray:
@@ -28,6 +26,21 @@ def skew(a: np.ndarray) -> np.ndarray:
     matrix = np.zeros((3, *a.shape))
     matrix[0, 1], matrix[0, 2], matrix[1, 2] = -a[2], a[1], -a[0]
     return matrix - matrix.swapaxes(0, 1)
+
+
+def _products_of_quaternions() -> np.ndarray:
+    """Components (4, 4, 4) of the products of unit quaternions: the last index is that of the product."""
+    products = np.zeros((4, 4, 4))
+    products[0] = products[:, 0] = np.eye(4)
+    products[1:, 1:, 0], products[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
+    return products
+
+
+_PRODUCT = _products_of_quaternions()
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # multiplication by (0, a), by a
+_TURNING = np.einsum(  # rotation matrices, by products of components: y (0, a) y*
+    "ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]
+).reshape(16, 9)
 
 
 def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
@@ -46,7 +59,9 @@ def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
     return np.einsum("...acj,...dcj->...adj", half, R)
 
 
-def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
+def integrate_curvature(
+    cells: Cells, curvature: np.ndarray, kinks: np.ndarray, turn_of_root: np.ndarray | float = 0.0
+) -> np.ndarray:
     """Rotations from the root to the Gauss points of cells and to the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
@@ -61,6 +76,8 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
         Twist rate and curvatures in the turned axes, per x/L, at the points.
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each of the c cells begins.
+    turn_of_root : ndarray, shape (...), optional
+        Angle by which the root has turned about its third axis before [rad].
 
     Returns
     -------
@@ -72,37 +89,40 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     Quaternions of a curve: standard.  Gauss methods keep quadratic invariants: Cooper (1987), IMA Journal of
     Numerical Analysis 7, 1-13.
     """
-    p, halves = cells.points, np.diff(cells.ends) / 2
-    count, shape = len(halves), curvature.shape[:-2]
-    of_cells = curvature.reshape(-1, 3, count, p) * halves[:, None]
-    rates = _product_from_right(of_cells.transpose(1, 0, 2, 3)).transpose(2, 3, 4, 0, 1) / 2
-    within = _collocate(rates, integrals_between_points(p))
-    across = _UNIT + np.einsum("j,scjab,scjb->sca", gauss_rule(p)[1], rates, within)
-    start, turned = np.broadcast_to(_UNIT, (len(rates), 4)), np.empty_like(within)
-    for cell in range(count):
-        start = product(start, kinks[cell])
-        turned[:, cell] = product(start[:, None], within[:, cell])
-        start = product(start, across[:, cell])
-    every = np.concatenate([turned.reshape(len(rates), -1, 4), start[:, None]], axis=1)
+    halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]  # half the turn
+    rates = np.moveaxis(curvature.reshape(-1, 3, len(halves), cells.points) * halves[:, None], 1, -1)
+    within, across = _collocate(rates, integrals_between_points(cells.points), gauss_rule(cells.points)[1])
+    root = np.broadcast_to(quaternion_about(2, turn_of_root), (*shape, 4)).reshape(-1, 4)
+    starts, turned = [root], product(kinks[:, None], within)
+    for step in np.moveaxis(product(kinks, across), 1, 0):
+        starts.append(product(starts[-1], step))
+    turned = product(np.stack(starts[:-1], axis=1)[:, :, None], turned)
+    every = np.concatenate([turned.reshape(len(rates), -1, 4), starts[-1][:, None]], axis=1)
     return _matrices(every).reshape(*shape, 3, 3, -1)
 
 
-def _collocate(rates: np.ndarray, A: np.ndarray) -> np.ndarray:
-    """Solve y = 1 + A (rates y) for quaternions (S, c, p, 4) at points of cells, by rates (S, c, p, 4, 4).
+def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solve y = 1 + A (y rates) for quaternions (S, c, p, 4) at points of cells, and (S, c, 4) at their ends.
 
-    Picard iteration converges as the powers of half the angle over their factorials; where a cell turns so
-    far that it takes many steps, the linear equations are solved instead.
+    Picard iteration starts from the turn about the integral of the rates (S, c, p, 3), which is exact where
+    their direction stays.  It converges as the powers of half the angle over their factorials; where a cell
+    turns so far that it takes many steps, the linear equations are solved instead.
     """
-    y = np.broadcast_to(_UNIT, rates.shape[:-1])
+    operators, turns = (rates @ _FROM_RIGHT).reshape(*rates.shape[:-1], 4, 4), A @ rates
+    angle = np.sqrt((turns * turns).sum(axis=-1, keepdims=True))
+    y = np.concatenate([np.cos(angle), turns * np.sinc(angle / np.pi)], axis=-1)
     for _ in range(_ITERATIONS):
-        before, y = y, _UNIT + A @ np.einsum("scjab,scjb->scja", rates, y)
+        before, slope = y, np.einsum("scja,scjab->scjb", y, operators)
+        y = _UNIT + A @ slope
         if np.abs(y - before).max() <= _CONVERGED:
-            return y
+            return y, _UNIT + b @ slope
     p = len(A)
-    matrix = (-A[:, None, :, None] * rates[:, :, None].swapaxes(3, 4)).reshape(*rates.shape[:2], 4 * p, 4 * p)
+    matrix = -A[:, None, :, None] * np.moveaxis(operators, 4, 2)[:, :, None]
+    matrix = matrix.reshape(*rates.shape[:2], 4 * p, 4 * p)
     matrix[..., np.arange(4 * p), np.arange(4 * p)] += 1.0
     unit = np.broadcast_to(np.tile(_UNIT, p)[:, None], (*matrix.shape[:3], 1))
-    return np.linalg.solve(matrix, unit).reshape(y.shape)
+    y = np.linalg.solve(matrix, unit).reshape(y.shape)
+    return y, _UNIT + b @ np.einsum("scja,scjab->scjb", y, operators)
 
 
 def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
@@ -114,20 +134,16 @@ def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
 
 def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Products of quaternions (..., 4), which are broadcast."""
-    (w, v), (a, b) = (np.split(each, [1], axis=-1) for each in (y, z))
-    real = w * a - (v * b).sum(axis=-1, keepdims=True)
-    return np.concatenate([real, w * b + a * v + np.cross(v, b)], axis=-1)
-
-
-def _product_from_right(a: np.ndarray) -> np.ndarray:
-    """Matrices (4, 4, ...) that multiply quaternions from the right with (0, a), a of shape (3, ...)."""
-    matrix = np.zeros((4, 4, *a.shape[1:]))
-    matrix[1:, 0], matrix[0, 1:], matrix[1:, 1:] = a, -a, -skew(a)
-    return matrix
+    return np.einsum("...a,...b,abc->...c", y, z, _PRODUCT)
 
 
 def _matrices(y: np.ndarray) -> np.ndarray:
     """Rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are scaled to the length 1."""
-    w, v = np.split(np.moveaxis(y / np.sqrt((y * y).sum(axis=-1, keepdims=True)), -1, 0), [1])
-    matrices = (2 * w**2 - 1) * np.eye(3)[..., None, None] + 2 * (v[:, None] * v + w * skew(v))
-    return np.moveaxis(matrices, 2, 0)
+    squares = (y[..., None] * y[..., None, :]).reshape(-1, 16)
+    matrices = squares @ _TURNING / squares[:, ::5].sum(axis=1, keepdims=True)
+    return np.moveaxis(matrices.reshape(*y.shape[:-1], 3, 3), 1, -1)
+
+
+def longer_semi_axis(c: np.ndarray) -> np.ndarray:
+    """Largest magnitudes (...) over phi of vectors Re(c exp(i phi)), c of shape (d, ...): of ellipses."""
+    return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)

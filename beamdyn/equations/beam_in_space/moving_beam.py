@@ -23,6 +23,7 @@ import numpy as np
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
+from beamdyn.equations.root_motion import RootMotion
 
 _AT_REST = np.zeros(3)
 
@@ -42,6 +43,12 @@ class Carrier:
     turning: np.ndarray = field(default_factory=_AT_REST.copy)
     turning_rate: np.ndarray = field(default_factory=_AT_REST.copy)
     root_acceleration: np.ndarray = field(default_factory=_AT_REST.copy)
+
+    @classmethod
+    def of_root(cls, axis: np.ndarray, root: RootMotion) -> Carrier:
+        """The carrier that turns about an axis (3,) and moves the root of the beam."""
+        acceleration = np.stack([root.root_axial, root.root_transverse, root.root_across], axis=-1)
+        return cls(axis * root.speed[..., None], axis * root.acceleration[..., None], acceleration)
 
 
 @dataclass(frozen=True)
@@ -70,7 +77,7 @@ class MovingBeam(FieldsOnly):
     @cached_property
     def _turning(self) -> np.ndarray:
         """Turning rates (..., 3, N + 1) of the sections against the carrier."""
-        return self.bent.beam.stations.to_sections(self._strain_rates[1])
+        return self.bent.beam.turning_rate(self.rates, self._strain_rates[1])
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
@@ -87,7 +94,7 @@ class MovingBeam(FieldsOnly):
         bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
         straining, bending = bent.strain_rates(accelerations)
         w, strained = self._turning[..., :-1], self._strain_rates
-        turning_rate = stations.to_sections(bending + cross(w, strained[1]))
+        turning_rate = bent.beam.turning_rate(accelerations, bending + cross(w, strained[1]))
         tangent_rate = cross(turning_rate[..., :-1], bent.tangents) + straining
         tangent_rate += cross(w, self._tangent_rate + strained[0]) + bent.shortening_rate(self.rates)
         turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))

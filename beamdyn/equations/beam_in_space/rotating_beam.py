@@ -18,13 +18,15 @@ import numpy as np
 
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
-from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam
+from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, ForcedBeam
 from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors
-from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, StationForces
+from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
+from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
+from beamdyn.equations.fields.bending_and_shear import Bending, SecondBending, SecondShear, Shear
 from beamdyn.equations.fields.field import Deflection, Load, Term
-from beamdyn.equations.root_motion import Quantity
+from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
@@ -32,9 +34,7 @@ from beamdyn.scene.scene import Scene
 _AXES = np.eye(3)
 _KEPT = 4  # states of the beam that are kept
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
-_ROOT: dict[Quantity, np.ndarray] = dict(
-    zip(("root_axial", "root_transverse", "root_across"), _AXES, strict=True)
-)
+_ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 
 
 class _Strain(NamedTuple):
@@ -46,25 +46,18 @@ class _Strain(NamedTuple):
     sign: float = 1.0
 
 
-def _strains_of_fields(beam: Beam) -> dict[str, _Strain]:
+def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
     """The strain of each field; positive deflection across turns sections backwards."""
-    warps = beam.warping_stiffness is not None
-    bending, shear = (
-        CLAMPED._replace(stiffness="bending_stiffness"),
-        FIXED._replace(stiffness="shear_stiffness"),
-    )
-    torsion = (
-        CLAMPED._replace(stiffness="warping_stiffness")
-        if warps
-        else FIXED._replace(stiffness="torsion_stiffness")
-    )
+    mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
+    torsion = CLAMPED if warps else FIXED
+    resists = "warping_stiffness" if warps else "torsion_stiffness"
     return {
-        "bending": _Strain("curvature", 2, bending),
-        "second bending": _Strain("second curvature", 2, bending._replace(direction=1), -1.0),
-        "shear": _Strain("shear", 1, shear),
-        "second shear": _Strain("second shear", 1, shear._replace(direction=1)),
+        "bending": _Strain("curvature", 2, Bending().conditions(mount)),
+        "second bending": _Strain("second curvature", 2, SecondBending().conditions(mount), -1.0),
+        "shear": _Strain("shear", 1, Shear().conditions(mount)),
+        "second shear": _Strain("second shear", 1, SecondShear().conditions(mount)),
         "stretch": _Strain("stretch", 1, FIXED._replace(stiffness="axial_stiffness")),
-        "torsion": _Strain("twist rate", 1, torsion),
+        "torsion": _Strain("twist rate", 1, torsion._replace(stiffness=resists)),
     }
 
 
@@ -80,11 +73,14 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
     stations, length = BeamStations(quadrature, beam.length, beam.lumps[0]), beam.length
     functions = np.zeros((linear.size, 6, len(quadrature.xi)))
-    known = _strains_of_fields(beam)
+    known, slopes = _strains_of_fields(scene), np.zeros((linear.size, stations.sections + 1))
     for name, place in linear.blocks.items():
         strain = known[name]
-        along = spaces.functions(strain.conditions).evaluate(quadrature.xi, strain.order)
+        of_field = spaces.functions(strain.conditions)
+        along = of_field.evaluate(quadrature.xi, strain.order)
         functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
+        if strain.name == "curvature":
+            slopes[place] = of_field.evaluate(np.concatenate([[0.0], quadrature.xi, [1.0]]), 1) / length
     curvature, kinks = curve_of_axis(beam, quadrature)
     nothing = np.zeros((linear.size, linear.size))
     model = BeamInSpace(
@@ -96,6 +92,8 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         linear.matrices[1].get("unity", nothing),
         *_fibres(beam, quadrature.xi),
         kinks,
+        slopes[:, 0] if np.isfinite(scene.mount.root_stiffness) else None,
+        slopes[:, 1:],
     )
     return RotatingBeam(model, linear, axis_of_rotation(scene))
 
@@ -191,14 +189,28 @@ class RotatingBeam(FieldsOnly):
 
     def reduced(self, modal: Equations) -> RotatingBeam:
         """The beam in the coordinates of equations to which those about the straight beam were reduced."""
+        return RotatingBeam(self.beam.reduced(self.basis_of(modal)), modal, self.axis)
+
+    def basis_of(self, modal: Equations) -> np.ndarray:
+        """Coordinates (n, m) of the beam per coordinate of equations to which its own were reduced."""
         basis = np.zeros((self.size, modal.size))
         for name, place in self.linear.blocks.items():
             shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
             basis[place, modal.blocks[shape.block]] = shape.matrix
-        return RotatingBeam(self.beam.reduced(basis), modal, self.axis)
+        return basis
+
+    def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
+        """Coordinates (n,) whose strains are nearest to those of another discretization at q."""
+        own, rule = self.beam, self.beam.stations.quadrature
+        between = other.beam.stations.quadrature.interpolate_to(rule.xi)
+        strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
+        matrix = (own.functions * np.sqrt(rule.weights)).reshape(self.size, -1)
+        if own.hinge is not None and other.beam.hinge is not None:
+            matrix, strains = np.c_[matrix, own.hinge], np.r_[strains.ravel(), q @ other.beam.hinge]
+        return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
-        """The beam at coordinates q (n,); the last few are kept, as they are asked for again."""
+        """The beam at coordinates q (..., n); the last few are kept, as they are asked for again."""
         key = q.tobytes()
         if key not in self._kept:
             if len(self._kept) >= _KEPT:
@@ -212,8 +224,7 @@ class RotatingBeam(FieldsOnly):
 
     def tip(self, q: np.ndarray) -> np.ndarray:
         """Position (..., 3) of the tip from the root along e1, e2, e3 [m], at coordinates q (..., n)."""
-        tips = [self.beam.at(each).tip for each in q.reshape(-1, self.size)]
-        return np.reshape(tips, (*q.shape[:-1], 3))
+        return self.beam.at(q).tip
 
     def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Curvature (..., k) [1/m] in the direction of bending at q (..., n) and x/L = xi (k,)."""
@@ -221,7 +232,9 @@ class RotatingBeam(FieldsOnly):
         return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Angle between the beam at the tip and at the root [rad], at coordinates q (n,)."""
+        """Angle of the tip [rad] at coordinates q (n,): its slope in one plane, else from e1 on."""
+        if self.beam.is_planar:
+            return float(q @ self.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
         return float(np.arctan2(np.hypot(along[1], along[2]), along[0]))
 
@@ -246,56 +259,66 @@ class BentState(FieldsOnly):
         weights = self.of.length * self.of.beam.stations.quadrature.integrate_to(xi)
         return weights @ self.bent.tangents.T
 
-    def inertial_forces(self, quantity: Quantity) -> StationForces:
-        """Inertial forces on the stations per unit of a quantity of the root's motion."""
-        masses = self.bent.masses
-        if quantity == "speed_squared":
-            return masses.centrifugal(self.of.axis)
-        if quantity == "acceleration":
-            return masses.euler(self.of.axis)
-        return masses.translated(_ROOT[quantity])
-
-    def inertia_of(self, quantity: Quantity) -> np.ndarray:
-        """Generalized inertial force (n,) per unit of a quantity."""
-        return self.bent.work(self.inertial_forces(quantity).force)
-
-    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Generalized inertial force (n,) under given values of the quantities."""
-        return self._under(values).work
-
-    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Derivative (n, n) of `inertia` by the coordinates."""
-        return self._under(values).change
-
-    def _under(self, values: Mapping[Quantity, float]) -> _Loaded:
-        """The beam under given values of the quantities, kept as it is asked for again."""
+    def under(self, values: Mapping[Quantity, float]) -> ForcedBeam:
+        """The beam with its inertial forces under given values of the quantities, kept for the next call."""
         key = tuple(values.items())
         if key not in self._known:
-            each = (self.inertial_forces(quantity).scaled(value) for quantity, value in key)
-            self._known[key] = _Loaded(self.bent, StationForces.total(each))
+            root = np.array([values.get(quantity, 0.0) for quantity in _ROOT])
+            turning = values.get("speed_squared", 0.0), values.get("acceleration", 0.0)
+            self._known[key] = self.bent.under(self.bent.masses.carried(self.of.axis, *turning, root))
         return self._known[key]
 
     @cached_property
-    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], _Loaded]:
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], ForcedBeam]:
         return {}
+
+    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Generalized inertial force (n,) under given values of the quantities."""
+        return self.under(values).work
+
+    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
+        """Derivative (n, n) of `inertia` by the coordinates."""
+        return self.under(values).work_change
+
+    def inertia_of(self, quantity: Quantity) -> np.ndarray:
+        """Generalized inertial force (n,) per unit of a quantity."""
+        return self.inertia({quantity: 1.0})
 
     def stiffness_of(self, quantity: Quantity) -> np.ndarray:
         """Derivative (n, n) of `inertia_of` by the coordinates."""
-        return self.bent.work_change(self.inertial_forces(quantity))
+        return self.inertia_change({quantity: 1.0})
+
+    def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
+        """Residual (..., n) of the equations of motion, for rates and accelerations of the shape of q."""
+        return MovingBeam(self.bent, rates, Carrier.of_root(self.of.axis, root)).residual(accelerations)
+
+    @property
+    def q(self) -> np.ndarray:
+        """Coordinates (..., n)."""
+        return self.bent.q
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Mass matrix (n, n)."""
+        return self.bent.mass
+
+    @cached_property
+    def gyroscopic(self) -> np.ndarray:
+        """Gyroscopic matrix per speed (n, n)."""
+        euler = self.stiffness_of("acceleration")
+        return euler - euler.T
 
     def linearized(self) -> Equations:
         """Equations of small motions about this state, the elastic force of which is among the loads."""
         linear, beam = self.of.linear, self.of.beam
-        euler = self.stiffness_of("acceleration")
         terms = [
             *self._terms("mass", self.bent.mass, 2),
-            *self._terms("Coriolis coupling", euler - euler.T, 1, "speed"),
+            *self._terms("Coriolis coupling", self.gyroscopic, 1, "speed"),
             *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
         ]
         loads = [*self._loads("elastic force", beam.stiffness @ self.bent.q, "unity")]
         for quantity in self.of.quantities:
-            change = euler if quantity == "acceleration" else self.stiffness_of(quantity)
-            terms += self._terms(f"stiffness by {quantity}", change, 0, quantity)
+            terms += self._terms(f"stiffness by {quantity}", self.stiffness_of(quantity), 0, quantity)
             loads += self._loads(f"load by {quantity}", self.inertia_of(quantity), quantity)
         shapes, deflections = {}, {}
         for name, place in linear.blocks.items():
@@ -332,24 +355,6 @@ class BentState(FieldsOnly):
         none = np.zeros(place.stop - place.start)
         functions = DeflectedFunctions(self.bent, place, direction)
         return Deflection(functions, by_root[place], by_turning[place], none, direction)
-
-
-@dataclass(frozen=True)
-class _Loaded(FieldsOnly):
-    """A bent beam with forces on its stations."""
-
-    bent: BentBeam
-    forces: StationForces
-
-    @cached_property
-    def work(self) -> np.ndarray:
-        """Virtual work (n,)."""
-        return self.bent.work(self.forces.force)
-
-    @cached_property
-    def change(self) -> np.ndarray:
-        """Derivative (n, n) of the virtual work."""
-        return self.bent.work_change(self.forces)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ N + 1 + k stations; the rotation of a point mass is not counted, and taken as 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -128,16 +127,6 @@ class StationForces:
     force: np.ndarray
     tangent: np.ndarray
 
-    @classmethod
-    def total(cls, each: Iterable[StationForces]) -> StationForces:
-        """The sum of some forces."""
-        several = [*each]
-        return cls(*(np.sum([getattr(f, name) for f in several], axis=0) for name in ("force", "tangent")))
-
-    def scaled(self, factor: float) -> StationForces:
-        """The forces times a factor."""
-        return StationForces(factor * self.force, factor * self.tangent)
-
 
 @dataclass(frozen=True)
 class MassesInSpace:
@@ -162,51 +151,70 @@ class MassesInSpace:
     inertia: np.ndarray
 
     @cached_property
+    def has_levers(self) -> bool:
+        """Whether any centre of mass lies off the axis."""
+        return bool(self.lever.any())
+
+    @cached_property
+    def turns(self) -> bool:
+        """Whether any mass has a tensor of inertia."""
+        return bool(self.inertia.any())
+
+    @cached_property
     def matrix(self) -> np.ndarray:
         """Mass matrices (6, 6, N + 1 + k)."""
         return self._of_centre(np.eye(3), self.inertia)
 
     def centrifugal(self, axis: np.ndarray) -> StationForces:
         """Inertial forces per squared speed of a rotation about a unit axis (3,), and their derivatives."""
-        A = skew(axis)
-        return self._accelerated(A @ A, A[:, :, None], self._momentum(axis), axis)
+        return self.carried(axis, speed_squared=1.0)
 
     def euler(self, axis: np.ndarray) -> StationForces:
         """Inertial forces per angular acceleration about an axis (3,), and their derivatives."""
-        return self._accelerated(skew(axis), np.eye(3)[..., None], self._momentum(axis), axis)
+        return self.carried(axis, acceleration=1.0)
 
     def translated(self, direction: np.ndarray) -> StationForces:
         """Inertial forces per acceleration of the root in a direction (3,), and their derivatives."""
-        tangent = np.zeros((6, 6, len(self.mass)))
-        return self._with_levers(self.mass * direction[:, None], tangent)
+        return self.carried(np.zeros(3), root=direction)
 
-    def _momentum(self, axis: np.ndarray) -> np.ndarray:
-        """Angular momentum about the centres per speed (3, N + 1 + k)."""
-        return np.einsum("abj,b->aj", self.inertia, axis)
-
-    def _accelerated(
-        self, A: np.ndarray, of_momentum: np.ndarray, momentum: np.ndarray, axis: np.ndarray
+    def carried(
+        self,
+        axis: np.ndarray,
+        speed_squared: float = 0.0,
+        acceleration: float = 0.0,
+        root: np.ndarray = np.zeros(3),  # noqa: B008  (it is not changed)
     ) -> StationForces:
-        """Inertial forces m A c and moments `of_momentum` (I a), and their derivatives."""
-        turned = np.einsum("abj,bc->acj", self.inertia, skew(axis)) - skew(momentum)  # d(I a) by W
-        rate = np.broadcast_to(of_momentum, turned.shape)
-        tangent = self._of_centre(A, np.einsum("abj,bcj->acj", rate, turned))
-        forces = self._with_levers(self.mass * (A @ self.centre), tangent)
-        forces.force[3:] += np.einsum("abj,bj->aj", rate, momentum)
+        """Inertial forces by a carrier that turns about an axis (3,) and moves the root, and derivatives.
+
+        With B = speed_squared axis x + acceleration, masses are accelerated by B (axis x c) and the root's
+        acceleration (3,), and the angular momentum I axis about their centres changes by B (I axis).
+        """
+        about = skew(axis)
+        B = speed_squared * about + acceleration * np.eye(3)
+        A, momentum, turning = B @ about, None, np.zeros((3, 3, 1))
+        if self.turns:
+            momentum = np.einsum("abj,b->aj", self.inertia, axis)
+            change = np.einsum("abj,bc->acj", self.inertia, about) - skew(momentum)  # d(I axis) by W
+            turning = np.tensordot(B, change, 1)
+        tangent = self._of_centre(A, turning)
+        forces = self._with_levers(self.mass * (A @ self.centre + root[:, None]), tangent)
+        if momentum is not None:
+            forces.force[3:] += B @ momentum
         return forces
 
     def _with_levers(self, F: np.ndarray, tangent: np.ndarray) -> StationForces:
         """Forces at the centres, with their moments about the axis, which change as the levers turn."""
-        if self.lever.any():
+        if self.has_levers:
             tangent[3:, 3:] += np.einsum("abj,bcj->acj", skew(F), skew(self.lever))
-        return StationForces(np.concatenate([F, cross(self.lever, F)]), tangent)
+        moments = cross(self.lever, F) if self.has_levers else np.zeros_like(F)
+        return StationForces(np.concatenate([F, moments]), tangent)
 
     def _of_centre(self, A: np.ndarray, turning: np.ndarray) -> np.ndarray:
         """Matrices (6, 6, N + 1 + k) of forces m A (displacement of the centre) and moments turning W."""
         matrix = np.zeros((6, 6, len(self.mass)))
         matrix[:3, :3] = A[..., None] * self.mass
         matrix[3:, 3:] = turning
-        if self.lever.any():
+        if self.has_levers:
             levers = skew(self.lever)
             by_turning = -np.einsum("abj,bcj->acj", matrix[:3, :3], levers)
             matrix[:3, 3:] = by_turning

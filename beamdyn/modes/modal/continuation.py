@@ -109,20 +109,20 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
     NotConverged
         If the curve cannot be followed further.
     """
-    point, step = start, _FIRST
+    point, step, before = start, _FIRST, count_negative(problem, start.q, start.p)
     while True:
         try:
             following, iterations = advance(problem, point, step)
             # Stability that changes otherwise than by a turning point is that of another curve.
-            changed = abs(count_negative(problem, following) - count_negative(problem, point))
-            if changed != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
+            stability = count_negative(problem, following.q, following.p)
+            if abs(stability - before) != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
                 raise NotConverged
         except NotConverged:
             step /= 4
             if step < _SHORTEST:
                 raise
             continue
-        point = following
+        point, before = following, stability
         yield point
         # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
         by_angles, by_parameter = _metric(problem, point.q_rate, 0.0), 1 / (1 + abs(point.p) / problem.scale)
@@ -130,9 +130,9 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
         step = min(most, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
 
 
-def count_negative(problem: Problem, point: Point) -> int:
-    """Number of negative eigenvalues of the symmetric Jacobian at a point: 0 where it is stable."""
-    return int((np.linalg.eigvalsh(problem.jacobian(point.q, point.p)) < 0).sum())
+def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:
+    """Number of negative eigenvalues of the symmetric Jacobian at a solution: 0 where it is stable."""
+    return int((np.linalg.eigvalsh(problem.jacobian(q, p)) < 0).sum())
 
 
 def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:

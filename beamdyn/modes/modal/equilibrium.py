@@ -11,15 +11,16 @@ from typing import Literal
 import numpy as np
 
 from beamdyn.equations.beam_in_space.rotating_beam import BentState, RotatingBeam
-from beamdyn.equations.elastica import DeflectedState, Elastica
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.modes.modal.continuation import (
     NotConverged,
     Point,
+    count_negative,
     find_at,
     find_turning_point,
     follow,
+    solve_at,
     start_curve,
 )
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver
@@ -27,6 +28,7 @@ from beamdyn.scene.motion import MotionSample
 
 Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles below which two equilibria are one [rad]
+_NEAR = 0.01  # difference of slope angles by which that of a coarse discretization may differ [rad]
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
 
 _FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
@@ -48,7 +50,7 @@ class SteadyLoad:
 
     Parameters
     ----------
-    elastica : Elastica or RotatingBeam
+    elastica : RotatingBeam
         Equations of motion.
     scale : float
         Squared speed at which rotation matters [rad2/s2].
@@ -56,7 +58,7 @@ class SteadyLoad:
         Further transverse acceleration of the root per squared speed [m].
     """
 
-    elastica: Elastica | RotatingBeam
+    elastica: RotatingBeam
     scale: float
     push: float = 0.0
 
@@ -83,7 +85,7 @@ class SteadyLoad:
         """Whether rotation loads the straight beam otherwise than along it."""
         return bool(self.load(self.elastica.at(np.zeros(self.elastica.size))).any())
 
-    def load(self, state: DeflectedState | BentState) -> np.ndarray:
+    def load(self, state: BentState) -> np.ndarray:
         """Inertial force (n,) per squared speed."""
         return state.inertia(self._values)
 
@@ -248,18 +250,24 @@ class DeflectedSolver(Eigensolver):
 
     Parameters
     ----------
-    elastica : Elastica or RotatingBeam
+    elastica : RotatingBeam
         Equations of motion.
     branch : {"straight", "bent"}
         Equilibria that are meant: those that follow from rest, or those beside them.
+    guide : DeflectedSolver, optional
+        Solver of another discretization, near whose equilibria these are sought first.
     """
 
-    def __init__(self, elastica: Elastica | RotatingBeam, branch: Branch) -> None:
+    def __init__(self, elastica: RotatingBeam, branch: Branch, guide: DeflectedSolver | None = None) -> None:
         super().__init__(elastica.about_straight.steady())  # about the straight beam
-        self.elastica, self.branch = elastica, branch
+        self.elastica, self.branch, self.guide = elastica, branch, guide
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
         self._solved: dict[tuple[float, int], Eigen] = {}
+
+    def guiding(self, elastica: RotatingBeam) -> DeflectedSolver:
+        """Solver of another discretization, whose equilibria are sought near these."""
+        return DeflectedSolver(elastica, self.branch, guide=self)
 
     @property
     def conservative(self) -> bool:
@@ -316,11 +324,15 @@ class DeflectedSolver(Eigensolver):
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
         """Deflection of the tip across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
-        return (self.elastica.tip(self.equilibria(speeds)) - self.elastica.tip(np.zeros(self.size)))[:, 1:]
+        moved = self.elastica.tip(self.equilibria(speeds)) - self.elastica.tip(np.zeros(self.size))
+        return moved[:, 1:2] if self.elastica.beam.is_planar else moved[:, 1:]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
         """Coordinates (S, n) in equilibrium at each speed, each computed once."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
+        if self.guide is not None and len(missing):
+            self._found |= self._find_near(self.guide, missing)
+            missing = np.array([v for v in missing if v not in self._found])
         if len(missing):
             if not self._found and self.branch == "straight":
                 self._found[0.0] = np.zeros(self.size)
@@ -331,3 +343,15 @@ class DeflectedSolver(Eigensolver):
             followed = follow_to(self.load, missing, self._found[start], start)
             self._found.update(zip(missing.tolist(), followed, strict=True))
         return np.array([self._found[abs(v)] for v in speeds])
+
+    def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> dict[float, np.ndarray]:
+        """Equilibria near those of another discretization, and as stable, at speeds where there are any."""
+        found: dict[float, np.ndarray] = {}
+        for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
+            near = self.elastica.nearest(guide.elastica, of_guide)
+            with suppress(NotConverged):
+                q = solve_at(self.load, near, v**2)
+                stable = (count_negative(s.load, x, v**2) for s, x in ((self, q), (guide, of_guide)))
+                if np.abs((q - near) @ self.load.angles).max() < _NEAR and len({*stable}) == 1:
+                    found[v] = q
+        return found

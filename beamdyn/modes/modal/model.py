@@ -19,7 +19,6 @@ from beamdyn.scene.scene import Scene
 
 if TYPE_CHECKING:
     from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
-    from beamdyn.equations.elastica import Elastica
     from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from collections.abc import Iterator
 
@@ -65,24 +64,11 @@ class Model(FieldsOnly):
         """Solver of equations for deflections of any size."""
         from beamdyn.modes.modal.equilibrium import DeflectedSolver  # few scenes need it
 
-        bent = self.in_space or self.elastica
-        assert bent is not None
-        return DeflectedSolver(bent, self.scene.physics.branch)
+        return DeflectedSolver(self.bent, self.scene.physics.branch)
 
     @cached_property
-    def elastica(self) -> Elastica | None:
-        """Equations of motion for deflections of any size in one plane; None where they are others."""
-        if not self.scene.physics.large_deflection or self.scene.bends_in_space:
-            return None
-        from beamdyn.equations.elastica import assemble_elastica  # few scenes need it
-
-        return assemble_elastica(self.scene, self.discretization, self.equations)
-
-    @cached_property
-    def in_space(self) -> RotatingBeam | None:
-        """Equations of motion for deflections of any size in space; None where they are others."""
-        if not self.scene.bends_in_space:
-            return None
+    def bent(self) -> RotatingBeam:
+        """Equations of motion for deflections of any size, of a scene that has them."""
         # Few scenes need it.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
@@ -91,7 +77,9 @@ class Model(FieldsOnly):
     @cached_property
     def coarse_solver(self) -> Eigensolver:
         """Solver of the coarser model: where functions of this one span its own, over these."""
-        if self.scene.physics.large_deflection or self.equations.coarse is None:
+        if self.scene.physics.large_deflection:
+            return self._deflected.guiding(self.coarser.bent)
+        if self.equations.coarse is None:
             return self.coarser.solver
         return solver_of(self.equations, self.equations.coarse)
 
