@@ -1,24 +1,28 @@
 """Accuracy and speed of the brakes.  Run: python -m benchmarks.brakes
 
-Random mechanisms, duo-servo brakes and trucks, and strokes of the eeBrake.
+Random mechanisms, duo-servo brakes and trucks, strokes of the eeBrake, designs from pedal to heat, and
+questions backwards (--scenes N: fewer of them; --save FILE keeps them, and goes on where a run stopped).
 """
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator
+from functools import partial
 from time import perf_counter
 
 import numpy as np
 
 from benchmarks.cases import mechanisms
-from benchmarks.cases.random_questions import questions
+from benchmarks.cases.random_questions import Outcome, measure
+from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, best_time, show
 from brakes import calipers, chain, forklift
 from brakes.forklift import Levers, Truck, internal_forces
 from brakes.planar import solve, stroke
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
-DESIGNS, QUESTIONS = 100_000, 1000
+DESIGNS, QUESTIONS, SEED = 100_000, 1000, 34
 
 
 def check_planar() -> Iterator[Row]:
@@ -108,12 +112,14 @@ def draw_stops(rng: np.random.Generator, count: int) -> tuple[Truck, forklift.St
     return truck, conditions
 
 
-def check_backwards() -> Iterator[Row]:
+def check_backwards(given: argparse.Namespace | None = None) -> Iterator[Row]:
     """Random brakes and vehicles forwards, and backwards from one result to one input."""
-    asked = [*questions(QUESTIONS)]
+    seed = given.seed if given else SEED
+    cases = Cases(partial(measure, seed=seed), Outcome)
+    asked = cases.run(given) if given else cases.measure_all(range(QUESTIONS))
     worst = max(each.residual for each in asked)
     yield (
-        f"{QUESTIONS} random vehicles and brakes backwards: largest relative residual",
+        f"{len(asked)} random vehicles and brakes backwards: largest relative residual",
         f"{worst:.1e}",
         "1e-10",
     )
@@ -122,7 +128,7 @@ def check_backwards() -> Iterator[Row]:
         f"{max(q.distance for q in asked):.1e}",
         "1e-10",
     )
-    several = sum(len(each.found.values) > 1 for each in asked)
+    several = sum(each.answers > 1 for each in asked)
     yield "... questions with more than one answer", str(several), ""
 
 
@@ -137,7 +143,9 @@ PARTS = check_planar, check_duo_servo, check_chain, check_backwards
 
 
 def main() -> None:
-    show("brakes", *PARTS)
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, QUESTIONS, SEED)
+    show("brakes", *PARTS[:-1], partial(check_backwards, parser.parse_args()))
 
 
 if __name__ == "__main__":

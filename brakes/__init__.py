@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 from beamdyn.common.results.shown_by import SHOWN_BY
 
 if TYPE_CHECKING:
-    from brakes.common.finding import find
-    from brakes.common.solutions import Solutions
+    from brakes.common.finding import find, find_whole
+    from brakes.common.solutions import Solutions, WholeSolutions
 
-__all__ = ["Solutions", "find"]
+__all__ = ["Solutions", "WholeSolutions", "find", "find_whole"]
 
 SHOWN_BY["brakes"] = "brakes.views"
-_MODULES = {"find": "finding", "Solutions": "solutions"}
+_MODULES = {each: "solutions" if each.endswith("Solutions") else "finding" for each in __all__}
 
 
 def __getattr__(name: str) -> Any:

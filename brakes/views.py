@@ -5,6 +5,7 @@ Those of the mechanics are shown by their fields.
 
 from __future__ import annotations
 
+import numpy as np
 from rich.console import Group
 
 from beamdyn.common.edge.input_sweep import sweep_csv
@@ -31,15 +32,19 @@ def _solution_tables(found: Solutions) -> Group:
     gaps = ([f"{gap.start:.6g}", f"{gap.end:.6g}", "none", "-", "-"] for gap in found.gaps)
     title = f"Course of {heads[1]} over {heads[0]}, by {len(found.samples)} samples"
     rows = sorted((*courses, *gaps), key=lambda row: float(row[0]))
-    more = found.lacking if found.values.size else ()
+    more = found.lacking if found.there else ()
     return Group(found.message, table(title, columns, rows, (2,), 2), *more)
 
 
 def _solution_columns(found: Solutions) -> Columns:
-    """The solutions, and what is left at each of the difference to the wanted value."""
+    """The solutions, from and to, and what is left at each of the difference to the wanted value."""
     name = found.input.replace(".", "_")
+    ends = np.concatenate([np.stack([found.values] * 2, axis=-1), found.ranges])
+    residuals = np.append(found.residuals, np.zeros(len(found.ranges)))
     return Columns(
-        Column(name, found.values, found.unit), Column("residual", found.residuals, found.output_unit)
+        Column(name, ends[:, 0], found.unit),
+        Column(f"{name}_to", ends[:, 1], found.unit),
+        Column("residual", residuals, found.output_unit),
     )
 
 

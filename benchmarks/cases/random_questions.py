@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,18 +57,33 @@ class Asked(NamedTuple):
     @property
     def distance(self) -> float:
         """Relative difference of the known value from the nearest that is found; inf if none is."""
-        return float(np.min(np.abs(self.found.values / self.value - 1), initial=np.inf))
+        within = np.clip(self.value, *self.found.ranges.T)
+        return float(np.min(np.abs(np.append(self.found.values, within) / self.value - 1), initial=np.inf))
 
 
-def questions(count: int, seed: int = 34, names: Sequence[str] = tuple(TYPES)) -> Iterator[Asked]:
-    """Draw questions, as many of each of the types of brakes with these names."""
-    rng, made = np.random.default_rng(seed), 0
-    while made < count:
-        name = names[made % len(names)]
-        asked = _question(TYPES[name], name, rng)
-        if asked is not None:
-            made += 1
-            yield asked
+@dataclass(frozen=True)
+class Outcome:
+    """What the question with a number gave, as plain numbers."""
+
+    number: int
+    what: str
+    residual: float
+    distance: float
+    answers: int
+
+
+def measure(number: int, seed: int) -> list[Outcome]:
+    """The outcome of the question with a number."""
+    asked = draw(number, seed)
+    answers = len(asked.found.values) + len(asked.found.ranges)
+    return [Outcome(number, asked.what, asked.residual, asked.distance, answers)]
+
+
+def draw(number: int, seed: int, names: Sequence[str] = tuple(TYPES)) -> Asked:
+    """Draw the question with a number: of each of the types of brakes with these names in turn."""
+    name = names[number % len(names)]
+    tries = (_question(TYPES[name], name, np.random.default_rng([seed, number, k])) for k in count())
+    return next(asked for asked in tries if asked is not None)
 
 
 def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
@@ -93,6 +110,6 @@ def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Ask
     low, high = (repr(float(end)) for end in bounds)
     sought = f"{entry.path}={low}:{high}:33 {entry.quantity.unit}"
     found = find_in_file(brake, tables, name, sought, f"{output.name} = {target!r} {output.unit}")
-    if any(piece.course == "is level" for piece in found.pieces):
+    if [piece.course for piece in found.pieces] == ["is level"]:
         return None
     return Asked(f"{name}: {entry.path} for {output.name}", value, found)

@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import MOST_ONE_BY_ONE, Output, chosen
-from beamdyn.common.edge.inputs import Quantity, SlopeQuantity, WholeNumber
+from beamdyn.common.edge.inputs import Quantity, SlopeQuantity
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.edge.varied_inputs import Axis, find_input, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
@@ -21,7 +21,7 @@ from beamdyn.common.results.result import Provenance
 from brakes.answers.base import ERROR, BrakeType, SweepRequest
 from brakes.answers.spread import nominal_of
 from brakes.answers.tables import SCALES
-from brakes.common.finding import find
+from brakes.common.finding import find, find_whole
 from brakes.common.solutions import Solutions
 
 FIND, SO_THAT = "--find", "--so-that"
@@ -63,8 +63,12 @@ def find_in_file(
     output, target = _wanted(brake.outputs(design), so_that)
     axis = _axis(brake, design, tables, input)
     answers = _Designs(brake, SweepRequest(design, tables, (), "zip", None), axis, output)
-    found = find(answers, target, np.unique(axis.given), answers.reason)
-    how = "samples doubled until the pieces stay the same; roots by algorithm 748"
+    if axis.input.quantity.whole:
+        how = "each whole number is tried"
+        found = find_whole(answers, target, _whole_numbers(brake, axis), answers.reason)
+    else:
+        how = "samples doubled until the pieces stay the same; roots by algorithm 748"
+        found = find(answers, target, np.unique(axis.given), answers.reason)
     return replace(
         found,
         input=axis.input.path,
@@ -132,14 +136,20 @@ def _amount(text: str, unit: str) -> float:
     return Quantity(unit).convert(text if unit else float(text))
 
 
+def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
+    """All whole numbers between the bounds of the search."""
+    low, high = np.ceil(min(axis.given)), np.floor(max(axis.given))
+    if high - low >= brake.most_cases:
+        bound = f"there are more than {brake.most_cases} whole numbers from {low:.6g} to {high:.6g}"
+        raise InvalidValue(FIND, axis.input.path, bound, f'give bounds, such as "{axis.input.path}=1:10:10"')
+    return np.arange(low, high + 1)
+
+
 def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
     """The input that is sought, and where the search begins: as given, or about its value in the file."""
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)
-    if isinstance(entry.quantity, WholeNumber):
-        remedy = f'try each, such as --vary "{entry.path}=1:10:10"'
-        raise InvalidValue(FIND, entry.path, "it is a whole number", remedy)
     if "=" in text:
         return parse_axis(inputs, text, FIND)
     if not value:

@@ -48,7 +48,9 @@ class HydraulicLine:
 
     master_bore: Annotated[Numbers, Described("m", "d_m", "bore of the master cylinder", above=0)]
     cylinder_bore: Annotated[Numbers, Described("m", "d_w", "bore of the wheel cylinders", above=0)]
-    pistons: Annotated[Numbers, Described("", "n", "pistons of all wheel cylinders", least=1)] = 4.0
+    pistons: Annotated[Numbers, Described("", "n", "pistons of all wheel cylinders", least=1, whole=True)] = (
+        4.0
+    )
     piston_travel: Annotated[
         Numbers, Described("m", "s_w", "travel of each of them until the linings press", least=0)
     ] = 0.0

@@ -59,7 +59,8 @@ class FindOptions:
     ----------
     find : str, optional
         An input whose values are sought, such as "brake.friction", from a tenth to ten times its value in the
-        file; or from bounds and a number of samples to others, such as "brake.friction=0.1:0.6:51".
+        file; or from bounds and a number of samples to others, such as "brake.friction=0.1:0.6:51"; of what
+        is counted, every whole number between is tried.
     so_that : str, optional
         The result that they are to give, such as "torque = 300 N m"; a wrong name lists all.
     """
@@ -215,7 +216,7 @@ def _answer_many(
 
     if asked.finding.find and asked.finding.so_that:
         made = find_in_file(brake, tables, file, asked.finding.find, asked.finding.so_that)
-        return made, made.warnings, "" if made.values.size else made.message
+        return made, made.warnings, "" if made.there else made.message
     varying, spreading = asked.varying, asked.spreading
     with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)

@@ -22,13 +22,13 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import solve_possible
 from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
-from brakes.common.solutions import Gap, Piece, Solutions, step
+from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps
 _SURE = 1e-13  # relative difference from the wanted value that is rounding
 _JUMP = 1e-6  # part of a bracket's height that the answer at a root of a continuous function has not left
 _TURN = 1e-9  # relative width of the place of a turning point: its height is known to the square
-_EDGE = 1e-13  # relative width of the place past which there is no answer
+_EDGE = 1e-13  # relative width of the place past which there is no answer, or where it becomes level
 _PARTS, _FEW_PARTS = 16, 4  # into which such a place is divided when it is sampled again
 _DOUBLED = 4  # times at most that the samples are doubled
 
@@ -81,17 +81,74 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
     (x, y), settled = _settle(answers, x)
     runs = [*_runs(answers, x, y)]
     pieces = [piece for run in runs for piece in _pieces(answers, run)]
-    values, jumps = _solve(answers, pieces, target)
+    ranges = _level(pieces, target)
+    values, jumps = _solve(answers, pieces, ranges, target)
     return Solutions(
         target=target,
         values=values,
+        ranges=ranges,
         residuals=answers(values) - target,
-        pieces=tuple(Piece(*map(float, (x[0], x[-1], y[0], y[-1]))) for x, y in pieces),
+        pieces=tuple(map(_piece, pieces)),
         gaps=tuple(_gaps(answers, x, runs)),
         jumps=jumps,
         samples=x,
         answers=y,
         settled=settled,
+    )
+
+
+def find_whole(
+    answer: Answer, target: float, samples: Any, why: Callable[[float], str] | None = None
+) -> WholeSolutions:
+    """Find all of some whole numbers at which an answer has a wanted value, or has just passed it.
+
+    Parameters
+    ----------
+    answer, target, why
+        As for `find`.
+    samples : array_like, shape (n,)
+        The numbers, in ascending order; each is tried.
+
+    Returns
+    -------
+    WholeSolutions
+        The numbers, or why there is none; names and units are added by ``dataclasses.replace``.
+
+    Raises
+    ------
+    ValueError
+        If the samples are not in ascending order.
+
+    References
+    ----------
+    Standard (trial of each number).
+
+    Examples
+    --------
+    >>> def torque(faces):
+    ...     plates = machines.Plates(0.05, 0.07, faces)
+    ...     return machines.solve_brake(plates, friction=0.1, force=1000.0).torque
+    >>> brakes.find_whole(torque, 50.0, range(1, 21)).values
+    array([9.])
+    """
+    function("answer", answer)
+    target, x = real("target", target), ascending("samples", samples)
+    answers = _Answers(answer, why)
+    y = answers(x)
+    past = np.where(step(y, target) == 0, 0.0, y - target)
+    passes = np.append(False, past[:-1] * past[1:] < 0)
+    runs = [_run_as_it_is(x, y, run) for run in _finite(y)]
+    return WholeSolutions(
+        target=target,
+        values=x[(past == 0) | passes],
+        ranges=np.empty((0, 2)),
+        residuals=past[(past == 0) | passes],
+        pieces=tuple(each for run in runs for each in _courses_as_they_are(run)),
+        gaps=tuple(_gaps(answers, x, runs)),
+        jumps=np.array([]),
+        samples=x,
+        answers=y,
+        settled=True,
     )
 
 
@@ -105,6 +162,10 @@ class _Answers:
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """Answers to inputs (n,)."""
         return self._with_refusals(x)[0]
+
+    def there(self, x: np.ndarray) -> np.ndarray:
+        """Whether inputs (n,) have answers."""
+        return np.isfinite(self(x))
 
     def why(self, x: float) -> str:
         """Why there is no answer at an input."""
@@ -171,25 +232,43 @@ def _courses_of_run(y: np.ndarray) -> list[tuple[float, int]]:
     return [(sign, places[-1] + 1) for sign, places in each]
 
 
+def _courses_as_they_are(run: _Run) -> Iterator[Piece]:
+    """Pieces of a run of whole numbers."""
+    cuts = [0, *(last for _, last in _courses_of_run(run.y))] + [0] * (len(run.x) == 1)
+    for i, j in pairwise(cuts):
+        yield _piece((run.x[i : j + 1], run.y[i : j + 1]))
+
+
+def _piece(curve: Curve) -> Piece:
+    x, y = curve
+    return Piece(*map(float, (x[0], x[-1], y[0], y[-1])))
+
+
+def _run_as_it_is(x: np.ndarray, y: np.ndarray, run: slice) -> _Run:
+    """A run of whole numbers: its ends are known."""
+    before = float(x[run.start - 1]) if run.start else None
+    after = float(x[run.stop]) if run.stop < len(x) else None
+    return _Run(x[run], y[run], before, after)
+
+
 def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
     """Runs of inputs that have answers, each as far as it goes."""
     for run in _finite(y):
         first, last = run.start, run.stop - 1
-        low = _edge(answers, float(x[first]), float(x[first - 1])) if first > 0 else (x[first], None)
-        high = _edge(answers, float(x[last]), float(x[last + 1])) if last + 1 < len(x) else (x[last], None)
+        low = _edge(answers.there, x[first], x[first - 1]) if first > 0 else (x[first], None)
+        high = _edge(answers.there, x[last], x[last + 1]) if last + 1 < len(x) else (x[last], None)
         edges = np.array([low[0], high[0]])
         yield _Run(*_joined(x[run], y[run], edges, answers(edges)), low[1], high[1])
 
 
-def _edge(answers: _Answers, inside: float, outside: float) -> tuple[float, float]:
-    """The last input with an answer, and the next one without, on the way from one to the other."""
+def _edge(holds: Callable[[np.ndarray], Any], inside: Any, outside: Any) -> tuple[float, float]:
+    """The last input at which something holds, and the next one, on the way from one to the other."""
     width = _EDGE * max(abs(inside), abs(outside))
     while abs(outside - inside) > width:
         grid = np.linspace(inside, outside, _FEW_PARTS + 1)
-        there = [True, *np.isfinite(answers(grid[1:-1])), False]
-        k = there.index(False)
-        inside, outside = float(grid[k - 1]), float(grid[k])
-    return inside, outside
+        k = [True, *holds(grid[1:-1]), False].index(False)
+        inside, outside = grid[k - 1], grid[k]
+    return float(inside), float(outside)
 
 
 def _gaps(answers: _Answers, x: np.ndarray, runs: Sequence[_Run]) -> Iterator[Gap]:
@@ -205,12 +284,19 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
     """The run, cut at its turning points and where it becomes level."""
     x, y = run.x, run.y
     cuts = [
-        _turn(answers, x[last - 1], x[last + 1], sign) if sign * following < 0 else float(x[last])
+        _turn(answers, x[last - 1], x[last + 1], sign)
+        if sign * following < 0
+        else _level_edge(answers, y[last], x[last], x[last - 1 if sign else last + 1])
         for (sign, last), (following, _) in pairwise(_courses_of_run(y))
     ]
     x, y = _joined(x, y, cuts, answers(np.array(cuts)))
     places = np.searchsorted(x, np.unique([x[0], *cuts, x[-1]]))
     yield from ((x[i : j + 1], y[i : j + 1]) for i, j in pairwise(places.tolist()))
+
+
+def _level_edge(answers: _Answers, level: float, inside: float, outside: float) -> float:
+    """Where answers that are level begin or cease to be so."""
+    return _edge(lambda x: step(level, answers(x)) == 0, inside, outside)[0]
 
 
 def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
@@ -226,8 +312,16 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 # Solutions -----------------------------------------------------------------------------------------------
 
 
-def _solve(answers: _Answers, pieces: Sequence[Curve], target: float) -> tuple[np.ndarray, np.ndarray]:
-    """Inputs that give the wanted value, and those at which the answer jumps past it."""
+def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:
+    """Ranges of inputs (r, 2) over which the answer is the wanted value."""
+    ends = [x[[0, -1]] for x, y in pieces if step(y[0], y[-1]) == 0 == step(y[0], target)]
+    return np.array(ends).reshape(-1, 2)
+
+
+def _solve(
+    answers: _Answers, pieces: Sequence[Curve], ranges: np.ndarray, target: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs outside of ranges that give the wanted value, and those at which the answer jumps past it."""
     found, jumps = list[float](), list[float]()
     for x, y in pieces:
         past = y - target
@@ -239,7 +333,9 @@ def _solve(answers: _Answers, pieces: Sequence[Curve], target: float) -> tuple[n
             )
             (jumps if jumped else found).append(root)
         found += ends
-    return np.unique(found), np.unique(jumps)
+    alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)  # to which the ends of ranges are known
+    low, high = (ranges + near * np.array([-1, 1])).T[..., None]
+    return alone[~np.any((alone >= low) & (alone <= high), axis=0)], np.unique(jumps)
 
 
 def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:

@@ -91,7 +91,7 @@ class Duty:
     load_torque: Annotated[
         Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
     ] = 0.0
-    stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000)] = 1.0
+    stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
         0.0
     )
@@ -114,8 +114,6 @@ class Duty:
         keep_checked(self)
         given = vars(self).items()
         together(**{name: x for name, x in given if x is not None and name != "friction_curve"})
-        stops = np.asarray(self.stops)
-        refuse(stops != np.round(stops), "stops", stops, "", "give a whole number")
         if self.friction_curve is not None:
             curve = np.asarray(self.friction_curve)
             self._check(curve)

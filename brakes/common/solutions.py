@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn.common.results.one_line import listed, number
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance, Result
 
 if TYPE_CHECKING:
@@ -73,6 +73,8 @@ class Solutions(Result):
         The wanted value [output_unit].
     values : ndarray, shape (k,)
         Inputs that give it [unit], in ascending order; empty if there are none.
+    ranges : ndarray, shape (r, 2)
+        Ranges of inputs that all give it [unit], where the answer is level; `values` are outside of them.
     residuals : ndarray, shape (k,)
         Answers there, less the wanted value [output_unit].
     pieces : tuple of Piece
@@ -101,6 +103,7 @@ class Solutions(Result):
 
     target: float
     values: np.ndarray
+    ranges: np.ndarray
     residuals: np.ndarray
     pieces: tuple[Piece, ...]
     gaps: tuple[Gap, ...]
@@ -117,7 +120,12 @@ class Solutions(Result):
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
         yield f"{self.output} {number(self.target, self.output_unit)}"
-        yield f"{self.input} {listed(self.values, self.unit)}" if self.values.size else "none"
+        yield self._where() if self.there else "none"
+
+    @property
+    def there(self) -> bool:
+        """Whether any input gives the wanted value."""
+        return bool(self.values.size + self.ranges.size)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -129,10 +137,16 @@ class Solutions(Result):
     def message(self) -> str:
         """The solutions, or "none" with its reason, in a sentence."""
         low, high = self.samples[[0, -1]]
-        if not self.values.size:
+        if not self.there:
             return f"none from {self._input(low)} to {self._input(high)}: {'; '.join(self._reasons())}"
-        where = " and ".join(self._input(each) for each in self.values)
-        return f"{self.output} = {self._output(self.target)} at {self.input} = {where}"
+        return f"{self.output} = {self._output(self.target)} at {self._where()}"
+
+    def _where(self) -> str:
+        """The inputs that give the wanted value."""
+        alone = f"{self.input} = {' and '.join(map(self._input, self.values))}"
+        ends = ([*map(self._input, span)] for span in self.ranges)
+        spans = (f"any {self.input} from {low} to {high}" for low, high in ends)
+        return " and at ".join((*[alone] * bool(self.values.size), *spans))
 
     @property
     def lacking(self) -> tuple[str, ...]:
@@ -180,3 +194,37 @@ class Solutions(Result):
     def named(self) -> tuple[tuple[str, str], tuple[str, str]]:
         """Names and units of input and answer."""
         return (self.input, self.unit), (self.output, self.output_unit)
+
+
+@dataclass(frozen=True)
+class WholeSolutions(Solutions):
+    """All whole numbers between two bounds at which an answer has a wanted value, or has just passed it.
+
+    Each number is tried. `values` are those whose answer is the wanted one; and where it lies between the
+    answers of two numbers side by side, the second of them, the least that meets it.
+
+    Examples
+    --------
+    >>> found = brakes.find_whole(lambda n: 87.5 * n, 300.0, range(1, 11))
+    >>> found.message
+    'answer passes 300 from input = 3 (262.5) to 4 (350): 4 is the least that meets it'
+    """
+
+    @property
+    def message(self) -> str:
+        """The numbers, or "none" with its reason, in a sentence."""
+        meets = self.residuals == 0
+        if meets.all():
+            return super().message
+        exact = replace(self, values=self.values[meets], residuals=self.residuals[meets])
+        said = [exact.message] if exact.there else []
+        return "; ".join((*said, *map(self._passing, self.values[~meets])))
+
+    def _passing(self, value: float) -> str:
+        """What the answer passes on the way to a number."""
+        k = int(np.searchsorted(self.samples, value))
+        (before, now), (first, last) = self.samples[k - 1 : k + 1], self.answers[k - 1 : k + 1]
+        steps = f"{self._input(before)} ({self._output(first)}) to {self._input(now)} ({self._output(last)})"
+        where = f"from {self.input} = {steps}"
+        least = f"{self._input(now)} is the least that meets it"
+        return f"{self.output} passes {self._output(self.target)} {where}: {least}"

@@ -178,14 +178,8 @@ class Plates(Ring):
     48.0
     """
 
-    faces: Annotated[Numbers, Described("", "n", "number of pairs of rubbing faces", least=1)]
+    faces: Annotated[Numbers, Described("", "n", "number of pairs of rubbing faces", least=1, whole=True)]
     pressure_law: Annotated[Literal["wear", "pressure"], Described(meaning=_LAW)] = "wear"
-
-    def check(self) -> None:
-        """Refuse an empty ring, and a number of faces that is not whole."""
-        super().check()
-        faces = np.asarray(self.faces)
-        refuse(faces != np.round(faces), "faces", faces, "", "give a whole number")
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
         """All plates together; see `Machine.linings`."""

@@ -57,7 +57,7 @@ def test_positions_of_a_stroke(points):
 
 def test_bounds_of_positions_stand_in_the_help():
     (points,) = [entry for entry in CALIPER.inputs({"caliper": "eebrake"}) if entry.path == "run.points"]
-    assert points.help == "positions of the stroke, at least 2, at most 2000"
+    assert points.help == "positions of the stroke, a whole number, at least 2, at most 2000"
 
 
 def test_pads_with_too_many_wears():

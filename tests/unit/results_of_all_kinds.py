@@ -164,6 +164,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "SteadyLoads": lambda: bd.steady_loads(made("SteadyResponse"), at=[0.0, 0.025]),
     "SteadyResponse": lambda: bd.steady_response(SHORT_SPIN_UP, np.linspace(45.0, 50.0, 5), 2),
     "Solutions": lambda: brakes.find(lambda x: x * (4 - x), 3.0, np.linspace(0.5, 5.0, 10)),
+    "WholeSolutions": lambda: brakes.find_whole(lambda n: 2.0 * n, 7.0, range(1, 6)),
     "Stop": lambda: forklift.stop(TRUCK, STOP),
     "StoppingDistance": lambda: stop(mass=80.0, speed=5.0, pad_force=1e3, friction=0.4),
     "Study": lambda: bd.study(HARVESTER, {"beam.thickness": [1e-4, 2e-4]}, speed=20.0),

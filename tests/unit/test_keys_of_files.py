@@ -19,7 +19,8 @@ def test_every_key_is_listed_with_its_unit(name, capsys, monkeypatch):
     for entry in brake.inputs({}):
         (first, *_) = [line.split() for line in out.splitlines() if line.split()[:1] == [entry.name]]
         assert first
-        assert not entry.quantity.unit or f"[{entry.quantity.unit}]" in out
+        unit = {"rad": "deg"}.get(entry.quantity.unit, entry.quantity.unit)
+        assert not unit or f"[{unit}]" in out
     assert "required" in out
 
 
@@ -37,3 +38,4 @@ def test_tables_that_may_be_left_out_are_said(capsys):
     out = capsys.readouterr().out
     assert "[lever], which may be left out" in out
     assert "[road]\n" in out
+    assert "slope of the road [deg], at least 0, at most 45 " in out  # as files give it

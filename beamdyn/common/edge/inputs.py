@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
 from importlib import import_module
 from typing import Any, ClassVar, Literal, get_args, get_origin
@@ -127,15 +127,19 @@ class SlopeQuantity(Quantity):
         return 100 * math.tan(value) if unit == "%" else super().in_unit(value, unit)
 
 
+@dataclass(frozen=True)
 class WholeNumber(Quantity):
-    """A whole number, such as how many of something."""
+    """A whole number, such as how many of something, that stays one."""
 
-    def convert(self, given: object) -> int:
-        """The number."""
-        value = super().convert(given)
-        if value != int(value):
-            raise InvalidInput("", given, "give a whole number")
-        return int(value)
+    _: KW_ONLY
+    whole: bool = True
+
+    def parse(self, given: object) -> int:
+        """Take the number and check the bounds; see `Quantity.parse`."""
+        return int(super().parse(given))
+
+
+_SHOWN = {"rad": "deg"}  # units that people read, by that in SI
 
 
 @dataclass(frozen=True)
@@ -175,10 +179,11 @@ class Input:
 
     @property
     def help(self) -> str:
-        """Meaning, unit, bounds and what inf stands for, in one phrase."""
+        """Meaning, unit, bounds and what inf stands for, in one phrase; angles in the degrees of files."""
         q = self.quantity
-        unit = q.unit and f" [{q.unit}]"
-        bounds = q.bounds and f", {q.bounds}"
+        shown = _SHOWN.get(q.unit, q.unit)
+        bounds = q.bounds if shown == q.unit else q.bounds_as(lambda bound: q.in_unit(bound, shown))
+        unit, bounds = shown and f" [{shown}]", bounds and f", {bounds}"
         infinite = q.infinite and f"; inf is {q.infinite}"
         return f"{q.meaning}{unit}{bounds}{infinite}"
 

@@ -39,6 +39,8 @@ class Described:
         Value where files leave it out, though the argument has no default.
     infinite : str
         What an infinite value stands for, such as "clamped"; where it is empty, none is allowed.
+    whole : bool
+        Whether it is a whole number.
     """
 
     unit: str = ""
@@ -54,6 +56,7 @@ class Described:
     required: bool = False
     default: object = None
     infinite: str = ""
+    whole: bool = False
 
     @property
     def bounds(self) -> str:
@@ -62,7 +65,8 @@ class Described:
 
     def bounds_as(self, convert: Callable[[float], float]) -> str:
         """Bounds in words, with each number converted to another unit."""
-        return ", ".join(f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
+        limits = (f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
+        return ", ".join([*["a whole number"] * self.whole, *limits])
 
     def _limits(self) -> Iterator[tuple[str, float, Callable[[Any, float], Any]]]:
         """Each bound in words, its number [unit], and which values it refuses."""
@@ -77,7 +81,8 @@ class Described:
 
     def is_within_bounds(self, value: float) -> bool:
         """Whether a value [unit] keeps all bounds."""
-        return not any(refuses(value, bound) for _, bound, refuses in self._limits())
+        fits = not self.whole or float(value).is_integer()
+        return fits and not any(refuses(value, bound) for _, bound, refuses in self._limits())
 
     def nearest_within(self, value: float) -> float:
         """The value within all bounds that is nearest to a value [unit]."""
@@ -94,6 +99,8 @@ class Described:
         InvalidValue
             With the name, and the first bound that is not kept.
         """
+        if self.whole:
+            refuse(values % 1 != 0, name, values, self.unit, "give a whole number")
         for words, bound, refuses in self._limits():
             said = f"it must be {words} {{limit}}"
             refuse(refuses(values, bound), name, values, self.unit, said, self.remedy, limit=bound)
