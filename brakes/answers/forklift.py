@@ -20,7 +20,7 @@ from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
-from brakes.answers.pedal import OUTPUTS, FromPedal, solve_pedal
+from brakes.answers.pedal import FromPedal, pedal_outputs, solve_pedal
 from brakes.answers.tables import (
     list_outputs,
     outputs_csv,
@@ -78,17 +78,14 @@ _FORCES = (
 )
 
 
-_PEDAL = take_from(lambda answer: answer.pedal, OUTPUTS)
-
-
-def stage_outputs(stages: Sequence[StageName], with_pedal: bool = False) -> tuple[Output, ...]:
-    """Numbers of the answers to stages, of the stop with those of its pedal."""
+def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
+    """Numbers of the answers to stages, and those of `pedal_outputs` with a stop or forces."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
         "forces": take_from(lambda answer: answer.forces, _FORCES),
     }
-    further = _PEDAL if with_pedal and stages != ("kinematics",) else ()
+    further = () if stages == ("kinematics",) else take_from(lambda answer: answer.pedal, pedal)
     return (*(output for stage in stages for output in groups[stage]), *further)
 
 
@@ -142,7 +139,8 @@ class ForkliftAnswer(Answer):
         found = self.stop if self.pedal is None else self.pedal.braked.stop
         stop = [] if found is None or np.all(found.stops) else [found.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
-        return (*stop, *([self.forces.message] if self.forces is not None and unbalanced else []))
+        fade = () if self.pedal is None else self.pedal.refusals
+        return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
         """The sentences of each design that has any, by row."""
@@ -168,9 +166,7 @@ class ForkliftAnswer(Answer):
             tables.append(table("Vehicle", heads, rows, (0, 2)))
             tables.append(self._doubt())
         if self.pedal is not None:
-            title = f"From the pedal to the wheels; the {self.pedal.braked.limited_by} limits"
-            tables.append(outputs_table(title, OUTPUTS, self.pedal))
-            tables.append(f"Pedal, {self.pedal.braked.actuation.verdict}.")
+            tables += self.pedal.tables()
         if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
             rows = [
                 [
@@ -213,7 +209,7 @@ class ForkliftAnswer(Answer):
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""
-        return outputs_csv(stage_outputs(self.stages, self.pedal is not None), value=self)
+        return outputs_csv(stage_outputs(self.stages, pedal_outputs(self.design)), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
         """The truck, the brake's two stages and the free bodies of its shoes, as far as they are shown."""
@@ -327,7 +323,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
         "of the shoes' reach"
     )
     model = ForkliftInput
-    sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums")
+    sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()
     sketches: Callable[[], Rows] = staticmethod(tuple)
@@ -342,7 +338,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
 
     def outputs(self, design: ForkliftInput) -> Sequence[Output]:
         """Numbers of the stages."""
-        return stage_outputs(self.stages or design.stages, design.pedal is not None)
+        return stage_outputs(self.stages or design.stages, pedal_outputs(design))
 
     def default_results(self, design: ForkliftInput) -> str:
         """The most important results of each stage."""
@@ -393,7 +389,7 @@ class ForcesType(ForkliftType):
     purpose = (
         "The force on every part of the brake, from the torque of the stop and the arms of the kinematics."
     )
-    sections = ("forces", "levers", "pedal", "line", "drums")
+    sections = ("forces", "levers", "pedal", "line", "drums", "heat")
     needs = ForkliftType.needs
     example_sweep = "forces.piston_force=9:13:17 kN"
     sweep_results = "A,B,Q,P_L,lining_friction"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from rich.console import RenderableType
 
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import Output
@@ -14,8 +15,10 @@ from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.results.result import Result
-from brakes.answers.tables import take, take_fields, take_from
-from brakes.chain import Actuation, BrakedStop, Heat, brake_from_pedal, heat_of_stop
+from brakes.answers.rubbing import HEAT, stops_tables
+from brakes.answers.tables import outputs_table, take, take_fields, take_from
+from brakes.chain import Actuation, BrakedStop, Heat, brake_from_pedal, fade_of_stops, heat_of_stop
+from brakes.common.heat import Fade
 from brakes.config.forklift import ForkliftInput
 from brakes.forklift import InternalForces, internal_forces
 
@@ -32,11 +35,14 @@ class FromPedal(Result):
         Energy of the stop.
     brake_error : ndarray
         Bound of the relative error of the torque that a brake can give.
+    fade : Fade, optional
+        Stops that follow each other, if the file has [heat].
     """
 
     braked: BrakedStop
     heat: Heat
     brake_error: Numbers
+    fade: Fade | None = None
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
@@ -61,7 +67,20 @@ class FromPedal(Result):
         lacking = tuple(f"{what}: {found.message}" for what, found in alone.items() if found.reason)
         return (*self.braked.actuation.warnings, *self.heat.warnings, *lacking)
 
+    @property
+    def refusals(self) -> tuple[str, ...]:
+        """A sentence if one of the stops that follow each other does not end."""
+        return () if self.fade is None else self.fade.refusals
 
+    def tables(self) -> list[RenderableType]:
+        """The chain, the verdict on its force, and the stops that follow each other."""
+        title = f"From the pedal to the wheels; the {self.braked.limited_by} limits"
+        said = f"Pedal, {self.braked.actuation.verdict}."
+        stops = () if self.fade is None else stops_tables(self.fade)
+        return [outputs_table(title, OUTPUTS, self), said, *stops]
+
+
+_FADE = tuple(each for each in HEAT if each.name not in ("energy", "pv"))  # which the first stop has
 OUTPUTS = (
     *take_from(
         lambda found: found.braked.actuation,
@@ -87,6 +106,12 @@ OUTPUTS = (
         take_fields(Heat, "energy drum_energy tyre_energy temperature_rise lining_pv"),
     ),
 )
+
+
+def pedal_outputs(design: ForkliftInput) -> tuple[Output, ...]:
+    """Numbers of the pedal's part of the answer, as far as the file has it."""
+    repeated = () if design.heat is None else take_from(lambda found: found.fade, _FADE)
+    return (*OUTPUTS, *repeated) if design.pedal else ()
 
 
 def solve_pedal(design: ForkliftInput) -> FromPedal:
@@ -116,7 +141,21 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
     drums = design.drums and design.drums.core
     pressed = (unit.A + unit.C) * braked.stop.torque_per_brake / unit.torque
     heat = heat_of_stop(braked.stop, drums, pressed, unit.levers.drum_radius)
-    return FromPedal(braked, heat, unit.error)
+    return FromPedal(braked, heat, unit.error, _repeat(design, geometry, braked))
+
+
+def _repeat(design: ForkliftInput, geometry: Any, braked: BrakedStop) -> Fade | None:
+    """The stops that follow each other, if the file has them."""
+    if design.heat is None or design.drums is None or design.forces is None:
+        return None
+
+    def torque_per_force(friction: Numbers) -> Numbers:
+        unit = internal_forces(geometry, piston_force=1.0, friction=friction)
+        return np.where(unit.status == "equilibrium", unit.torque, np.nan)
+
+    with of_file({}):
+        friction, drums = design.forces.lining_friction, design.drums.core
+        return fade_of_stops(braked, drums, friction, torque_per_force, **dict(design.heat))
 
 
 def _refuse_locked(unit: InternalForces, friction: Any) -> None:

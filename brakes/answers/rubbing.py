@@ -25,7 +25,7 @@ from brakes.answers.tables import (
 )
 from brakes.common.heat import Fade, repeat_stops
 
-_HEAT = take_fields(Fade, "hottest settled first_angle last_angle first_friction last_friction energy pv")
+HEAT = take_fields(Fade, "hottest settled first_angle last_angle first_friction last_friction energy pv")
 _SHOWN = 10  # stops
 
 
@@ -96,7 +96,7 @@ class RubbingAnswer(Answer):
         """The stops, and what the torque hangs on; nothing of a brake that locks."""
         if self.result.locked:
             return []
-        return [*([] if self.fade is None else _of_stops(self.fade)), self._doubt()]
+        return [*([] if self.fade is None else stops_tables(self.fade)), self._doubt()]
 
     def _doubt(self) -> str:
         """The torque at this force with less and more friction, under other laws, and in reverse."""
@@ -150,13 +150,13 @@ class RubbingAnswer(Answer):
 
 def heat_outputs(design: Any) -> tuple[Output, ...]:
     """Numbers of the stops, if the file has them."""
-    return () if design.heat is None else take_from(lambda answer: answer.fade, _HEAT)
+    return () if design.heat is None else take_from(lambda answer: answer.fade, HEAT)
 
 
-def _of_stops(fade: Fade) -> Iterator[RenderableType]:
+def stops_tables(fade: Fade) -> Iterator[RenderableType]:
     """The stops as a whole, and one by one."""
     title = f"Heat in {len(fade.end)} stops at this force, without cooling while it brakes"
-    yield outputs_table(title, _HEAT, fade)
+    yield outputs_table(title, HEAT, fade)
     names = [str(i + 1) for i in range(len(fade.end))][:_SHOWN]
     columns = [fade.start - 273.15, fade.end - 273.15, fade.end_friction, fade.angle, fade.heat]
     cells = [[name, *(format_number(each[i]) for each in columns)] for i, name in enumerate(names)]

@@ -2,6 +2,7 @@
 
 from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
 from brakes.chain.braked import BrakedStop, brake_from_pedal
+from brakes.chain.fading import fade_of_stops
 from brakes.chain.heat import Drums, Heat, heat_of_stop
 from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal
@@ -18,6 +19,7 @@ __all__ = [
     "WheelBrakes",
     "actuate",
     "brake_from_pedal",
+    "fade_of_stops",
     "force_for",
     "heat_of_stop",
     "ratio_for",

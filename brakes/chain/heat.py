@@ -22,7 +22,7 @@ from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.vehicle import Stop
 
-_BRAKES = 2  # that share the energy
+BRAKES = 2  # that share the energy
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def heat_of_stop(
     drum_energy = rising + full - into_tyres
     rise = pv = np.full(drum_energy.shape, np.nan)
     if drums is not None:
-        rise = drum_energy / (_BRAKES * drums.drum_mass * drums.specific_heat)
+        rise = drum_energy / (BRAKES * drums.drum_mass * drums.specific_heat)
         rubbing = V * drum_radius / stop.truck.front_wheel_radius
         pv = np.where(stops, normal_force / drums.lining_area * rubbing, np.nan)
     return Heat(stop, drums, (rising + full)[()], drum_energy[()], into_tyres[()], rise[()], pv[()])

@@ -226,7 +226,7 @@ class Fade(Result):
 
 
 _WORDS = {
-    "never stops": "the brake gives less than load_torque, at once or as its lining fades: it never stops",
+    "never stops": "the brake gives less than load_torque or a slope, at once or by fading: it never stops",
     "too hot": "a stop gets hotter than the last temperature of friction_curve: give more of the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]

@@ -17,6 +17,7 @@ from beamdyn.common.edge.described_tables import MadeSection, fields_of, section
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from beamdyn.common.edge.wording import of_file
 from brakes.chain import Drums, HydraulicLine, Pedal
+from brakes.config.heat import REPEATED
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.vehicle.stop import STEEPEST, SlopeAngle
 
@@ -98,6 +99,7 @@ if TYPE_CHECKING:
     _DuoServoInput = DuoServoInput
     _LeversInput = LeversInput
     _PedalInput = _LineInput = _DrumsInput = CoreSection
+    _HeatInput = Section
 else:
     _TruckInput = section_of(Truck)
     _StopInput = section_of(StopConditions, tables={SlopeAngle: _slope_of_road})
@@ -105,6 +107,7 @@ else:
     _DuoServoInput = create_model("_Brake", __base__=_geometry, **fields_of(DuoServo.move_shoes))
     _LeversInput = section_of(Levers, base=LeversInput)
     _PedalInput, _LineInput, _DrumsInput = (section_of(each) for each in (Pedal, HydraulicLine, Drums))
+    _HeatInput = create_model("_Heat", __base__=Section, **REPEATED)
 
 
 class ForcesInput(Section):
@@ -135,7 +138,7 @@ class ForcesInput(Section):
 class ForkliftInput(Section):
     """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted.
 
-    [pedal], [line] and [drums] go with all of them.
+    [pedal], [line], [drums] and [heat] go with all of them.
     """
 
     truck: _TruckInput | None = None
@@ -146,6 +149,7 @@ class ForkliftInput(Section):
     pedal: _PedalInput | None = None
     line: _LineInput | None = None
     drums: _DrumsInput | None = None
+    heat: _HeatInput | None = None
 
     @model_validator(mode="after")
     def _something(self) -> ForkliftInput:
@@ -157,7 +161,7 @@ class ForkliftInput(Section):
         if self.brake is not None and self.levers is not None:
             raise ValueError("[brake] and [levers] do not go together: the arms follow from the geometry")
         f = self.forces
-        if self.pedal or self.line or self.drums:
+        if self.pedal or self.line or self.drums or self.heat:
             self._refuse_half_a_chain()
         elif f is not None and f.piston_force is None:
             raise ValueError("[forces]: give piston_force, or [pedal] and [line], which give it")
@@ -171,9 +175,11 @@ class ForkliftInput(Section):
         f = self.forces
         if f is None or not (self.pedal and self.line and {"vehicle", "forces"} <= {*self.stages}):
             raise ValueError(
-                "[pedal], [line] and [drums] go with a stop: give [pedal], [line], [truck], [stop], [forces] "
-                "with lining_friction, and [brake] or [levers]"
+                "[pedal], [line], [drums] and [heat] go with a stop: give [pedal], [line], [truck], [stop], "
+                "[forces] with lining_friction, and [brake] or [levers]"
             )
+        if self.heat and not self.drums:
+            raise ValueError("[heat] goes with [drums], which it warms: give them")
         if f.piston_force is not None or f.torque is not None or f.lining_friction is None:
             raise ValueError(
                 "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from it"

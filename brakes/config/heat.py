@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.edge.config import CoreSection
-from beamdyn.common.edge.described_tables import section_of
+from beamdyn.common.edge.described_tables import fields_of, section_of
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.common.heat import Duty, FrictionCurve
@@ -21,7 +21,11 @@ class CurveQuantity(Quantity):
         return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)
 
 
+_TABLES = {FrictionCurve: CurveQuantity}
+_OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "most_pv")
+REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of a file that has the stop itself
+
 if TYPE_CHECKING:
     HeatInput = CoreSection
 else:
-    HeatInput = section_of(Duty, tables={FrictionCurve: CurveQuantity})
+    HeatInput = section_of(Duty, tables=_TABLES)

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from brakes import chain, vehicle
@@ -263,3 +264,52 @@ def test_a_vehicle_that_does_not_hold_moves_as_its_free_body(braked, downhill):
             [front, rear, force], rel=SAME
         )
     assert {"holds", "slips", "rolls"} <= seen
+
+
+def faded(slope=0.1, **repeated):
+    """A truck's stops that follow each other, with a brake whose torque is in proportion to friction."""
+    truck = vehicle.Truck(
+        5950.0, (1.049, 0.359), 3500.0, (-1.2, 0.45), front_wheel_radius=0.4, wheelbase=1.89
+    )
+    conditions = vehicle.StopConditions(slope, 20 / 3.6, 0.7, reaction_time=0.0, rise_time=0.0)
+    line = chain.HydraulicLine(0.02222, 0.03175)
+    braked = chain.brake_from_pedal(truck, conditions, chain.Pedal(5.0, 600.0), line, 0.728)
+    drums = chain.Drums(18.0, 0.05)
+    found = chain.fade_of_stops(braked, drums, 0.39, lambda mu: 0.728 * np.asarray(mu) / 0.39, **repeated)
+    return braked, found
+
+
+def test_heat_of_repeated_stops_is_the_energy_of_the_truck():
+    curve = [[293.15, 0.39], [333.15, 0.3], [493.15, 0.2]]
+    braked, found = faded(stops=4, interval=30.0, cooling=20.0, friction_curve=curve)
+    truck, c = braked.stop.truck, braked.stop.conditions
+    way = found.angle * truck.front_wheel_radius
+    energy = truck.mass * (c.speed**2 / 2 + c.gravity * np.sin(c.slope) * way)
+    assert 2 * found.heat == pytest.approx(energy, rel=1e-10)  # two brakes; the angle is a quadrature
+    assert np.all(np.diff(way) > 0)
+
+
+def test_a_fading_stop_is_that_of_its_equation_of_motion():
+    curve = np.array([[293.15, 0.39], [333.15, 0.3], [493.15, 0.2]])
+    braked, found = faded(stops=1, friction_curve=curve.tolist())
+    truck, c, force = braked.stop.truck, braked.stop.conditions, braked.actuation.actuator_force
+    r, pull = truck.front_wheel_radius, c.gravity * np.sin(c.slope)
+
+    def slopes(t, y):
+        torque = 0.728 * np.interp(y[2], *curve.T) / 0.39 * force
+        return [y[1], pull - 2 * torque / r / truck.mass, torque * y[1] / r / (18.0 * 500.0)]
+
+    def rest(t, y):
+        return y[1]
+
+    rest.terminal = True  # type: ignore[attr-defined]
+    run = solve_ivp(slopes, (0, 60), [0.0, c.speed, 293.15], "DOP853", events=rest, rtol=1e-12, atol=1e-12)
+    way, _, end = run.y_events[0][0]
+    assert found.angle * r == pytest.approx(way, rel=1e-8)  # kinks of the curve within steps
+    assert found.end == pytest.approx(end, rel=1e-9)
+
+
+def test_without_a_curve_repeated_stops_are_the_stop():
+    braked, found = faded(stops=2)
+    assert str(braked.stop.limited_by) == "brake"
+    assert found.angle * 0.4 == pytest.approx(float(braked.stop.distance), rel=1e-12)

@@ -234,3 +234,33 @@ def test_what_limits_a_forklift_is_said_in_its_tables(run, forklift):
 def test_a_slope_in_percent_has_its_bound_in_percent(run):
     code, _, err = run("vehicle", (EXAMPLES / "bicycle.toml").read_text(), ('"10 %"', '"120 %"'))
     assert code == BAD_INPUT and 'road.slope = "120 %": it must be at least 0, at most 100 %; no road' in err
+
+
+LESS_SLOPE = ('slope = "0.3019 rad"', 'slope = "0.1 rad"')
+HEAT = """
+[heat]
+stops = 3
+surroundings = "20 degC"
+friction_curve = [["20 degC", 0.39], ["40 degC", 0.3], ["200 degC", 0.2]]
+"""
+
+
+def test_forklift_with_a_duty_fades(run, forklift):
+    code, out, _ = run("forklift", forklift + HEAT, LESS_SLOPE)
+    assert code == 0
+    assert "Heat in 3 stops" in out
+    assert "friction at the end of the last" in out
+
+
+@pytest.mark.parametrize(
+    ("replaced", "code", "said"),
+    [
+        (('["200 degC", 0.2]', '["45 degC", 0.29]'), 1, "a stop gets hotter than the last temperature"),
+        (('["200 degC", 0.2]', '["60 degC", 0.01]'), 1, "by fading: it never stops"),
+        (('[drums]\ndrum_mass = "18 kg"\nlining_area = "500 cm2"\n', ""), 2, "[heat] goes with [drums]"),
+    ],
+)
+def test_forklift_that_fades_too_far_is_said(run, forklift, replaced, code, said):
+    found = run("forklift", forklift + HEAT, LESS_SLOPE, replaced)
+    assert found[0] == code
+    assert said in " ".join(found[2].split())
