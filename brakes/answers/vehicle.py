@@ -71,7 +71,7 @@ class OneDirection:
     needs : mapping of str to Needed
         Answers backwards, by name.
     slowing : Slowing, optional
-        The stop down the slope, if the file has one.
+        The stop on the slope, if the file has one.
     """
 
     holding: Holding
@@ -166,7 +166,7 @@ class VehicleAnswer(Answer):
         if self.design.stop is not None:
             ends = [["", *(str(way.slowing and way.slowing.status) for way in ways), ""]]
             cells = [*ends, *list_outputs(_of_stop(self.design), ways)]
-            tables.append(table("A stop down the slope", heads, cells, (0, 3)))
+            tables.append(table(f"A stop {self.design.stop.core.heading}", heads, cells, (0, 3)))
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
             tables.append(f"Lever, {self.lever.verdict}.")

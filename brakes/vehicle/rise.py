@@ -3,6 +3,7 @@
 With the pull p = g sin(beta) and the full braking force over the mass, r, the speed after the rise time t2 is
 V + (p - r / 2) t2. Yoo et al. (1997) let the deceleration rise from 0 instead, as if the slope pulled no more
 than the brakes hold while their force rises: on a steep slope their distance is shorter.
+Uphill p is negative.
 """
 
 from __future__ import annotations
@@ -12,6 +13,24 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers
+
+
+def coast(speed: Numbers, pull: Numbers, time: Numbers) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Way [m], time [s] and speed [m/s] at the end of a time in which only the slope acts, or at rest before.
+
+    Parameters
+    ----------
+    speed : float or ndarray
+        Speed before [m/s].
+    pull : float or ndarray
+        Pull of the slope over the mass [m/s2]; negative uphill.
+    time : float or ndarray
+        The time [s].
+    """
+    V, p, t = np.broadcast_arrays(speed, pull, time)
+    with np.errstate(divide="ignore"):
+        t = np.minimum(t, np.where(p < 0, V / np.abs(p), np.inf))
+    return V * t + p * t**2 / 2, t, np.maximum(V + p * t, 0.0)
 
 
 def to_rest(

@@ -1,4 +1,4 @@
-"""A vehicle that brakes both axles down a slope: partly, or so hard that wheels lock or it pitches over.
+"""A vehicle that brakes both axles on a slope: partly, or so hard that wheels lock or it pitches over.
 
 The brakes give the force B of all wheels, the share phi of it in front. An axle gives the smaller of its
 share and of what its tyres hold, mu times its load, which follows the braking ratio tau: with W = M g
@@ -8,14 +8,16 @@ cos(beta),
 
 Each minimum is of functions that are linear in tau, so that the right side is concave and above 0 at tau = 0:
 it meets tau once, at the least of the ratios that the four sums of these functions give alone. The driver
-eases off where the vehicle would pitch over. How it comes to rest: `brakes.vehicle.rise`.
+eases off where the vehicle would pitch over. None of it depends on which way the slope goes: weight and
+inertia act at the centre of gravity. How it comes to rest: `brakes.vehicle.rise`; until the brakes act it
+coasts, so that it gets faster downhill and slower uphill in the driver's reaction time.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -27,7 +29,7 @@ from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
-from brakes.vehicle.rise import to_rest
+from brakes.vehicle.rise import coast, to_rest
 
 _EDGE = 1e-9  # relative difference of two ratios or accelerations that are equal
 _STATES = ("no wheel locks", "front wheels locked", "rear wheels locked", "all wheels locked")
@@ -43,11 +45,13 @@ class Approach:
     speed : float or ndarray
         Speed V before the stop [m/s].
     reaction_time : float or ndarray
-        Time t1 until the brakes act, at that speed [s].
+        Time t1 until the brakes act, in which it coasts [s].
     rise_time : float or ndarray
         Time t2 in which their force rises linearly [s].
     brake_force : float or ndarray, optional
         Force B along the ground that the brakes of all wheels can give [N].
+    heading : {"downhill", "uphill"}
+        Which way it goes on the slope.
 
     Raises
     ------
@@ -62,7 +66,7 @@ class Approach:
 
     speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
     reaction_time: Annotated[
-        Numbers, Described("s", "t1", "time before the brakes act, at constant speed", least=0)
+        Numbers, Described("s", "t1", "time before the brakes act, in which it coasts", least=0)
     ] = 0.0
     rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)] = 0.0
     brake_force: Annotated[
@@ -75,22 +79,27 @@ class Approach:
             above=0,
         ),
     ] = None
+    heading: Annotated[Literal["downhill", "uphill"], Described(meaning="which way it goes on the slope")] = (
+        "downhill"
+    )
 
     def __post_init__(self) -> None:
+        one_of("heading", self.heading, ("downhill", "uphill"))
         keep_checked(self)
-        together(**{name: x for name, x in vars(self).items() if x is not None})
+        given = vars(self).items()
+        together(**{name: x for name, x in given if x is not None and name != "heading"})
 
 
 @dataclass(frozen=True)
 class Slowing(Result):
-    """A stop down a slope, with both axles braked; arrays have one entry per case.
+    """A stop on a slope, with both axles braked; arrays have one entry per case.
 
     Attributes
     ----------
     vehicle, road, approach : Vehicle, Road, Approach
         What stops where, and from which speed.
     leading : {"front", "rear"}
-        The axle that leads: the lower one.
+        The axle that leads.
     status : str or ndarray of str
         ``"no wheel locks"``, ``"front wheels locked"``, ``"rear wheels locked"``, ``"all wheels locked"``, or
         ``"at the limit of pitching over"``.
@@ -151,7 +160,7 @@ def slow_down(
     front_share: Numbers,
     leading: Axle = "front",
 ) -> Slowing:
-    """Stop a vehicle down a slope by the brakes of both axles.
+    """Stop a vehicle on a slope by the brakes of both axles.
 
     Parameters
     ----------
@@ -162,7 +171,7 @@ def slow_down(
     front_share : float or ndarray
         Share of the front wheels in it, 0 to 1.
     leading : {"front", "rear"}
-        The axle that leads, downhill.
+        The axle that leads: the lower one downhill, the upper one uphill.
 
     Returns
     -------
@@ -204,9 +213,11 @@ def slow_down(
     loads = {axle: vehicle.load_share(axle, ratio, leading) for axle in braked}
     forces = {axle: np.minimum(braked[axle], road.friction * loads[axle]) for axle in braked}
     eased = ratio / sum(forces.values())  # below 1 only where the driver eases off
-    pull, rate = road.gravity * np.sin(road.slope), road.gravity * np.cos(road.slope) * ratio
+    pull = road.gravity * np.sin(road.slope) * (1 if approach.heading == "downhill" else -1)
+    rate = road.gravity * np.cos(road.slope) * ratio
     stops = rate - pull > _EDGE * rate
-    way, time = to_rest(approach.speed, pull, rate, approach.rise_time, stops)
+    coasted, reaction, speed = coast(approach.speed, pull, approach.reaction_time)
+    way, time = to_rest(speed, pull, rate, approach.rise_time, stops)
     return Slowing(
         vehicle,
         road,
@@ -220,8 +231,8 @@ def slow_down(
         front_load=weight * loads["front"],
         rear_load=weight * loads["rear"],
         deceleration=rate - pull,
-        distance=(approach.speed * np.asarray(approach.reaction_time) + way)[()],
-        time=(np.asarray(approach.reaction_time) + time)[()],
+        distance=(coasted + way)[()],
+        time=(reaction + time)[()],
     )
 
 

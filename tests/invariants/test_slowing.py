@@ -78,15 +78,37 @@ def test_a_truck_with_locked_front_wheels_is_that_of_its_own_room():
     road = vehicle.Road(0.3019, 0.7)
     for rise in (0.0, 0.3):
         found = vehicle.slow_down(
-            truck.vehicle, road, vehicle.Approach(20 / 3.6, 0.5, rise), 1e6, 1.0, leading="rear"
+            truck.vehicle, road, vehicle.Approach(20 / 3.6, 0.0, rise), 1e6, 1.0, leading="rear"
         )
         own = vehicle.stop(truck, vehicle.StopConditions(0.3019, 20 / 3.6, 0.7, 0.5, rise))
         assert found.status == "front wheels locked"
         assert found.deceleration == pytest.approx(-own.acceleration, rel=1e-13)
-        assert found.distance == pytest.approx(own.pulled_distance, rel=1e-13)
+        held = 20 / 3.6 * 0.5  # the truck's speed is held in the reaction time, the vehicle's is not
+        assert found.distance + held == pytest.approx(own.pulled_distance, rel=1e-13)
     assert own.pulled_distance / own.distance == pytest.approx(15.054 / 13.425, rel=5e-5)  # 12 % longer
     level = vehicle.stop(truck, vehicle.StopConditions(0.0, 20 / 3.6, 0.7, 0.5, 0.3))
     assert level.pulled_distance == pytest.approx(level.distance, rel=1e-14)  # without pull they are one
+
+
+@pytest.mark.parametrize(("heading", "reaction"), [("downhill", 0.8), ("uphill", 0.8), ("uphill", 4.0)])
+def test_a_stop_on_a_slope_is_that_of_its_equation_of_motion(heading, reaction):
+    """Uphill with a reaction time of 4 s it comes to rest before the brakes act."""
+    road, speed, rise = vehicle.Road(0.2, 0.8), 6.0, 0.5
+    approach = vehicle.Approach(speed, reaction, rise, heading=heading)
+    found = vehicle.slow_down(BICYCLE, road, approach, 250.0, 0.7)
+    pull = 9.806 * np.sin(0.2) * (1 if heading == "downhill" else -1)
+
+    def standing(_, y):
+        return y[1]
+
+    standing.terminal = True
+    force = lambda t: 250.0 * np.clip((t - reaction) / rise, 0.0, 1.0) / 80.0  # noqa: E731
+    run = solve_ivp(lambda t, y: [y[1], pull - force(t)], (0, 60), [0.0, speed],
+                    events=standing, max_step=0.01, rtol=1e-10, atol=1e-10)  # fmt: skip
+    assert found.status == "no wheel locks"
+    assert found.distance == pytest.approx(run.y[0, -1], rel=1e-5)  # that of a step over the kinks
+    assert found.time == pytest.approx(run.t[-1], rel=1e-5)
+    assert (found.time < reaction) == (reaction > 1)
 
 
 @pytest.mark.parametrize("rise_time", [0.3, 4.0])
