@@ -7,14 +7,17 @@ questions backwards (--scenes N: fewer of them; --save FILE keeps them, and goes
 from __future__ import annotations
 
 import argparse
+import ast
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
 from benchmarks.cases import mechanisms
 from benchmarks.cases.random_questions import Outcome, measure
+from benchmarks.house import ROOT, code_lines, sources
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, best_time, show
 from brakes import calipers, chain, forklift
@@ -23,6 +26,7 @@ from brakes.planar import solve, stroke
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
 DESIGNS, QUESTIONS, SEED = 100_000, 1000, 34
+ROOMS = ("vehicle", "chain", "common", "machines")  # beyond forces in drums, calipers and the forklift
 
 
 def check_planar() -> Iterator[Row]:
@@ -139,7 +143,26 @@ def check_chain() -> Iterator[Row]:
     yield name, f"{whole / stages:.2f}", "1"
 
 
-PARTS = check_planar, check_duo_servo, check_chain, check_backwards
+def check_size() -> Iterator[Row]:
+    """Files that one type of brake takes, and how long the code is."""
+    modules = [path for path in sources() if path.is_relative_to(ROOT / "brakes")]
+    named = [path for path in modules if names_it(path, "band")]
+    files = len(named) + len([*(ROOT / "examples").glob("band.toml")])
+    yield "files that name the band brake, without tests and pages", f"{files}", "6"
+    rooms = [path for path in modules if path.relative_to(ROOT / "brakes").parts[0] in ROOMS]
+    yield "code lines of brakes", f"{sum(map(code_lines, modules))}", ""
+    yield f"... of them in {', '.join(ROOMS)}", f"{sum(map(code_lines, rooms))}", ""
+
+
+def names_it(path: Path, name: str) -> bool:
+    """Whether a module is called so, or imports the class or has the word of this name."""
+    nodes = [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    words = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    imported = {each.name for node in nodes if isinstance(node, ast.ImportFrom) for each in node.names}
+    return path.stem == name or name in words or name.title() in imported
+
+
+PARTS = check_planar, check_duo_servo, check_chain, check_size, check_backwards
 
 
 def main() -> None:

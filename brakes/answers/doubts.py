@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import part_at, with_parts
 from brakes.answers.tables import format_number
 
+Answer = TypeVar("Answer")
 PART = 0.1  # by which friction varies, as makers of linings give it
 
 
@@ -21,6 +23,25 @@ def change(other: float, value: float, unit: str, none: str) -> str:
         return none
     relative = f" ({100 * (other / value - 1):+.1f} %)" if value else ""
     return f"{format_number(other)} {unit}{relative}"
+
+
+def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -> list[Answer]:
+    """Answers to a design with less and more friction, as far as there are any.
+
+    Parameters
+    ----------
+    design : BaseModel
+        The design.
+    path : str
+        Path of the friction in it, which may have none.
+    solve : callable
+        ``solve(design)``: the answer.
+    """
+    friction, found = part_at(design, path), list[Answer]()
+    for part in (1 - PART, 1 + PART) if friction else ():
+        with suppress(InvalidValue, NoAnswer):  # past the largest friction that a file may have, or locked
+            found.append(solve(with_parts(design, {path: part * friction})))
+    return found
 
 
 def hangs_on_friction(
@@ -43,11 +64,8 @@ def hangs_on_friction(
     none : str
         What is said where there is none, such as "does not stop".
     """
-    friction, value = part_at(design, path), result(design)
-    said = []
-    for part in (1 - PART, 1 + PART):
-        with suppress(InvalidValue):  # past the largest friction that a file may have
-            said.append(change(result(with_parts(design, {path: part * friction})), value, unit, none))
+    value = result(design)
+    others = with_less_and_more(design, path, result)
     what, _, name = of.partition(": ")
-    now, ends = change(value, 0.0, unit, none), ", ".join(said)
+    now, ends = change(value, 0.0, unit, none), ", ".join(change(each, value, unit, none) for each in others)
     return f"{name} {now}; friction of {what} -+{100 * PART:.0f} %: {ends}."

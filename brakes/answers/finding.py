@@ -102,7 +102,8 @@ class _Designs:
         except NoAnswer as error:
             return str(error).partition(": ")[2] or str(error)
         said = dict((*made.refused, *made.unanswered)).get(0)
-        return said or f"{self.output.name} is not finite"
+        words = self.output.words.removeprefix("... ")
+        return said or (f"{words}: without end" if np.isinf(made.found[0][0]) else f"there is no {words}")
 
     def _sweep(self, x: np.ndarray) -> Any:
         axis = self.axis

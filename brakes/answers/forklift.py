@@ -18,7 +18,7 @@ from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import hangs_on_friction
+from brakes.answers.doubts import hangs_on_friction, with_less_and_more
 from brakes.answers.forklift_handles import duo_servo_handles, truck_handles
 from brakes.answers.pedal import FromPedal, pedal_outputs, solve_pedal
 from brakes.answers.tables import (
@@ -155,9 +155,12 @@ class ForkliftAnswer(Answer):
 
     def tables(self) -> list[RenderableType]:
         """Tables of vehicle, kinematics and forces, as far as these stages are shown."""
-        tables, heads = [], ("", "value", "unit")
+        tables, heads, others = [], ("", "value", "unit"), self._doubtful()
         if self.stop is not None:
-            rows = [["", str(self.stop.status), ""], *list_outputs(_VEHICLE, [self.stop])]
+            rows = [
+                ["", str(self.stop.status), ""],
+                *list_outputs(_VEHICLE, [self.stop], [[each.stop for each in others]]),
+            ]
             if self.stop.limited_by == "brake":
                 rolls = ("wheels locked", "wheels rolling"), (", sliding", ", rolling")
                 rows = [
@@ -166,7 +169,7 @@ class ForkliftAnswer(Answer):
             tables.append(table("Vehicle", heads, rows, (0, 2)))
             tables.append(self._doubt())
         if self.pedal is not None:
-            tables += self.pedal.tables()
+            tables += self.pedal.tables([each.pedal for each in others])
         if "kinematics" in self.stages and self.motion is not None and (done := self.kinematics) is not None:
             rows = [
                 [
@@ -182,7 +185,11 @@ class ForkliftAnswer(Answer):
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
         if (f := self.forces) is not None:
-            rows = [*list_outputs(_FORCES, [f]), [], *list_outputs(_ARMS, [f.levers])]
+            rows = [
+                *list_outputs(_FORCES, [f], [[each.forces for each in others]]),
+                [],
+                *list_outputs(_ARMS, [f.levers]),
+            ]
             limit = None if self.pedal is None else str(self.pedal.braked.limited_by)
             source = {"brake": "the pedal", "road": "the road, on locked wheels", None: self.torque_from}[
                 limit
@@ -195,6 +202,15 @@ class ForkliftAnswer(Answer):
                     f"{self.design.forces.lining_friction:.4g} the locked wheels use {f.lining_friction:.4g}."
                 )
         return tables
+
+    def _doubtful(self) -> list[ForkliftAnswer]:
+        """Answers with less and more friction of the tyres, and of the linings."""
+        paths = ("stop.friction", "forces.lining_friction")
+        made = (with_less_and_more(self.design, path, self._again) for path in paths)
+        return [each for pair in made for each in pair]
+
+    def _again(self, design: ForkliftInput) -> ForkliftAnswer:
+        return solve_stages(design, self.stages)
 
     def _doubt(self) -> str:
         """The stopping distance with less and more friction on the road."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -72,12 +72,15 @@ class FromPedal(Result):
         """A sentence if one of the stops that follow each other does not end."""
         return () if self.fade is None else self.fade.refusals
 
-    def tables(self) -> list[RenderableType]:
-        """The chain, the verdict on its force, and the stops that follow each other."""
+    def tables(self, doubtful: Sequence[Any] = ()) -> list[RenderableType]:
+        """The chain, the verdict on its force, and the stops that follow each other.
+
+        Digits in which doubtful ones differ, such as those with other friction, are dimmed.
+        """
         title = f"From the pedal to the wheels; the {self.braked.limited_by} limits"
         said = f"Pedal, {self.braked.actuation.verdict}."
         stops = () if self.fade is None else stops_tables(self.fade)
-        return [outputs_table(title, OUTPUTS, self), said, *stops]
+        return [outputs_table(title, OUTPUTS, self, doubtful), said, *stops]
 
 
 _FADE = tuple(each for each in HEAT if each.name not in ("energy", "pv"))  # which the first stop has
@@ -141,7 +144,8 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
     drums = design.drums and design.drums.core
     pressed = (unit.A + unit.C) * braked.stop.torque_per_brake / unit.torque
     heat = heat_of_stop(braked.stop, drums, pressed, unit.levers.drum_radius)
-    return FromPedal(braked, heat, unit.error, _repeat(design, geometry, braked))
+    fade = _repeat(design, geometry, braked)
+    return FromPedal(braked, heat, unit.error, fade and replace(fade, pv=heat.lining_pv))
 
 
 def _repeat(design: ForkliftInput, geometry: Any, braked: BrakedStop) -> Fade | None:

@@ -16,7 +16,7 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
 from beamdyn.common.results.result import plain
 from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.doubts import hangs_on_friction
+from brakes.answers.doubts import hangs_on_friction, with_less_and_more
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_fields, take_from
 from brakes.chain import Actuation, actuate, force_for, ratio_for
 from brakes.config.vehicle import VehicleInput
@@ -154,8 +154,10 @@ class VehicleAnswer(Answer):
     def tables(self) -> list[RenderableType]:
         """Both ways, what cannot be had and why, and the lever."""
         ways = [*self.ways.values()]
-        shown = (o for o in _of_one_way(self.design) if o.name not in {each.name for each in _SLOWING})
-        rows = list_outputs(shown, ways)
+        elsewhere = {"holds", *(each.name for each in _SLOWING)}  # in the row of words, and below
+        others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
+        doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
+        rows = list_outputs((o for o in _of_one_way(self.design) if o.name not in elsewhere), ways, doubtful)
         said = [["", *(str(way.holding.status) for way in ways), ""]]
         first = [["ends the hardest braking", *(str(way.braking.first) for way in ways), ""]]
         heads = ("", "front downhill or leading", "rear downhill or leading", "unit")
@@ -165,8 +167,9 @@ class VehicleAnswer(Answer):
         tables += [f"{words}, {axle} downhill: {text}" for words, axle, text in self._lacking()]
         if self.design.stop is not None:
             ends = [["", *(str(way.slowing and way.slowing.status) for way in ways), ""]]
-            cells = [*ends, *list_outputs(_of_stop(self.design), ways)]
-            tables.append(table(f"A stop {self.design.stop.core.heading}", heads, cells, (0, 3)))
+            way = self.design.stop.core.heading.removesuffix("hill")
+            cells = [*ends, *list_outputs(_of_stop(self.design), ways, doubtful)]
+            tables.append(table(f"A stop {way} the slope", heads, cells, (0, 3)))
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
             tables.append(f"Lever, {self.lever.verdict}.")
