@@ -169,7 +169,9 @@ class VehicleAnswer(Answer):
             ends = [["", *(str(way.slowing and way.slowing.status) for way in ways), ""]]
             way = self.design.stop.core.heading.removesuffix("hill")
             cells = [*ends, *list_outputs(_of_stop(self.design), ways, doubtful)]
-            tables.append(table(f"A stop {way} the slope", heads, cells, (0, 3)))
+            tables.append(
+                table(f"A stop {way} the slope", ("", "front leading", "rear leading", "unit"), cells, (0, 3))
+            )
         if self.lever is not None:
             tables.append(outputs_table("The lever at its force", _of_lever(self.design), self.lever))
             tables.append(f"Lever, {self.lever.verdict}.")
