@@ -25,6 +25,7 @@ from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of
 from beamdyn.floquet.interpolation import interpolate_on_grid
 from beamdyn.floquet.monodromy import COARSER, Monodromy
 from beamdyn.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
+from beamdyn.floquet.period import period_of
 from beamdyn.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _JUDGED = 3  # values of each number at which the model error is computed
+_ROUNDING = 1e-12  # relative, of a product that is constant
 _MOST_ENTRIES = 20_000_000  # of all matrices, so that they fit into memory
 
 
@@ -236,21 +238,32 @@ class _Grid:
                 found[name][place] = value[0]
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
+    def _sets_the_period(self, place: int) -> bool:
+        """Whether the period is inverse to a number, whose reciprocal is then the smoother variable."""
+        first, values = self.numbers(0), self.inputs[place].values
+        ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
+        periods = np.array([period_of(self.scenes.at(end)).time for end in ends])
+        products = periods * values[[0, -1]]
+        return bool(np.ptp(periods) > 0 and np.ptp(products) <= _ROUNDING * np.abs(products).max())
+
     def _interpolated(self) -> tuple[Monodromy, int]:
         """Monodromy matrices (A B, m, m), and how many of them were integrated."""
         errors, turns, damped = [0.0], set(), set()
         names = [each.name for each in self.inputs]
 
-        def entries(x: float, y: float) -> np.ndarray:
-            numbers = dict(zip(names, (x, y), strict=True))
-            motion = self.scenes.monodromy(numbers)
+        inverse = [self._sets_the_period(place) for place in range(2)]
+
+        def entries(*variables: float) -> np.ndarray:
+            numbers = [1 / x if inverted else x for x, inverted in zip(variables, inverse, strict=True)]
+            motion = self.scenes.monodromy(dict(zip(names, numbers, strict=True)))
             errors.append(float(motion.error[0]))
             turns.add(motion.turns)
             damped.add(motion.form is None)
             form = np.zeros_like(motion.matrix) if motion.form is None else motion.form
-            return np.concatenate([motion.matrix.ravel(), form.ravel(), 1 / motion.period])
+            return np.concatenate([motion.matrix.ravel(), form.ravel(), motion.period])
 
-        first, second = (each.values for each in self.inputs)
+        pairs = zip(self.inputs, inverse, strict=True)
+        first, second = (1 / each.values if inverted else each.values for each, inverted in pairs)
         size = self.scenes.size
         on_grid = interpolate_on_grid(entries, (first, second), lambda: max(errors), slice(size**2))
         if len(turns) > 1:
@@ -260,7 +273,7 @@ class _Grid:
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
         error = np.full(len(flat), max(errors) + on_grid.error)
         return Monodromy(
-            matrix, error, 1 / flat[:, -1], None if True in damped else form, max(turns)
+            matrix, error, flat[:, -1], None if True in damped else form, max(turns)
         ), on_grid.samples
 
 

@@ -109,7 +109,7 @@ def interpolate_on_grid(
     Parameters
     ----------
     function : callable
-        The function of two numbers: an array (k,).
+        The function of two numbers: an array (k,).  It is called at values between those given.
     values : tuple of ndarray, shapes (A,) and (B,)
         The values.
     tolerance : callable
