@@ -128,6 +128,20 @@ def test_undamped_multipliers_come_in_reciprocal_pairs(kind):
     assert abs(np.prod(found.multipliers) - 1) < 1e-10  # Liouville
 
 
+@pytest.mark.parametrize("physics", [bd.Physics(), bd.Physics(stretch=True)], ids=["bending", "stretch"])
+def test_undamped_motion_keeps_its_form(physics):
+    """With Coriolis forces between stretch and bending, too."""
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, axial_stiffness=400.0)
+    scene = bd.Scene(beam, bd.Mount(1.0, np.pi), bd.PulsatingRotation(2.0, 0.3, 1.4), physics=physics)
+    motion = PeriodicScenes(scene, 2, "ritz").monodromy({})
+    matrix, form = motion.matrix[0], motion.form[0]
+    np.testing.assert_allclose(
+        matrix.T @ form @ matrix, form, rtol=0, atol=1e-11 * np.abs(form).max()
+    )  # rounding
+    half = len(form) // 2
+    assert form[:half, :half].any() == physics.stretch
+
+
 def test_damping_shrinks_the_product_of_multipliers():
     scene = random_scene(np.random.default_rng(1), "pulsating")
     scene = replace(scene, damping_ratio=0.02)
