@@ -16,6 +16,8 @@ from typing import Literal
 import numpy as np
 
 import beamdyn as bd
+from beamdyn.common.edge.rendering import png
+from beamdyn.common.edge.views import picture_of
 from beamdyn.common.parallel.workers import one_blas_thread
 from benchmarks.rows import Row, best_time, show
 
@@ -27,6 +29,7 @@ VARY = {
     "speed": np.linspace(0.0, 80.0, 10),
 }
 SAMPLE = 300  # designs of the loop of single calls
+SIDE = 200  # values of each input of a map
 OTHERS, SAMPLE_OF_OTHERS, TOP_SPEED = 2000, 20, 150.0  # of other questions
 
 
@@ -118,7 +121,22 @@ def compare_others() -> Iterator[Row]:
         yield name, f"{1e6 * many / OTHERS:.0f}, {ratio:.0f}", "-"
 
 
-PARTS = compare, compare_others
+def draw_maps() -> Iterator[Row]:
+    """Time of the picture of a study over two inputs, once there is the answer."""
+    beam = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY)
+    rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
+    sides = {"beam.thickness": np.linspace(1e-4, 4e-4, SIDE), "speed": np.linspace(0.0, TOP_SPEED, SIDE)}
+    study = bd.study(bd.Scene(beam, bd.Mount(0.215), rolling), sides)
+    draw = picture_of(study)
+    assert draw is not None
+    yield (
+        f"maps of three modes over {SIDE} x {SIDE} designs [s]",
+        f"{best_time(lambda: png(draw()), 3):.2f}",
+        "2",
+    )
+
+
+PARTS = compare, compare_others, draw_maps
 
 
 def main() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -13,7 +13,6 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
 from beamdyn.analyses.results.cautions import warnings_of
-from beamdyn.analyses.results.of_studies import study_table
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed, parse_window
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
@@ -30,8 +29,7 @@ from beamdyn.common.edge.varied_inputs import (
 )
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
-from beamdyn.common.results.statements import InputValue
-from beamdyn.common.words import Words
+from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
 from beamdyn.studies.answers import NO_ANSWERS
@@ -176,13 +174,14 @@ def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[s
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
-    units = {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
-    warnings = warnings_of(result, how["tolerance"], word=partial(_as_given, axes))
+    units = {axis.input.path: ShownUnit(axis.unit, 1 / unit_given(axis)[1]) for axis in axes if axis.unit}
+    result = replace(result, typed_units=units)
+    warnings = warnings_of(result, how["tolerance"])
     none = ""
     if not result.answered.any():
         states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
         none = f"at none of {result.designs.count} designs is there an answer: {states}"
-    return Answer(result, none, warnings, [study_table(result, units)])
+    return Answer(result, none, warnings)
 
 
 def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
@@ -209,14 +208,6 @@ def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) 
     if speed is not None:
         return parse_speed("--speed", speed, scene)
     return final_speed(scene) if needed else None
-
-
-def _as_given(axes: Sequence[Axis], part: Words) -> str | None:
-    """An input of a design as it was given: rounded, it would not be found again; None of other parts."""
-    for axis in axes:
-        if axis.unit and isinstance(part, InputValue) and part.name == axis.input.path:
-            return f"{part.name} = {axis.given[abs(axis.values - part.value).argmin()]:.6g} {axis.unit}"
-    return None
 
 
 def inputs_of(scene: Scene) -> list[Input]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.designs import Designs, VariedInput
-from beamdyn.common.plots.curves import plot_over_input
+from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
+from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import InputValue, Statement, joined
-from beamdyn.common.words import Words
+from beamdyn.common.words import Part, Words
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.numbers import SPEED, number_at, with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.answers import NO_ANSWERS, REFUSED
 from beamdyn.studies.one_by_one import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
+from beamdyn.studies.resonance_speeds import lines_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,6 +67,8 @@ class Study(StatesModelError):
         What limits the answer, and of how many designs.
     provenance : Provenance
         How it was found.
+    typed_units : mapping of str to ShownUnit
+        Units in which values of inputs were typed, by the input's name: those of its tables and pictures.
 
     Examples
     --------
@@ -88,6 +92,7 @@ class Study(StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     question: StudyQuestion = field(repr=False)
+    typed_units: Mapping[str, ShownUnit] = field(default_factory=dict, repr=False)
 
     judged_by_solving: ClassVar[bool] = True
 
@@ -194,43 +199,82 @@ class Study(StatesModelError):
     # Pictures ---------------------------------------------------------------------------------------
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the answers over the first input; of further inputs, curves for each value of the second.
+        """Draw each answer over one input, or as a map over two with lines of equal value.
 
-        Crosses at the bottom stand where there is no number; inputs after the second have their first value.
+        The present design is marked.  Of a third input some values have maps of their own; further ones have
+        their first value.  Where there is no answer the picture is hatched, and says why; frequencies over
+        speed have the lines that excite them.
         """
-        first, rest = self.inputs[0], self._rest()
-        title, words = f"at {', '.join(rest)}" if rest else "", f"{self._words()} [{self.unit}]"
-        states = np.unique(self.status[~np.isfinite(self.value)]).tolist()
-        none = f"none: {', '.join(states)}"
-        return plot_over_input(
-            first.values, self._curves(), self._labels(), first.label, words, ax, title, none
-        )
+        return plot_maps(*self._picture, ax)
 
-    def _words(self) -> str:
-        """The answer that a picture shows."""
-        word = self.question.kind.word
-        return f"{word}, {self.labels[0]}" if len(self.labels) == 1 and len(self.shape) > 1 else word
+    @property
+    def picture_size(self) -> tuple[float, float]:
+        """Width and height of the picture, in inches."""
+        return map_size(*self._picture)
 
-    def _curves(self) -> np.ndarray:
-        """Answers over the first input, one row a curve."""
-        if len(self.shape) == 1:
-            return np.atleast_2d(self.value.T)
-        each = self.value if self.labels else self.value[..., None]
-        shown = each.reshape(*self.shape[:2], -1, each.shape[-1])[:, :, 0]
-        return shown.reshape(len(shown), -1).T
+    @cached_property
+    def _picture(self) -> tuple[list[MapInput], list[MapAnswer]]:
+        """The inputs and the answers that the picture shows, in the units shown."""
+        unit = self.unit_shown(self.unit, "mm")
+        several = self.value if self.labels else self.value[..., None]
+        status = self.status if self.labels else self.status[..., None]
+        reasons = {word: _REASONS.get(word, word) for word in np.unique(status).tolist()}
+        why = np.vectorize(reasons.__getitem__, otypes=[object])(status)
+        meets = self._lines()
+        answers = [
+            MapAnswer(
+                f"{', '.join(filter(None, (self.question.kind.word, label)))} [{unit.name}]",
+                unit.of(several[..., k]),
+                why[..., k],
+                meets,
+            )
+            for k, label in enumerate(self.labels or ("",))
+        ]
+        return self._inputs(), answers
 
-    def _labels(self) -> list[str]:
-        if len(self.shape) > 1:
-            second = [_at(self.inputs[1], value) for value in self.inputs[1].values.tolist()]
-            several = self.labels if len(self.labels) > 1 else ("",)
-            return [", ".join(filter(None, (at, label))) for at in second for label in several]
-        return list(self.labels) or [""]
+    def _inputs(self) -> list[MapInput]:
+        """The inputs of the picture; those that are taken together are drawn over the first."""
+        shown = []
+        for each in self.inputs if self.combine == "product" else self.inputs[:1]:
+            unit = self.typed_units.get(each.name) or self.unit_shown(each.unit, "m")
+            present = _present(self.scene, each.name)
+            shown.append(MapInput(each.name, unit.name, unit.of(each.values), present and unit.of(present)))
+        return shown
 
-    def _rest(self) -> list[str]:
-        """The inputs that a picture shows at their first value only."""
-        rest = self.inputs[2:] if self.combine == "product" else ()
-        return [_at(each, float(each.values[0])) for each in rest]
+    def in_own_words(self, part: Part) -> str | None:
+        """An input and its value in a text, in the unit in which it was typed; None of other parts."""
+        if not isinstance(part, InputValue) or part.name not in self.typed_units:
+            return None
+        return f"{part.name} = {self.typed_units[part.name].say(part.value)}"
+
+    def unit_shown(self, unit: str, usual_length: str) -> ShownUnit:
+        """The unit in which quantities of a unit of SI are shown."""
+        units = self.display_units
+        known = {"rad/s": units.speed_unit(), "m": units.length_unit(usual_length)}
+        return known.get(unit, ShownUnit(unit, 1.0))
+
+    def _lines(self) -> dict[str, np.ndarray]:
+        """Frequencies [Hz] of the lines that excite the beam, where frequencies are studied over speed."""
+        speeds = next((each.values for each in self.inputs if each.name == SPEED), None)
+        if self.what != "frequencies" or speeds is None:
+            return {}
+        place = [each.name for each in self.inputs].index(SPEED) if self.combine == "product" else 0
+        along = np.moveaxis(speeds.reshape(*(1,) * (len(self.shape) - 1), -1), -1, place) / (2 * np.pi)
+        lines = lines_of(self.scene, float(speeds.max()))
+        return {line.name: line.multiple * along for kind, line in lines if kind == "forced"}
 
 
-def _at(given: VariedInput, value: float) -> str:
-    return InputValue(given.name, value, given.unit, _DIGITS)
+def _present(scene: Scene, name: str) -> float | None:
+    """The value of an input in the scene; None where it has none, or varies along the beam."""
+    if name == SPEED:
+        value = None if scene.motion is None else scene.motion.final_speed
+    else:
+        value = number_at(scene, name)
+    return None if value is None or not np.isfinite(value) else value
+
+
+_REASONS = {
+    "divergence": "buckles",
+    "flutter": "flutters",
+    "none up to the top speed": "no resonance up to the top speed",
+}  # why there is no number, in words of a picture

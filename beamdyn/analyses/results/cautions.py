@@ -20,20 +20,21 @@ if TYPE_CHECKING:
     from beamdyn.modes.modes import Modes
 
 
-def warnings_of(
-    result: Any,
-    tolerance: float | None = None,
-    without: str = "",
-    word: Callable[[Part], str | None] = lambda part: None,
-) -> list[str]:
+def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
     """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files.
 
-    Statements of the kind `without` are left out; `word` may put inputs in words of its own.
+    Statements of the kind `without` are left out.
     """
     warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
     said = (each for each in warnings if not without or kind_of(each) != without)
+    return [worded(each, _words_of(result)) for each in said]
+
+
+def _words_of(result: Any) -> Callable[[Part], str]:
+    """How parts of texts on a result are worded: in its own way, if it has one, else in words of files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
-    return [worded(each, lambda part: word(part) or in_terms(part, units)) for each in said]
+    own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
+    return lambda part: own(part) or in_terms(part, units)
 
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
@@ -61,8 +62,8 @@ def notes_of(result: Any) -> list[str]:
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
     outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
-    units = result.display_units if isinstance(result, Result) else SI_UNITS
-    return [said_in(units, said).partition(";")[0] for said in (*outside, *_of_model_error(result))]
+    said = (*outside, *_of_model_error(result))
+    return [worded(each, _words_of(result)).partition(";")[0] for each in said]
 
 
 def critical_label(point: CriticalPoint) -> str:

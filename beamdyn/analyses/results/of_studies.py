@@ -45,19 +45,11 @@ _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in
 # Studies ----------------------------------------------------------------------------------------------
 
 
-def study_table(result: Study, units: dict[str, tuple[str, float]] | None = None) -> Group:
-    """Inputs and answers of some designs, spread evenly.
-
-    Parameters
-    ----------
-    result : Study
-        The study.
-    units : dict, optional
-        By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
-    """
+def study_table(result: Study) -> Group:
+    """Inputs, in the units that were typed, and answers of some designs, spread evenly."""
     columns, number, inputs = study_columns(result).columns, result.designs.count, len(result.inputs)
     shown = np.linspace(0, number - 1, min(number, _MOST_ROWS)).round().astype(int)
-    in_units = {name: (1 / size, unit) for name, (unit, size) in (units or {}).items()}
+    in_units = {name: (unit.per_si, unit.name) for name, unit in result.typed_units.items()}
     given = (column.times(*in_units.get(column.words or "", (1.0, ""))) for column in columns[:inputs])
     known = np.where(np.isfinite(result.value), result.error, np.nan).reshape(number, -1)
     errors = ["-" if np.isnan(each).all() else f"{np.nanmax(each):.1g}" for each in known]
@@ -337,7 +329,9 @@ VIEWS = OF_DATA | {
     "Campbell": View(campbell_tables, campbell_csv, 1, lambda result: figure_of(result.plot, (8.5, 6.0))),
     "Diagram": View(diagram_table, diagram_csv),
     "Sensitivities": View(sensitivities_table, sensitivities_csv, 1),
-    "Study": View(study_table, study_columns),
+    "Study": View(
+        study_table, study_columns, 0, lambda result: figure_of(result.plot, result.picture_size)
+    ),
     "Tradeoff": View(lambda result: Group(*map(diagram_table, result.diagrams)), tradeoff_csv, 3,
                      _tradeoff_figure),
 }  # fmt: skip

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import line_style, position_label, set_up_axes
+from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, add_legend, new_figure
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 _MOST_CURVES = 8
 _LOWEST, _ROW = 0.02, 0.03  # heights of crosses on the axes, and between those of two curves
 _GREY = "0.5"
-_TITLE = 80  # characters of a line of the title
 _FEW = 4  # cases that are drawn as lines along the span; of more, their range is
 _MARKERS = "osD^vXP"
 
@@ -28,7 +27,7 @@ _MARKERS = "osD^vXP"
 
 
 def sweep_figure(swept: Any) -> Figure:
-    """Draw a sweep: one panel per result over the first input, one curve per value of the second.
+    """Draw a sweep: over one input one panel for all results of a unit, over more a map of each result.
 
     Parameters
     ----------
@@ -39,23 +38,36 @@ def sweep_figure(swept: Any) -> Figure:
     -------
     Figure
     """
-    groups, two = panels_of(swept), _has_curves(swept)
+    if len(swept.values) > 1 and swept.combine == "product":
+        return _maps_of(swept)
+    groups = panels_of(swept)
     figure = new_figure(7.5, max(4.5, 2.7 * len(groups)))
     panels = np.atleast_1d(figure.subplots(len(groups), 1, sharex=True))
-    further = [f"{input_words(swept, k)} = {swept.values[k][0]:.4g}" for k in range(2, len(swept.values))]
-    second = "\n".join([input_words(swept, 1), *further]) if two else None
     for ax, (heading, labels, values) in zip(panels, groups, strict=True):
         order = np.argsort(swept.values[0], kind="stable") if swept.combine == "zip" else slice(None)
         curves(ax, swept.values[0][order], values[:, order], labels)
         ax.set_ylabel(heading)
         if mark_missing(ax, "no answer") or len(labels) > 1:
-            ax.legend(title=second, fontsize=9, title_fontsize=9)
+            ax.legend(fontsize=9)
     panels[-1].set_xlabel(input_words(swept, 0))
     return figure
 
 
+def _maps_of(swept: Any) -> Figure:
+    """Draw each result over two or more inputs as a map."""
+    words = [_input_name(path) for path in swept.inputs]
+    inputs = [MapInput(*each) for each in zip(words, swept.units, swept.values, strict=True)]
+    answers = [
+        MapAnswer(_named(name, unit), values, np.where(np.isfinite(values), "", "no answer"))
+        for name, unit, values in zip(swept.results, swept.result_units, swept.found, strict=True)
+    ]
+    figure = new_figure(*map_size(inputs, answers))
+    plot_maps(inputs, answers, figure.subplots())
+    return figure
+
+
 def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
-    """Panels of a sweep: heading, names of the curves, the curves (m, n). Results of one unit share a panel.
+    """Panels over one input: heading, names of curves, the curves (m, n). Results of one unit share a panel.
 
     Parameters
     ----------
@@ -63,10 +75,6 @@ def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
         See `sweep_figure`.
     """
     results = [*zip(swept.results, swept.result_units, swept.found, strict=True)]
-    if _has_curves(swept):
-        names = [f"{value:.4g}" for value in swept.values[1]]
-        at_first = (slice(None), slice(None), *(0,) * (len(swept.values) - 2))
-        return [(_named(name, unit), names, values[at_first].T) for name, unit, values in results]
     groups: dict[str, list[tuple[str, np.ndarray]]] = {}
     for name, unit, values in results:
         groups.setdefault(unit or name, []).append((name, values))
@@ -81,11 +89,6 @@ def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
     ]
 
 
-def _has_curves(swept: Any) -> bool:
-    """Whether there is a curve for each value of a second input."""
-    return len(swept.values) > 1 and swept.combine == "product"
-
-
 def input_words(swept: Any, place: int) -> str:
     """An input in words, without its table.
 
@@ -96,8 +99,11 @@ def input_words(swept: Any, place: int) -> str:
     place : int
         Which of its inputs.
     """
-    path = swept.inputs[place]
-    return _named((path.partition(".")[2] or path).replace(".", " "), swept.units[place])
+    return _named(_input_name(swept.inputs[place]), swept.units[place])
+
+
+def _input_name(path: str) -> str:
+    return (path.partition(".")[2] or path).replace(".", " ").replace("_", " ")
 
 
 def _named(name: str, unit: str) -> str:
@@ -159,43 +165,6 @@ def grid(ax: Axes) -> None:
     """A light grid behind the curves."""
     ax.grid(color="0.9", linewidth=0.8)
     ax.set_axisbelow(True)
-
-
-def plot_over_input(
-    x: np.ndarray,
-    rows: np.ndarray,
-    labels: Sequence[str],
-    xlabel: str,
-    ylabel: str,
-    ax: Axes | None = None,
-    title: str = "",
-    missing: str = "no answer",
-) -> Axes:
-    """Draw curves over an input.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        Values of the input.
-    rows : ndarray, shape (m, n)
-        The curves, with crosses at the bottom where they are not finite; of many, some spread evenly are
-        drawn.
-    labels : sequence of str
-        One a curve; empty for a single one.
-    xlabel, ylabel : str
-        Labels of the axes.
-    ax : Axes, optional
-        Where to draw; a new one by default.
-    title : str
-        What holds of all curves, wrapped.
-    missing : str
-        What the crosses mean.
-    """
-    ax = set_up_axes(ax, xlabel, ylabel)
-    order = np.argsort(x, kind="stable")
-    curves(ax, x[order], rows[:, order], labels)
-    ax.set_title("\n".join(textwrap.wrap(title, _TITLE)), fontsize=10)
-    return add_legend(ax) if mark_missing(ax, missing) or any(labels) else ax
 
 
 def plot_bars(

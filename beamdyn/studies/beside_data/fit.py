@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats.qmc import LatinHypercube
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
@@ -290,6 +289,8 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
     """Variables (p,) at which to begin, the nearest to the data first."""
+    from scipy.stats.qmc import LatinHypercube  # it takes long to load
+
     numbers = fitting.numbers
     rows = _TRIED * starts if len(numbers) > 1 else starts - 1
     shares = seeded(LatinHypercube, len(numbers), seed).random(rows)

@@ -8,7 +8,7 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from scipy import stats
+from scipy import special  # not stats, which takes long to load
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
@@ -89,15 +89,20 @@ def identify(
     known = bool(np.isfinite(data.uncertainty[np.isfinite(data.frequency)]).all())
     weight = data.uncertainty if known else data.frequency
     fitting = Fitting(scene, data, numbers, weight)
-    enough = stats.chi2.ppf(_LIKELY, max(data.count - len(numbers), 1)) if known else _NOTHING
+    enough = _likely_sum(max(data.count - len(numbers), 1)) if known else _NOTHING
     most = MOST_SOLVES * len(numbers)
-    found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, float(enough))
+    found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, enough)
     paired = int((found.pairs != NO_MODE).sum())
     if paired < len(numbers):
         bound = f"only {paired} of {data.count} frequencies are near modes, for {len(numbers)} unknowns"
         remedy = "begin with a scene that is nearer to the data, or give other bounds"
         raise InvalidValue("free", ", ".join(free), bound, remedy)
     return _Told(found, known).result(start)
+
+
+def _likely_sum(freedom: int) -> float:
+    """Sum of so many squares of standard normal deviations that chance rarely exceeds."""
+    return float(2 * special.gammaincinv(freedom / 2, _LIKELY))
 
 
 @dataclass(frozen=True)
@@ -153,9 +158,9 @@ class _Told:
     @cached_property
     def _intervals(self) -> np.ndarray:
         """Ends (p, 2) of the intervals; from the step without bounds, where a bound holds a number."""
-        quantile = stats.norm.ppf(0.5 + _LEVEL / 2)
+        quantile = special.ndtri(0.5 + _LEVEL / 2)
         if not self.known:
-            quantile = stats.t.ppf(0.5 + _LEVEL / 2, self._freedom) if self._freedom > 0 else np.nan
+            quantile = special.stdtrit(self._freedom, 0.5 + _LEVEL / 2) if self._freedom > 0 else np.nan
         middle = self.fit.modes.x + self._information.step(self._residual / self._uncertainty)
         half = quantile * np.sqrt(np.diag(self._information.covariance))
         low, high = self._fitting.limits
@@ -194,19 +199,19 @@ class _Told:
     def _is_poor(self) -> bool:
         """Whether the deviations are too large for the uncertainties of the data."""
         freedom = self._freedom
-        return self.known and freedom > 0 and bool(self.fit.cost > stats.chi2.ppf(_LIKELY, freedom))
+        return self.known and freedom > 0 and self.fit.cost > _likely_sum(freedom)
 
     def _outliers(self) -> Iterator[str]:
         """Yield values that lie too far off for chance."""
         size, freedom = np.abs(self._standardized), self._freedom
         chance = _CHANCE / max(len(size), 1) / 2
-        limit = stats.norm.isf(chance)
+        limit = -special.ndtri(chance)
         if not self.known or self._is_poor:  # each beside the deviation of the others
             size = np.abs(self._standardized) / (self._poorness if self.known else 1.0)
             if freedom < 2:
                 return
             rest = np.maximum(freedom - size**2, FINEST)
-            size, limit = size * np.sqrt((freedom - 1) / rest), stats.t.isf(chance, freedom - 1)
+            size, limit = size * np.sqrt((freedom - 1) / rest), -special.stdtrit(freedom - 1, chance)
         rows, columns = np.nonzero(self.fit.pairs != NO_MODE)
         data = self._fitting.data
         for k in np.flatnonzero(size > limit):
