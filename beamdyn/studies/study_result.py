@@ -67,8 +67,8 @@ class Study(StatesModelError):
         What limits the answer, and of how many designs.
     provenance : Provenance
         How it was found.
-    typed_units : mapping of str to ShownUnit
-        Units in which values of inputs were typed, by the input's name: those of its tables and pictures.
+    typed_units : mapping
+        By the name of an input: the unit in which its values were typed, for tables and pictures.
 
     Examples
     --------

@@ -75,7 +75,7 @@ def caliper_figure(
     title = "\n".join(filter(None, (title_of(caliper, run, place), caption)))
     draw_in(figure, (0.005, 0.01, 0.545, 0.985), caliper_drawing(caliper, closed, title))
     charts = stroke_charts(caliper, run, place)
-    plot_charts_of_one_x(figure, charts, 0.605, _HEIGHTS[: len(charts)])
+    plot_charts_of_one_x(figure, charts, 0.625, _HEIGHTS[: len(charts)])
     return figure
 
 

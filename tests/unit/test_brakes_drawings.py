@@ -216,9 +216,10 @@ def test_a_sweep_has_a_panel_a_unit_or_a_panel_a_result() -> None:
     figure = sweep_figure(SimpleNamespace(**one))
     assert [len(ax.lines) for ax in figure.axes] == [2, 1] and figure.axes[0].get_ylabel() == "A, B [N]"
     two = one | {"inputs": ("t.a", "t.b"), "units": ("m", "s"), "values": (x, second)}
-    two["found"] = tuple(np.ones((2, 3)) for _ in range(3))
-    figure = sweep_figure(SimpleNamespace(**two))
-    assert [len(ax.lines) for ax in figure.axes] == [3, 3, 3]
+    two["found"] = tuple(np.add.outer(x, second) for _ in range(3))
+    maps = sweep_figure(SimpleNamespace(**two)).axes[1:]
+    assert [ax.get_title() for ax in maps] == ["A [N]", "B [N]", "mu"]
+    assert (maps[0].get_xlabel(), maps[0].get_ylabel()) == ("a [m]", "b [s]")
 
 
 def test_pyplot_is_not_used() -> None:

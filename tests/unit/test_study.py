@@ -401,14 +401,15 @@ def test_a_name_that_is_no_string_is_refused(key):
         bd.spread(SCENE, {key: "+-2%"})
 
 
-def test_plots_of_one_input_and_of_more():
-    one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot()
-    assert len(one.get_lines()) == 3 and one.get_xlabel() == "mount.radius [m]"
-    three = bd.study(
-        SCENE, {"mount.radius": [0.1, 0.2], "speed": [0.0, 9.0], "beam.width": [0.01, 0.02]}
-    ).plot()
-    assert len(three.get_lines()) == 2 * 3  # speeds and modes
-    assert "beam.width = 0.01 m" in three.get_title()
+def test_plots_of_one_input_have_a_panel_a_mode_and_those_of_three_a_map_each():
+    one = bd.study(SCENE, {"mount.radius": [0.1, 0.2, 0.3]}).plot().figure.axes[1:]
+    assert [ax.get_title() for ax in one] == [f"frequency, mode {i} [Hz]" for i in (1, 2, 3)]
+    assert one[-1].get_xlabel() == "mount.radius [m]"
+    vary = {"mount.radius": [0.1, 0.2], "speed": [0.0, 9.0], "beam.width": [0.01, 0.02]}
+    three = bd.study(SCENE, vary, modes=2).plot().figure.axes[1:]
+    assert [ax.get_title().partition("\n")[2] for ax in three] == [
+        "beam.width = 0.01 m", "beam.width = 0.02 m"
+    ] * 2  # fmt: skip
 
 
 def test_each_crossing_of_a_rolling_beam_has_a_head_of_its_own():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.drawing.chart import Chart
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
+_OF_LABEL = 16  # letters in a line of the label of a low chart
 _PALE, _CURSOR = "0.6", "0.4"
 _GAP = 0.01  # between the foot of the axes and a text, over the height of the axes
 _BESIDE: dict[str, Any] = {"va": "bottom"}
@@ -89,6 +91,7 @@ def plot_charts_of_one_x(
     for row, chart in enumerate(charts):
         ax = plot_chart(figure.add_subplot(cells[row, 0]), chart)
         ax.set_title("")
+        ax.set_ylabel(fill(chart.y.title, _OF_LABEL))  # no longer than the axes are high
         if row < len(charts) - 1:
             ax.set_xlabel("")
             ax.tick_params(labelbottom=False)

@@ -24,8 +24,10 @@ _DECADES = 1.5  # decades of values from which on lines of equal value ascend by
 _LOGARITHMIC = 10.0  # largest over smallest value of an input at equal ratios, from which on its axis is so
 _DIGITS = 4
 _FEW = 40  # values of an input whose points are marked on a curve
+_SAME = 1e-9  # relative difference of values that rounding makes: no lines are drawn between them
 _RARE = 0.04  # share of the values, smallest and largest, that lines of equal value are not chosen by
-_LETTERS = 36  # of a row of a title
+_LETTERS = 10.0  # of a title in an inch
+_NARROWEST, _WIDE = 2.2, 100.0  # least width of a map, and one that has room for all [inch]
 _HATCHED: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.72", "hatch": "////", "linewidth": 0}
 _PALE = (0.0, 0.42)  # part of the colours between the lines, so that texts on them are read
 _MEETS = "#A0303A"  # colour of lines that the answer meets, such as those of an excitation
@@ -94,7 +96,7 @@ class MapAnswer:
 
 def map_size(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> tuple[float, float]:
     """Width and height of the picture that `plot_maps` makes, in inches."""
-    count, columns = _grid(inputs, answers)
+    count, columns = _grid(inputs, answers, np.inf)
     return (7.5 if columns == 1 else 4.2 * columns), 0.6 + (3.2 if columns > 1 else 2.6) * -(
         -count // columns
     )
@@ -125,13 +127,14 @@ def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes
     shown = [*_panels(inputs, answers)]
     if ax is None:
         ax = new_axes(*map_size(inputs, answers))
-    count, columns = _grid(inputs, answers)
+    inches = ax.bbox.width / ax.get_figure(root=True).dpi  # pyright: ignore[reportOptionalMemberAccess]
+    count, columns = _grid(inputs, answers, inches)
     whole, each = (ax, [ax]) if count == 1 else panels(count, ax, columns)
     for k, (panel, (title, value, reason, meets)) in enumerate(zip(each, shown, strict=True)):
         draw = _draw_map if len(over) > 1 else _draw_curve
         draw(panel, [inputs[i] for i in over[:2]], value, reason, meets)
-        width = _LETTERS * (2 if columns == 1 else 1)
-        rows = (row for line in title.splitlines() for row in textwrap.wrap(line, width))
+        letters = max(int(_LETTERS * inches / columns), 12)
+        rows = (row for line in title.splitlines() for row in textwrap.wrap(line, letters))
         panel.set_title("\n".join(rows), fontsize=10)
         if k + columns < count:
             panel.set_xlabel("")
@@ -148,12 +151,13 @@ def _varied(inputs: Sequence[MapInput]) -> list[int]:
     return [i for i, each in enumerate(inputs) if len(each.values) > 1] or [0]
 
 
-def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> tuple[int, int]:
-    """How many panels there are, and in a row."""
+def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: float) -> tuple[int, int]:
+    """How many panels there are, and how many in a row of a width."""
     count, over = len([*_panels(inputs, answers)]), _varied(inputs)
     if len(over) < 2:
         return count, 1
-    return count, len(_thirds(inputs[over[2]])) if len(over) > 2 else min(count, _COLUMNS)
+    columns = len(_thirds(inputs[over[2]])) if len(over) > 2 else min(count, _COLUMNS)
+    return count, max(min(columns, int(min(inches, _WIDE) / _NARROWEST)), 1)
 
 
 def _thirds(given: MapInput) -> list[int]:
@@ -227,9 +231,14 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     known = z[np.isfinite(z)]
     if not known.size:
         return
+    low, high = float(known.min()), float(known.max())
+    if high - low <= _SAME * max(abs(low), abs(high)):
+        middle = np.array([[(x[0] + x[-1]) / 2, (y[0] + y[-1]) / 2]])
+        labels.add(f"{(low + high) / 2:.{_DIGITS}g} wherever there is an answer", middle)
+        return
     levels = levels_of(known)
     pale = ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
-    bounds = np.union1d(levels, [np.nextafter(known.min(), -np.inf), np.nextafter(known.max(), np.inf)])
+    bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
     ax.contourf(x, y, z, bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
     for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
@@ -247,8 +256,7 @@ def levels_of(known: np.ndarray) -> np.ndarray:
         ticks = np.ravel([[step * 10.0**n for step in steps] for n in decades])
     else:
         ticks = MaxNLocator(_LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-    within = ticks[(ticks > known.min()) & (ticks < known.max())]
-    return within if within.size else np.array([(low + high) / 2])
+    return ticks[(ticks > known.min()) & (ticks < known.max())]
 
 
 def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **style: Any) -> None:
