@@ -114,8 +114,9 @@ Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"
 
 
 @analysis(
-    'beamdyn study examples/tyre_harvester.toml --vary "beam.thickness=0.1:0.4:7 mm"',
+    'beamdyn study examples/tyre_harvester.toml --vary "thickness=0.1:0.4:9 mm" --vary "speed=0:99:9 rad/s"',
     'beamdyn study examples/tyre_harvester.toml --spread "beam.thickness=+-2%"',
+    screen="Map",
 )
 def study(
     scene: Scene,

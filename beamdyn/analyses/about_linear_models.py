@@ -234,7 +234,7 @@ def matrices(
     return bd.matrices(scene, speed, modes, discretization)
 
 
-@analysis('beamdyn response examples/rough_road.toml --frequencies "1:100:50 Hz"')
+@analysis('beamdyn response examples/rough_road.toml --frequencies "1:1000:400 Hz"', screen="Response")
 def response(
     scene: Scene,
     *,
@@ -265,6 +265,7 @@ def response(
 
 @analysis(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
+    screen="Random road",
     about_scene="The scene, damped; with a rolling wheel for a road.",
 )
 def random(

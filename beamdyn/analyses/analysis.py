@@ -178,13 +178,8 @@ class Analysis:
 
     def meaning(self, name: str) -> str:
         """Explanation of an option: that of this analysis if it has one, else that of the option's type."""
-        from docstring_parser import parse
-
         notes = [note.help for note in _extras(self.options[name].annotation) if isinstance(note, Parameter)]
-        own = [
-            each.description for each in parse(self.function.__doc__ or "").params if each.arg_name == name
-        ]
-        return next(filter(None, [*own, *notes]), "")
+        return next(filter(None, [meanings_in(self.function).get(name), *notes]), "")
 
     def command(self) -> Callable[..., None]:
         """The function of the command, with the signature that makes its help."""
@@ -271,6 +266,13 @@ class Analysis:
 def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
     """Make an `Analysis` of the function that follows, with these attributes."""
     return lambda function: Analysis(function, examples, **about)
+
+
+def meanings_in(documented: object) -> dict[str, str]:
+    """Explanations of parameters, by their names, in a docstring."""
+    from docstring_parser import parse
+
+    return {each.arg_name: each.description or "" for each in parse(documented.__doc__ or "").params}
 
 
 def deliver(answer: Answer, outputs: Files, question: Question) -> None:

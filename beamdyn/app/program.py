@@ -5,11 +5,12 @@ from __future__ import annotations
 from importlib.resources import files
 
 from beamdyn.analyses import analyses
+from beamdyn.analyses.about_campbell import campbell
+from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.frequency_screen import FREQUENCIES
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.rotor_screen import ROTOR
 from beamdyn.app.scene_form import inputs_of
-from beamdyn.app.scene_screen import analysis_screen, first_entries
 from beamdyn.app.steady_state import STEADY_STATE
 from beamdyn.app.trade import TRADE
 from beamdyn.app.transient_screen import TRANSIENT
@@ -17,7 +18,7 @@ from beamdyn.common.screens.screens import Document, Program
 from beamdyn.files.scene_inputs import with_physics_as_table
 from beamdyn.files.scenes import parse_scene
 
-SHOWN = [analysis for analysis in analyses().values() if analysis.screen]
+SHOWN = [*(analysis for analysis in analyses().values() if analysis.screen), campbell]
 SCREENS = (FREQUENCIES, ROTOR, MODE_SHAPES, STEADY_STATE, TRANSIENT, TRADE, *map(analysis_screen, SHOWN))
 SCENE = Document(
     "scene",

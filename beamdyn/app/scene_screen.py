@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from inspect import Parameter
-from itertools import islice, pairwise
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import Field, create_model
 from rich.console import RenderableType
 
-from beamdyn.analyses.analysis import Analysis, Answer
 from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
-from beamdyn.app.scene_form import ASIDE, DRAGS, EFFORT, PRESETS, SCENE_TABLES, read_aside, read_scene
+from beamdyn.app.scene_form import DRAGS, EFFORT, PRESETS, SCENE_TABLES
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.inputs import Section, parts_of
-from beamdyn.common.edge.rendering import drawing, picture
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.edge.wording import of_file
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import joined
-from beamdyn.common.screens.screen_parts import KeyResult
-from beamdyn.common.screens.screens import FoldedPart, Screen
+from beamdyn.common.screens.screens import Screen
 from beamdyn.modes.model_error import left_out_effects
 
 if TYPE_CHECKING:
@@ -145,56 +136,3 @@ def bar(change: float) -> str:
     """A bar as long as the decades of a change above 1e-6."""
     decades = np.log10(abs(change) / _LEAST) if change else 0.0
     return _BAR * int(np.ceil(_DECADE * min(max(decades, 0.0), _LONGEST)))
-
-
-# Screens of analyses ----------------------------------------------------------------------------------
-
-
-def analysis_screen(analysis: Analysis) -> Screen:
-    """Make the screen of an analysis: a form of its options beside the scene's, and its result."""
-    name = analysis.function.__name__
-    ASIDE[name] = _section(analysis)
-
-    def solve(tables: Mapping[str, Any]) -> Answer:
-        given = dict(read_aside(tables, name))
-        paths = {option: f"{name}.{option}" for option in given}
-        with of_file(paths):
-            return analysis.answer(read_scene(tables), given, named=paths.__getitem__)
-
-    def notes(answer: Answer) -> list[str]:
-        said = warnings_of(answer.result) if answer.warnings is None else answer.warnings
-        return [*([answer.refusal] if answer.refusal else []), *said]
-
-    def result(answer: Answer) -> Result:
-        return answer.result
-
-    def headline(answer: Answer) -> Iterator[KeyResult]:
-        lines = filter(None, answer.result.headline())
-        return (KeyResult(analysis.screen, line) for line in islice(lines, _HEADLINES))
-
-    def on_page(answer: Answer) -> str:
-        return picture(drawing(lambda: drawn(answer.result)), "Picture")
-
-    more = (FoldedPart("Picture", on_page, lambda _: "<p>It is the drawing above.</p>"),)
-    return scene_screen(
-        analysis.screen, analysis.question, solve, (name,), result, notes=notes, more=more, headline=headline
-    )
-
-
-def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Entries of the form on opening: the options of the example in the help of the command."""
-    name, words = analysis.function.__name__, shlex.split(analysis.examples[0])
-    given = {word[2:].replace("-", "_"): text for word, text in pairwise(words) if word[:2] == "--"}
-    return {f"{name}.{option}": given.get(option, "") for option in _section(analysis).model_fields}
-
-
-def _section(analysis: Analysis) -> type[Section]:
-    """The table of an analysis' options: numbers, texts and choices, but no files or groups of options."""
-    fields: dict[str, Any] = {}
-    for name, option in analysis.shown.items():
-        kind = get_args(option.annotation)[0] if get_args(option.annotation) else option.annotation
-        known = (part in (str, int, float) or get_origin(part) is Literal for part in parts_of(kind))
-        if name != "physics" and get_origin(kind) is not tuple and any(known):
-            default = ... if option.default is Parameter.empty else option.default
-            fields[name] = kind, Field(default, description=analysis.meaning(name))
-    return create_model(f"{analysis.name}Input", __base__=Section, **fields)

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-import numpy as np
 from cyclopts import App, Parameter
 
 import beamdyn as bd
+from beamdyn.analyses.about_campbell import parse_operation, parse_orders, parse_top
 from beamdyn.analyses.analysis import Answer, Physics, deliver
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCount, Text
 from beamdyn.analyses.results.of_modes import said_of_model
 from beamdyn.analyses.results.of_studies import crossings_columns
-from beamdyn.analyses.values import parse_positive, parse_speed
 from beamdyn.cli.decks import read_with
 from beamdyn.common.edge.config import read
 from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, Question, write_table
-from beamdyn.common.edge.units import unit_as_written
 from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
@@ -34,7 +31,6 @@ OfAll = Annotated[
         help="auto: add the effects whose size exceeds the tolerance, in place of the physics of the scenes."
     ),
 ]
-_SPEEDS = 301
 
 
 def campbell(
@@ -92,15 +88,15 @@ def campbell(
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
     alone = inputs[0].scene if len(inputs) == 1 else None  # several have no one rolling radius
-    speeds, unit = _parse_top(top_speed, alone)
+    speeds, unit = parse_top(top_speed, alone)
     question = _question(
         inputs, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
         length=length, hub_radius=hub_radius, **options, physics=physics,
     )  # fmt: skip
     by_label = _label(inputs, labels, physics)
-    at, range_ = _parse_operation(rated, operating, top_speed, speeds[-1], alone)
+    at, range_ = parse_operation(rated, operating, top_speed, speeds[-1], alone)
     result = bd.campbell(
-        by_label, speeds, per_rev=_parse_orders(per_rev), rated=at, operating=range_, unit=unit,
+        by_label, speeds, per_rev=parse_orders(per_rev), rated=at, operating=range_, unit=unit,
         bounds=bounds, **options,
     )  # fmt: skip
     if crossings is not None:
@@ -147,54 +143,6 @@ def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
     each = [Question.of("beamdyn campbell", given.path, given.text, **options) for given in inputs]
     title = f"beamdyn campbell: {', '.join(str(given.path) for given in inputs)}"
     return Question(title, "\n\n".join(question.inputs for question in each))
-
-
-def _parse_top(text: str, scene: Scene | None) -> tuple[Any, str]:
-    """Speeds [rad/s] up to the top one, and the unit of speeds in the answer."""
-    top = parse_positive("--top-speed", text, "rad/s", scene)
-    unit, _ = unit_as_written(text, "rad/s")
-    return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"
-
-
-def _parse_operation(
-    rated: str | None, operating: str | None, top_text: str, top: float, scene: Scene | None
-) -> tuple[float | None, tuple[float, float] | None]:
-    """The rated speed, and the lowest and highest operating speed [rad/s]."""
-
-    def up_to_top(speed: float, words: str) -> float:
-        if speed > top * (1 + 1e-12):
-            raise ValueError(f'{words}: it is above --top-speed = "{top_text}"; give a higher top speed')
-        return min(speed, top)
-
-    at, range_ = None, None
-    if rated is not None:
-        at = up_to_top(parse_positive("--rated", rated, "rad/s", scene), f'--rated = "{rated}"')
-    if operating is not None:
-        numbers, _, unit = operating.strip().rpartition(" ")
-        ends, words = [part.strip() for part in numbers.split(":")], f'--operating = "{operating}"'
-        if len(ends) != 2:
-            raise ValueError(f'{words}: give lowest:highest and a unit, e.g. "6.9:12.1 rpm"')
-        low, high = (parse_speed("--operating", f"{end} {unit}", scene) for end in ends)
-        if not 0 <= low < high:
-            raise ValueError(f"{words}: it must begin at 0 or above and end above its beginning")
-        range_ = low, up_to_top(high, f"--operating = {ends[1]} {unit}")
-    if at is not None and range_ is not None and not range_[0] <= at <= range_[1]:
-        raise ValueError(f'--rated = "{rated}": it lies outside --operating = "{operating}"; widen the range')
-    return at, range_
-
-
-def _parse_orders(text: str) -> Sequence[int]:
-    """Orders of the per-rev lines: 1 to a number, that of "2P", or those of a list."""
-    if alone := re.fullmatch(r"\s*([1-9]\d*)\s*P\s*", text, re.IGNORECASE):
-        return [int(alone[1])]
-    parts = [part.strip() for part in text.split(",")]
-    orders = [int(part) for part in parts if part.isdecimal() and int(part) > 0]
-    if len(orders) < len(parts):
-        raise ValueError(
-            f'--per-rev = "{text}": give the highest order, e.g. "6" for 1P to 6P, one order, e.g. "2P", or '
-            'a list of orders from one on, e.g. "3, 6, 9"'
-        )
-    return orders if len(parts) > 1 else range(1, orders[0] + 1)
 
 
 def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -> dict[str, Scene]:

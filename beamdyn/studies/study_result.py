@@ -207,10 +207,9 @@ class Study(StatesModelError):
         """
         return plot_maps(*self._picture, ax)
 
-    @property
-    def picture_size(self) -> tuple[float, float]:
-        """Width and height of the picture, in inches."""
-        return map_size(*self._picture)
+    def picture_size(self, width: float | None = None) -> tuple[float, float]:
+        """Width and height of the picture, of a width if one is given, in inches."""
+        return map_size(*self._picture, width)
 
     @cached_property
     def _picture(self) -> tuple[list[MapInput], list[MapAnswer]]:

@@ -11,9 +11,9 @@ import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
+from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.program import SCENE
 from beamdyn.app.scene_form import ASIDE, inputs_of
-from beamdyn.app.scene_screen import analysis_screen, first_entries
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.screens.form_entries import tables_of
@@ -75,7 +75,7 @@ def test_the_screen_has_a_form_of_the_options_and_shows_the_result(new_screen):
     assert len(answer.result.frequency) == 2
     assert len(list(new_screen.rows(answer))) == 3
     assert new_screen.draw(answer, 0.0).axes
-    assert new_screen.more[0].on_page(answer).startswith("<img")
+    assert all(new_screen.picture(answer, narrow).axes for narrow in (False, True))
     assert solve(new_screen, entries(**{"fast_modes.modes": "3"})).result.frequency.size == 3
 
 

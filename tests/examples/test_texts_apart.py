@@ -104,7 +104,7 @@ def study(request):
 
 @pytest.mark.parametrize("scale", [0.7, 1.0, 1.6])
 def test_maps_at_three_sizes(study, scale):
-    width, height = study.picture_size
+    width, height = study.picture_size()
     figure = Figure(figsize=(scale * width, scale * height), layout="constrained")
     study.plot(figure.subplots())
     assert overlapping(figure) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
     from beamdyn.modes.critical import CriticalPoint
     from beamdyn.modes.modes import Modes
+
+
+_FIRST_PART = re.compile(r";(?![^(]*\))")  # ends at a semicolon outside brackets
 
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
@@ -63,7 +67,7 @@ def notes_of(result: Any) -> list[str]:
         return ["with large deflection"]
     outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
     said = (*outside, *_of_model_error(result))
-    return [worded(each, _words_of(result)).partition(";")[0] for each in said]
+    return [_FIRST_PART.split(worded(each, _words_of(result)))[0] for each in said]
 
 
 def critical_label(point: CriticalPoint) -> str:

@@ -94,12 +94,13 @@ class MapAnswer:
     meets: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
-def map_size(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> tuple[float, float]:
-    """Width and height of the picture that `plot_maps` makes, in inches."""
-    count, columns = _grid(inputs, answers, np.inf)
-    return (7.5 if columns == 1 else 4.2 * columns), 0.6 + (3.2 if columns > 1 else 2.6) * -(
-        -count // columns
-    )
+def map_size(
+    inputs: Sequence[MapInput], answers: Sequence[MapAnswer], width: float | None = None
+) -> tuple[float, float]:
+    """Width and height of the picture that `plot_maps` makes, of a width if one is given, in inches."""
+    count, columns = _grid(inputs, answers, width or _WIDE)
+    usual = 7.5 if columns == 1 else 4.2 * columns
+    return width or usual, 0.6 + (2.6 if len(_varied(inputs)) < 2 else 3.2) * -(-count // columns)
 
 
 def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes | None = None) -> Axes:
@@ -157,7 +158,7 @@ def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: floa
     if len(over) < 2:
         return count, 1
     columns = len(_thirds(inputs[over[2]])) if len(over) > 2 else min(count, _COLUMNS)
-    return count, max(min(columns, int(min(inches, _WIDE) / _NARROWEST)), 1)
+    return count, max(min(columns, int(inches / _NARROWEST)), 1)
 
 
 def _thirds(given: MapInput) -> list[int]:

@@ -56,6 +56,13 @@ def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
     return screen.more[number].on_page(answer)
 
 
+def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) -> str:
+    """The picture of an answer in HTML, for a narrow page or a wide one."""
+    draw = screen.picture
+    assert draw is not None
+    return picture(drawing(lambda: draw(answer, narrow)), f"{screen.name}: picture of the result")
+
+
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:
     """The numbers of an answer as a CSV file; for a beam they include the model error, which takes time."""
     return csv_text(screen.rows(answer))

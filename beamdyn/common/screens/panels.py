@@ -67,24 +67,20 @@ def headline_of(work: OpenDocument, screen: Screen, answered: ShownAnswer) -> st
     return headline_html(answered.headline, other, work.other.name if work.other else "")
 
 
-class FoldedPanel:
-    """A part of an answer that folds out, made in another process; the last one stays until it has come.
+class PicturePanel:
+    """A part of an answer, made in another process; the last one stays until it has come.
 
     Parameters
     ----------
-    title : str
-        Title of the part.
     make : callable
         ``make(answer)`` returns a future of the part as HTML.
     """
 
-    def __init__(self, title: str, make: Callable[[Any], asyncio.Future[str]]) -> None:
-        self.title, self._make = title, make
+    def __init__(self, make: Callable[[Any], asyncio.Future[str]]) -> None:
+        self._make = make
         self._answer: Any = None
         self._way = LatestComputation(self._settle, self._fail)
-        self._fold: Any = ui.expansion(title, on_value_change=self._fill)
-        with self._fold.classes("w-full section folded").props("dense"):
-            self._frame: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
+        self._frame: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
     def show(self, answer: object) -> None:
         """Show another answer."""
@@ -96,10 +92,10 @@ class FoldedPanel:
         self._way.cancel()
 
     def _fill(self) -> None:
-        if self._fold.value and self._answer is not None:
+        if self._answer is not None:
             self._way.want(lambda: self._make(self._answer))
 
-    def _settle(self, future: asyncio.Future[str], last: bool) -> None:
+    def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         if self._frame.is_deleted or future.cancelled():
             return
         error = future.exception()
@@ -109,6 +105,28 @@ class FoldedPanel:
 
     def _fail(self, error: BaseException) -> None:
         self._frame.set_content(picture(f"There is no drawing: {error}", ""))
+
+
+class FoldedPanel(PicturePanel):
+    """A part of an answer that folds out, and is made only then.
+
+    Parameters
+    ----------
+    title : str
+        Title of the part.
+    make : callable
+        As for `PicturePanel`.
+    """
+
+    def __init__(self, title: str, make: Callable[[Any], asyncio.Future[str]]) -> None:
+        self.title = title
+        self._fold: Any = ui.expansion(title, on_value_change=self._fill)
+        with self._fold.classes("w-full section folded").props("dense"):
+            super().__init__(make)
+
+    def _fill(self) -> None:
+        if self._fold.value:
+            super()._fill()
 
 
 class SketchPanel:

@@ -28,7 +28,13 @@ from beamdyn.common.screens.list_editor import ListEditor
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.page_tasks import at_fault, outcome_of
 from beamdyn.common.screens.page_writer import PageWriter, toggle
-from beamdyn.common.screens.panels import ComparisonPanel, FoldedPanel, SketchPanel, headline_of
+from beamdyn.common.screens.panels import (
+    ComparisonPanel,
+    FoldedPanel,
+    PicturePanel,
+    SketchPanel,
+    headline_of,
+)
 from beamdyn.common.screens.processes import RunsTasks, Task
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
@@ -101,6 +107,7 @@ class ScreenView:
 
     def _make_results(self) -> None:
         screen, name = self.screen, self.screen.name
+        self._made: list[PicturePanel] = []  # parts that other processes make
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
@@ -109,10 +116,12 @@ class ScreenView:
                 self._branch = BranchChoice(self._draw)
                 self.board = DraggableDrawing(f"{name}: drawing of the result", self._moved, self._writer)
                 self._charts = ChartBoard(f"{name}: charts of the result", self._writer)
+                if screen.picture is not None:
+                    self._made.append(PicturePanel(self._make_picture))
             with ui.column().classes("numbers gap-2"):
                 self.comparison = ComparisonPanel(self.work, screen)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full tables")
-                self._more = [
+                self._made += [
                     FoldedPanel(part.title, lambda answer, i=i: self._make(page_tasks.folded, answer, i))
                     for i, part in enumerate(screen.more)
                 ]
@@ -206,6 +215,9 @@ class ScreenView:
         """Have something made for this screen."""
         return self._solver.submit(task, self.work.document, self.screen, *given)
 
+    def _make_picture(self, answer: Any) -> asyncio.Future[Any]:
+        return self._make(page_tasks.picture_part, answer, self.narrow)
+
     def solve(self, held: bool = False) -> None:
         """Have the present entries solved, and the answer shown when it comes; the last one stays until then.
 
@@ -227,7 +239,7 @@ class ScreenView:
 
     def close(self) -> None:
         """End what is under way: the page is gone."""
-        for more in self._more:
+        for more in self._made:
             more.close()
         self._way.cancel()
         if self.sweep is not None:
@@ -325,7 +337,7 @@ class ScreenView:
         if not held:  # while a point is moved, its drawing alone follows
             self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
-            for more in self._more:
+            for more in self._made:
                 more.show(answered.answer)
 
     def be_narrow(self, narrow: bool) -> None:
@@ -336,6 +348,8 @@ class ScreenView:
         if narrow and self._sketch is not None:
             self._sketch.fold()
         self._draw()
+        if self.screen.picture is not None and self._answered is not None:
+            self._made[0].show(self._answered.answer)
 
     def _draw(self, view: Viewport | None = None) -> None:
         """Draw the latest answer; charts beside a drawing that moves follow at their own rate."""

@@ -137,6 +137,9 @@ class Screen:
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional
         ``charts(answer, place)``: charts below the drawings.
+    picture : callable, optional
+        ``picture(answer, narrow)``: the figure that stands above the tables, for a narrow page or a wide one;
+        made in another process.
     branches : callable
         ``branches(answer)``: where there are several solutions, the answer with each of them drawn, by name,
         the usual one first; empty where there is one.
@@ -167,6 +170,7 @@ class Screen:
     quick_headline: Callable[[Any], Iterable[KeyResult]] | None = None
     effort: str = ""
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
+    picture: Callable[[Any, bool], Figure] | None = None
     branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}
     sketch: Sketcher = lambda _: ()
 

@@ -1,0 +1,143 @@
+"""Screens that follow from the description of an analysis: a form of its options, and its result."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping
+from dataclasses import fields as dataclass_fields
+from dataclasses import is_dataclass
+from functools import partial
+from inspect import Parameter
+from itertools import islice, pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin, get_type_hints
+
+from pydantic import Field, create_model
+
+from beamdyn.analyses.analysis import Analysis, Answer, meanings_in
+from beamdyn.analyses.results.cautions import noted, warnings_of
+from beamdyn.app.scene_form import ASIDE, read_aside, read_scene
+from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.edge.inputs import Section, parts_of
+from beamdyn.common.edge.outputs import Files
+from beamdyn.common.edge.views import picture_of
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.results.pictures import figure_of
+from beamdyn.common.results.result import Result
+from beamdyn.common.screens.screen_parts import KeyResult
+from beamdyn.common.screens.screens import Screen
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_HEADLINES = 3  # most parts of a result's one line that stand first
+_NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
+_OF_COMMANDS = ("physics", "psd_axes", "workers", "samples", "seed")  # options that a form does without
+_BETWEEN = ";"  # texts of an option that may be given several times
+
+
+def analysis_screen(analysis: Analysis) -> Screen:
+    """Make the screen of an analysis: a form of its options beside the scene's, and its result."""
+    name = analysis.function.__name__
+    ASIDE[name] = _section(analysis)
+
+    def solve(tables: Mapping[str, Any]) -> Answer:
+        given = dict(read_aside(tables, name))
+        paths = {option: f"{name}.{option}" for option in given}
+        with of_file(paths):
+            return analysis.answer(read_scene(tables), _in_groups(analysis, given), named=paths.__getitem__)
+
+    def notes(answer: Answer) -> list[str]:
+        said = warnings_of(answer.result) if answer.warnings is None else answer.warnings
+        return [*([answer.refusal] if answer.refusal else []), *said]
+
+    def result(answer: Answer) -> Result:
+        return answer.result
+
+    def headline(answer: Answer) -> Iterator[KeyResult]:
+        lines = filter(None, answer.result.headline())
+        return (KeyResult(analysis.screen, line) for line in islice(lines, _HEADLINES))
+
+    return scene_screen(
+        analysis.screen, analysis.question, solve, (name,), result, notes=notes, headline=headline,
+        picture=_drawn_answer, draw=lambda answer, _=0.0: _drawn_answer(answer),
+    )  # fmt: skip
+
+
+def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
+    """The picture of an answer, with its notes below."""
+    result: Any = answer.result
+    if narrow:
+        size = result.picture_size(_NARROW[0]) if hasattr(result, "picture_size") else _NARROW
+        draw = partial(figure_of, answer.draw or result.plot, size)
+    else:
+        draw = picture_of(result) if answer.draw is None else partial(figure_of, answer.draw)
+    assert draw is not None
+    return noted(draw, result)()
+
+
+def first_entries(analysis: Analysis) -> dict[str, str]:
+    """Entries of the form on opening: the options of the example in the help of the command."""
+    name, words = analysis.function.__name__, shlex.split(analysis.examples[0])
+    given: dict[str, str] = {}
+    for word, text in pairwise(words):
+        if word.startswith("--"):
+            option = word[2:].replace("-", "_")
+            given[option] = f"{given[option]}{_BETWEEN} {text}" if option in given else text
+    return {f"{name}.{option}": given.get(option, "") for option in _section(analysis).model_fields}
+
+
+def _section(analysis: Analysis) -> type[Section]:
+    """The table of an analysis' options, with those in groups: numbers, texts and choices, but no files."""
+    fields: dict[str, Any] = {}
+    for name, option in analysis.shown.items():
+        if group := _group_of(option.annotation):
+            hints, meanings = get_type_hints(group, include_extras=True), meanings_in(group)
+            of_group = {each.name: each.default for each in dataclass_fields(group)}
+            options = [(each, hints[each], of_group[each], meanings.get(each, "")) for each in of_group]
+        else:
+            default = ... if option.default is Parameter.empty else option.default
+            options = [(name, option.annotation, default, analysis.meaning(name))]
+        for each, annotation, default, meaning in options:
+            if each not in _OF_COMMANDS and (kind := _in_a_form(annotation)):
+                fields[each] = kind, Field(default or ("" if kind is str else default), description=meaning)
+    return create_model(f"{analysis.name}Input", __base__=Section, **fields)
+
+
+def _group_of(annotation: Any) -> type | None:
+    """The class of an option that is a group of options."""
+    kind = _bare(annotation)
+    return kind if isinstance(kind, type) and is_dataclass(kind) and not issubclass(kind, Files) else None
+
+
+def _bare(annotation: Any) -> Any:
+    return annotation.__origin__ if hasattr(annotation, "__metadata__") else annotation
+
+
+def _in_a_form(annotation: Any) -> Any:
+    """The kind of field that an option has in a form; None if it has none."""
+    kind = _bare(annotation)
+    if get_origin(kind) is tuple:
+        return str if str in get_args(kind) else None
+    known = (part in (str, int, float) or get_origin(part) is Literal for part in parts_of(kind))
+    return kind if any(known) and Path not in parts_of(kind) else None
+
+
+def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of options as the function takes them: groups made of theirs, lists of their texts."""
+    values: dict[str, Any] = {}
+    for name, option in analysis.options.items():
+        if group := _group_of(option.annotation):
+            hints = get_type_hints(group, include_extras=True)
+            own = {each: _listed(hints[each], given[each]) for each in hints if each in given}
+            values[name] = group(**own)
+        elif name in given:
+            values[name] = _listed(option.annotation, given[name])
+    return values
+
+
+def _listed(annotation: Any, value: Any) -> Any:
+    """The texts of an option that may be given several times; else the value."""
+    if get_origin(_bare(annotation)) is not tuple:
+        return value
+    return tuple(part.strip() for part in (value or "").split(_BETWEEN) if part.strip())
