@@ -234,7 +234,9 @@ def matrices(
     return bd.matrices(scene, speed, modes, discretization)
 
 
-@analysis('beamdyn response examples/rough_road.toml --frequencies "1:1000:400 Hz"', screen="Response")
+@analysis(
+    'beamdyn response examples/rough_road.toml --frequencies "1:999:99 Hz"', screen="Frequency response"
+)
 def response(
     scene: Scene,
     *,

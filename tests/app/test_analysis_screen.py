@@ -12,7 +12,7 @@ from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
-from beamdyn.app.program import SCENE
+from beamdyn.app.program import SCENE, SHOWN
 from beamdyn.app.scene_form import ASIDE, inputs_of
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue
@@ -87,6 +87,31 @@ def test_screens_on_own_data_take_it_as_text_and_no_files(name):
     answer = solve(screen, given)
     assert len([*screen.rows(answer)]) > 1
     assert screen.draw(answer, 0.0).axes
+
+
+@pytest.mark.parametrize("described", SHOWN, ids=lambda each: each.screen)
+def test_screens_open_with_an_answer_and_a_picture_for_each_width(described):
+    screen = next(each for each in SCENE.screens if each.name == described.screen)
+    damped = {"model.damping_ratio": "0.01"} if described.screen == "Random road" else {}
+    answer = solve(screen, {**SCENE.base_entries, **damped})
+    assert len([*screen.rows(answer)]) > 1 and [*screen.headline(answer)]
+    assert all(screen.picture(answer, narrow).axes for narrow in (False, True))
+
+
+def test_options_in_groups_have_fields_and_those_given_several_times_one_for_all():
+    (described,) = analyses(("study",)).values()
+    screen = next(each for each in SCENE.screens if each.name == "Map")
+    given = SCENE.base_entries
+    assert given["study.vary"] == "thickness=0.1:0.4:9 mm; speed=0:99:9 rad/s"
+    assert not {"study.store", "study.workers", "study.together"} & {*given}
+    result = solve(screen, given | {"study.vary": "mount.radius=0:300:3 mm; thickness=0.2,0.3 mm;"}).result
+    assert [each.name for each in result.inputs] == ["mount.radius", "beam.thickness"]
+    assert "An input and its values" in inputs_meaning("study.vary")
+    assert first_entries(described)["study.vary"] == given["study.vary"]
+
+
+def inputs_meaning(path):
+    return next(each for each in inputs_of(SCENE.base_entries) if each.path == path).quantity.meaning
 
 
 def test_refusals_stand_at_the_field(new_screen):
