@@ -171,9 +171,13 @@ class RitzSpace(SampledSpace):
     spaces: RitzSpaces
     conditions: RootConditions
 
-    @cached_property
+    @property
     def coarse(self) -> np.ndarray:
         """The first functions of each segment, and the rotation where the root turns."""
+        return self._coarse
+
+    @cached_property
+    def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
         turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
         on_segment = np.arange(self.size - turns) % functions < fewer
