@@ -120,3 +120,12 @@ def test_an_unstable_equilibrium_has_no_backbone() -> None:
 def test_frequency_at_an_amplitude() -> None:
     found = bd.backbone(CANTILEVER)
     assert found.at(0.1) == pytest.approx(found.frequency * (1 + 0.01 * found.coefficient), rel=1e-15)
+
+
+def test_in_space_a_motion_in_one_plane_has_the_backbone_of_that_plane() -> None:
+    planar, in_space = (
+        bd.backbone(replace(BENT, physics=bd.Physics(planes, large_deflection=True)), 100.0)
+        for planes in (1, 2)
+    )
+    assert in_space.frequency == pytest.approx(planar.frequency, rel=1e-11)  # both are known to rounding
+    assert in_space.coefficient == pytest.approx(planar.coefficient, abs=planar.error + in_space.error)

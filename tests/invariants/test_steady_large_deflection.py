@@ -146,3 +146,14 @@ def test_a_sweep_is_judged_at_its_largest_peak() -> None:
     sheared = bd.sweep(replace(spun, physics=bd.Physics(shear=True)), [50.0, 100.0], (0.05, 0.1))
     expected = sheared.peaks[1] / result.peaks[1] - 1
     assert result.left_out["shear deformation"] == pytest.approx([expected], abs=3e-5)
+
+
+def test_in_space_a_motion_in_one_plane_has_the_response_of_that_plane() -> None:
+    """The two lowest modes of either are those in the plane."""
+    planar, in_space = (
+        bd.steady_response(
+            _at(45.0, physics=bd.Physics(planes, large_deflection=True)), [60.0, 100.0], modes=2
+        )
+        for planes in (1, 2)
+    )
+    np.testing.assert_allclose(in_space.amplitude, planar.amplitude, rtol=1e-8)  # of modes to 1e-11

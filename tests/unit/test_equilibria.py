@@ -15,13 +15,11 @@ from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.profile import to_profile
 from benchmarks.cases.elastica import harvester_at
-from benchmarks.cases.scenes import HARVESTER
 
 BENT = bd.Physics(large_deflection=True)
 SPRING = bd.Mount(0.2, 1.0, root_stiffness=0.0)
 OBLIQUE_SPRING = bd.Mount(0.2, 1.0, 0.3, root_stiffness=1.0)
 SLOPE = to_profile("prebend", 0.1)
-IN_SPACE = bd.Scene(HARVESTER.beam, bd.Mount(0.2, 1.0, 0.3), physics=BENT)
 
 
 def harvester(degrees: float, physics: bd.Physics = BENT) -> bd.Scene:
@@ -111,7 +109,6 @@ def test_critical_speed_is_that_of_a_straight_beam() -> None:
         (lambda: bd.Scene(harvester(0.0).beam, SPRING, physics=BENT), "mount.root_stiffness"),
         (lambda: bd.Scene(harvester(0.0).beam, OBLIQUE_SPRING, physics=BENT), "mount.root_stiffness"),
         (lambda: bd.Scene(replace(harvester(0.0).beam, prebend=SLOPE)), "prebend"),
-        (lambda: bd.backbone(IN_SPACE, 50.0), "physics.large_deflection"),
         (lambda: bd.setting_angle_limits(harvester(0.0), 400.0), "physics.large_deflection"),
         (lambda: bd.frequency_bounds(harvester(0.0), 10.0), "physics.large_deflection"),
         (lambda: bd.equilibrium(harvester(0.0), 10.0, "up"), "branch"),
