@@ -178,6 +178,20 @@ def shock(names: Names) -> None:
     assert static < abs(names["run"].tip).max() < 2 * static
 
 
+def stability_chart(names: Names) -> None:
+    """The lowest tongue stands on twice the first frequency, at the amplitude of first-order theory."""
+    import beamdyn as bd
+
+    frequencies, amplitudes = (each.values for each in names["chart"].inputs)
+    at, above = np.nonzero(names["chart"].status == "unstable")
+    tip = above.argmin()
+    assert abs(frequencies[at[tip]] - 2 * names["first"]) <= np.diff(frequencies)[0]
+    rest, turning = 2 * np.pi * bd.frequency_locus(names["scene"], [0.0, 50.0], modes=1).frequency[:, 0]
+    growth = abs(turning**2 - rest**2) * 2 / (4 * turning)  # per amplitude of the speed, which is squared
+    threshold = 0.001 * rest / growth
+    assert threshold <= amplitudes[above[tip]] * 1.001 <= threshold + 2 * np.diff(amplitudes)[0]
+
+
 def map_of_designs(names: Names) -> None:
     """The buckling speed is proportional to the thickness, and falls with the radius."""
     value, thickness = names["value"], names["thickness"]
