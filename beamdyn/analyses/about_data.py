@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -46,11 +47,14 @@ AtSpeeds = Annotated[
     AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
     Parameter(help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest.'),
 ]
-ColumnsOfFile = Annotated[
-    str | None,
+ColumnsOfFile = Annotated[  # of a file, which screens do not take
+    tuple[str, ...],
     Parameter(
         help='Which column of the file is meant, a semicolon between them: "tip = TipDxb1; root moment = '
-        'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".'
+        'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".',
+        negative="",
+        consume_multiple=False,
+        show_default=False,
     ),
 ]
 Uncertainty = Annotated[
@@ -73,7 +77,7 @@ def compare(
     measured: Measured = None,
     speeds: AtSpeeds,
     uncertainty: Uncertainty = None,
-    columns: ColumnsOfFile = None,
+    columns: ColumnsOfFile = (),
 ) -> FrequencyComparison | CurveComparison:
     """Measured values beside those of the scene: what agrees, and what explains the rest."""
     given = _data(data, measured, speeds, uncertainty, columns)
@@ -149,14 +153,14 @@ def _data(
     measured: str | None,
     speeds: np.ndarray | None,
     uncertainty: str | None,
-    columns: str | None = None,
+    columns: Sequence[str] = (),
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
     """The data of a file, or of the option."""
     if (file is None) == (measured is None):
         raise ValueError('give either a file, such as measured.csv, or --measured "62.1, 389, 1090 Hz"')
-    if file is None and columns is not None:
-        raise ValueError(f'--columns = "{columns}": it is of a file; leave it out')
-    named = None if columns is None else _columns(columns)
+    if file is None and columns:
+        raise ValueError(f'--columns = "{"; ".join(columns)}": it is of a file; leave it out')
+    named = _columns("; ".join(columns)) if columns else None
     data = (
         bd.read_measurements(file, speeds, named) if file is not None else _in_words(measured or "", speeds)
     )
