@@ -47,7 +47,7 @@ AtSpeeds = Annotated[
     AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
     Parameter(help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest.'),
 ]
-ColumnsOfFile = Annotated[  # of a file, which screens do not take
+ColumnsOfFile = Annotated[
     tuple[str, ...],
     Parameter(
         help='Which column of the file is meant, a semicolon between them: "tip = TipDxb1; root moment = '

@@ -32,7 +32,14 @@ if TYPE_CHECKING:
 
 _HEADLINES = 3  # most parts of a result's one line that stand first
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
-_OF_COMMANDS = ("physics", "psd_axes", "workers", "samples", "seed")  # options that a form does without
+_OF_COMMANDS = (
+    "physics",
+    "psd_axes",
+    "workers",
+    "samples",
+    "seed",
+    "columns",
+)  # options that a form does without
 _BETWEEN = ";"  # texts of an option that may be given several times
 
 

@@ -83,7 +83,7 @@ def test_the_screen_has_a_form_of_the_options_and_shows_the_result(new_screen):
 def test_screens_on_own_data_take_it_as_text_and_no_files(name):
     screen, described = analysis_screen(analyses((name,))[name]), analyses((name,))[name]
     given = {**SCENE.base_entries, **first_entries(described)}
-    assert not any(f"{name}.{option}" in given for option in ("data", "write", "file"))
+    assert not any(f"{name}.{option}" in given for option in ("data", "columns", "write", "file"))
     answer = solve(screen, given)
     assert len([*screen.rows(answer)]) > 1
     assert screen.draw(answer, 0.0).axes
