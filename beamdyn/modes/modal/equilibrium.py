@@ -260,7 +260,8 @@ class DeflectedSolver(Eigensolver):
 
     def __init__(self, elastica: RotatingBeam, branch: Branch, guide: DeflectedSolver | None = None) -> None:
         super().__init__(elastica.about_straight.steady())  # about the straight beam
-        self.elastica, self.branch, self.guide = elastica, branch, guide
+        self.elastica, self.guide = elastica, guide
+        self.branch: Branch = branch
         self._straight = Solver(self.pencil)
         self._found: dict[float, np.ndarray] = {}
         self._solved: dict[tuple[float, int], Eigen] = {}
