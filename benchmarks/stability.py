@@ -82,8 +82,12 @@ def spectral_radius(scene: bd.Scene, numbers: dict[str, float]) -> tuple[float, 
     system = ModalSystem(replace(equations, mount=scene.mount), scene.motion)
     period, n = float(scenes.monodromy(numbers).period[0]), system.size
     scale = np.concatenate([np.ones(n), np.sqrt(np.diag(equations.matrices[0]["unity"]))])
+
+    def free(t: float, y: np.ndarray) -> np.ndarray:
+        return system.jacobian(t, y) @ y
+
     columns = [
-        solve_ivp(system.rhs, (0, period), y, "DOP853", rtol=1e-12, atol=1e-13 * scale).y[:, -1]
+        solve_ivp(free, (0, period), y, "DOP853", rtol=1e-12, atol=1e-13 * scale).y[:, -1]
         for y in np.diag(scale)
     ]
     return float(np.abs(np.linalg.eigvals(np.array(columns).T / scale[:, None])).max()), period
