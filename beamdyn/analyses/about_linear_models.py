@@ -235,7 +235,7 @@ def matrices(
 
 
 @analysis(
-    'beamdyn response examples/rough_road.toml --frequencies "1:999:99 Hz"', screen="Frequency response"
+    'beamdyn response examples/rough_road.toml --frequencies "1:999:400 Hz"', screen="Frequency response"
 )
 def response(
     scene: Scene,
