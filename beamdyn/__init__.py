@@ -115,6 +115,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.rotor import RotorDrawing, draw
     from beamdyn.scene.scene import Scene
+    from beamdyn.scene.section_matrices import SectionMatrices
     from beamdyn.steady.crossings import Crossing, Crossings
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response

@@ -17,7 +17,7 @@ from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.display_units import known_unit
 from beamdyn.common.screens.screen_parts import Drag, Preset
-from beamdyn.files.scene_inputs import RectangularInput, SceneInput, StiffnessInput
+from beamdyn.files.scene_inputs import MatricesInput, RectangularInput, SceneInput, StiffnessInput
 from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
@@ -123,6 +123,8 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
                 path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
             }
             given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns
+            if "matrices" in given:
+                return [MatricesInput]
             own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
             return [StiffnessInput if given & own else RectangularInput]
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}

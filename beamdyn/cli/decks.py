@@ -35,13 +35,13 @@ def import_deck(
     speed: Text | None = None,
     force: Flag = False,
 ) -> None:
-    """Read a blade of ElastoDyn, FAST 7 or BModes, or a CSV table: audit it, and write it as a scene.
+    """Read a blade of ElastoDyn, FAST 7, BeamDyn or BModes, or a CSV table, and write it as a scene.
 
     Parameters
     ----------
     file
-        A blade file or the main file of ElastoDyn or FAST 7, a .bmi or section properties of BModes, or a CSV
-        table with units in its heads, such as "r [m], mass [kg/m], EI flap [N m2]".
+        A blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties
+        of BModes, or a CSV table with units in its heads, such as "r [m], mass [kg/m], EI flap [N m2]".
     output
         Write the scene into this TOML file, which the other commands read; without it, only the audit is
         printed.

@@ -58,10 +58,10 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         equations = replace(equations, shift=float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1]))
     if not scene.is_damped:
         return equations
-    return replace(equations, terms=(*equations.terms, *_damping(equations, scene)))
+    return replace(equations, terms=(*equations.terms, *damping_terms(equations, scene)))
 
 
-def _damping(equations: Equations, scene: Scene) -> Iterator[Term]:
+def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
     """Yield the terms of all that damps a scene."""
     names, damping = {field.name: field.damping_name for field in FIELDS}, scene.damping
     if scene.damping_ratio or any(damping.ratios):

@@ -21,6 +21,7 @@ from beamdyn.scene.sections import weight_degree
 _MOST_ACROSS = 16  # functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest number accepted, on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
+_POINTS_OF_MOMENTS = 8  # Gauss points on each of the many cells of moments, which are small
 
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
 _WORDS = {"legendre": "Legendre functions", "eigenfunctions": "eigenfunctions", "moments": "bending moments"}
@@ -92,7 +93,7 @@ class Ritz:
         """The segments, with points enough for cosine and sine of a slope of several turns."""
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
-            return spaces.quadrature.cells
+            return Cells(spaces.cells, _POINTS_OF_MOMENTS)
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from numpy.polynomial import Polynomial
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, core_schema
@@ -26,6 +27,7 @@ from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
 from beamdyn.scene.points import PointMass, PointSpring, TipMass
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.section_matrices import UPPER, SectionMatrices, entry_name, entry_units
 
 Along = float | Polynomial | Table  # a property along the beam
 
@@ -278,6 +280,45 @@ class StiffnessInput(_BeamInput):
             return Beam.from_stiffness(**self._arguments)
 
 
+class MatricesInput(_BeamInput):
+    """[beam]: a beam of sections that couple all strains, by their 6 x 6 matrices."""
+
+    matrices: Annotated[
+        list[list[Any]],
+        Field(
+            description="table of the 6 x 6 matrices of the sections: a row of heads, x/L and entries of the "
+            "upper triangles, K11 [N] to K66 [N m2] of stiffness and M11 [kg/m] to M66 [kg m] of mass, then "
+            "numbers, a row a station; linear between stations; entries that are not given are 0"
+        ),
+    ]
+
+    @cached_property
+    def core(self) -> Beam:
+        """The beam."""
+        with _of_stations(self.stations), _of_points():
+            matrices = _read_matrices(self.matrices, self.length)
+            arguments: dict[str, Any] = self._arguments | {"matrices": matrices}
+            return Beam.from_matrices(**arguments)
+
+
+ENTRIES = {name: Quantity(unit, meaning="entry of a matrix") for name, unit in entry_units().items()}
+
+
+def _read_matrices(rows: list[Any], length: float) -> SectionMatrices:
+    """The matrices of a table, whose entries that are not given are 0."""
+    columns = read_columns("matrices", rows, PLACES | ENTRIES)
+    places = [name for name in columns if name in PLACES]
+    if len(places) != 1:
+        raise InvalidInput("matrices[0]", rows[0], 'give the position in one column, "x/L" or "x [m]"')
+    x = _to_fractions(columns.pop(places[0]), length)
+    both = []
+    for letter in "KM":
+        both.append(np.zeros((len(x), 6, 6)))
+        for i, j in UPPER:
+            both[-1][:, i, j] = both[-1][:, j, i] = columns.get(entry_name(letter, i, j), 0.0)
+    return SectionMatrices.at_stations(x, *both)
+
+
 def _to_fractions(given: Any, length: float) -> Any:
     """Turn positions in metres into fractions of the length; all else is unchanged."""
     if isinstance(given, Table):
@@ -366,12 +407,16 @@ def _needed(section: type[Section]) -> str:
 
 def _kind_of_beam(given: Any) -> str:
     keys = given.keys() if isinstance(given, dict) else set()
+    if "matrices" in keys:
+        return "<matrices>"
     return "<stiffness>" if keys & set(_own(StiffnessInput)) else "<rectangular>"
 
 
 def _one_kind_of_beam(given: Any) -> Any:
     keys = given.keys() if isinstance(given, dict) else set()
     section, stiffness = ([k for k in _own(kind) if k in keys] for kind in (RectangularInput, StiffnessInput))
+    if "matrices" in keys and section + stiffness:
+        raise ValueError(f"matrices has {', '.join(section + stiffness)}, too; give one of the two")
     if section and stiffness:
         raise ValueError(
             f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
@@ -381,7 +426,9 @@ def _one_kind_of_beam(given: Any) -> Any:
 
 
 BeamInput = Annotated[
-    Annotated[RectangularInput, Tag("<rectangular>")] | Annotated[StiffnessInput, Tag("<stiffness>")],
+    Annotated[RectangularInput, Tag("<rectangular>")]
+    | Annotated[StiffnessInput, Tag("<stiffness>")]
+    | Annotated[MatricesInput, Tag("<matrices>")],
     Discriminator(_kind_of_beam),
     BeforeValidator(_one_kind_of_beam),
     BeforeValidator(_with_columns),

@@ -18,8 +18,11 @@ from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
+from beamdyn.scene.section_matrices import SectionMatrices
 
 _ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
+_TURNS_BACK = np.pi / 2  # kink [rad] of the axis by which it runs back
+_GIVE_RADIANS = "is it in degrees? give math.radians(...)"
 _STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes nothing by more than 1e-18
 
 
@@ -27,7 +30,7 @@ _STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes no
 class Beam(FieldsOnly, OneLine):
     """A beam, held at its root: straight, or curved by its sweep and prebend.
 
-    Build it by `rectangular` or `from_stiffness`.
+    Build it by `rectangular`, `from_stiffness` or `from_matrices`.
 
     Which of its properties a model reads is said by `Physics`.
 
@@ -71,6 +74,9 @@ class Beam(FieldsOnly, OneLine):
     mass_offset, tension_offset : Profile, optional
         Distance of the sections' centre of mass, and of their centre of tension, from their shear centre in
         the direction across [m], of either sign, over x/L.  The shear centres are the axis of the beam.
+    matrices : SectionMatrices, optional
+        The 6 x 6 matrices of stiffness and mass that the properties follow from, by `from_matrices`; None
+        where they do not.  The properties are then entries of their diagonals.
 
     References
     ----------
@@ -106,6 +112,7 @@ class Beam(FieldsOnly, OneLine):
     prebend: Profile | None = field(default=None, metadata=ADDED_LATER)
     mass_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
     tension_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
+    matrices: SectionMatrices | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))
@@ -144,6 +151,36 @@ class Beam(FieldsOnly, OneLine):
                 set_fields(self, section=None)  # a property was replaced
         if self.has_offsets:  # a rectangle has its centres in one point
             set_fields(self, section=None)
+        self._check_matrices()
+        self._check_axis()
+
+    def _check_matrices(self) -> None:
+        """Refuse properties other than those of the 6 x 6 matrices that the sections have."""
+        if self.matrices is None:
+            return
+        kind("matrices", self.matrices, SectionMatrices, "SectionMatrices.at_stations makes them")
+        made = self.matrices.properties
+        for name in (*_REQUIRED, *OPTIONAL_PROPERTIES):
+            said = name in PROPERTY_UNITS and name != "outer_fibre"
+            if said and not _alike(getattr(self, name), made.get(name)):
+                bound = "the 6 x 6 matrices of the sections say it"
+                raise InvalidValue(name, "another", bound, "change the matrices")
+
+    def _check_axis(self) -> None:
+        """Refuse an axis that turns back on itself at a kink."""
+        for name in ("sweep", "prebend"):
+            angle = getattr(self, name)
+            if angle is None:
+                continue
+            left, right = angle.end_values()
+            turned = np.abs(left - np.append(0.0, right[:-1]))
+            if turned.max() >= _TURNS_BACK:
+                k = int(turned.argmax())
+                where = f" turns by {turned[k]:.4g} rad at x/L = {angle.breakpoints[k]:.4g}"
+                bound = "the axis turns back on itself: a kink must be below {limit}"
+                raise InvalidValue(
+                    name, float(left[k]), bound, _GIVE_RADIANS, "rad", _TURNS_BACK, where=where
+                )
 
     def _check_offsets(self) -> None:
         """Refuse offsets of a beam that lacks the stiffness against the torsion that they cause."""
@@ -370,6 +407,63 @@ class Beam(FieldsOnly, OneLine):
         warn_of_twist(beam.twist)
         return beam
 
+    @classmethod
+    def from_matrices(
+        cls,
+        length: float,
+        matrices: SectionMatrices,
+        tip: TipMass | None = None,
+        breakpoints: Sequence[float] = (),
+        twist: Property | None = None,
+        point_masses: Sequence[PointMass] = (),
+        point_springs: Sequence[PointSpring] = (),
+        sweep: Property | None = None,
+        prebend: Property | None = None,
+    ) -> Beam:
+        """Build a beam of sections with 6 x 6 matrices of stiffness and mass, which may couple all strains.
+
+        Parameters
+        ----------
+        length : float
+            Length of the axis [m].
+        matrices : SectionMatrices
+            The matrices, in the axes of the sections.
+        tip : TipMass, optional
+            Rigid body at the tip.
+        breakpoints : sequence of float
+            Fractions x/L where an angle jumps or has a kink.
+        twist : float, Polynomial, Table or callable, optional
+            Angle by which the sections are turned [rad] over x/L, added to the bending angle of the mount.
+        point_masses : sequence of PointMass
+            Point masses along the beam; those at one place add up.
+        point_springs : sequence of PointSpring
+            Springs that hold points of the beam to the carrier; those at one place add up.
+        sweep, prebend : float, Polynomial, Table or callable, optional
+            Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
+            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
+
+        Returns
+        -------
+        Beam
+
+        Raises
+        ------
+        ValueError
+            If the axis turns back on itself, or an angle is not smooth between breakpoints.
+
+        Warns
+        -----
+        UserWarning
+            If the twist seems to be in degrees: beyond one turn, or half a turn with at most two decimals.
+        """
+        kind("matrices", matrices, SectionMatrices, "SectionMatrices.at_stations makes them")
+        angles = {"twist": twist, "sweep": sweep, "prebend": prebend}
+        given = {name: angle for name, angle in angles.items() if angle is not None}
+        made: dict[str, Any] = {name: to_profile(name, angle, breakpoints) for name, angle in given.items()}
+        warn_of_twist(made.get("twist"))
+        made |= matrices.properties | {"length": size("length", length, "m"), "matrices": matrices}
+        return cls(tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
+
     def headline(self) -> Iterator[str]:
         """Length, mass per length and bending stiffness from root to tip, and the bodies on the beam."""
         yield number(self.length, "m")
@@ -436,6 +530,11 @@ class Beam(FieldsOnly, OneLine):
     def tip_twist(self) -> float:
         """Angle by which the section at the tip is turned [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
+
+    @property
+    def tip_tension_offset(self) -> float:
+        """Distance of the centre of tension at the tip from the shear centre, in the direction across [m]."""
+        return 0.0 if self.tension_offset is None else float(self.tension_offset.end_values()[1][-1])
 
 
 def _alike(given: Profile | None, made: Profile | None) -> bool:

@@ -105,14 +105,13 @@ class TipMass:
         """Moment of inertia about the direction of bending [kg m2]: `transverse_inertia` or its default."""
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
-    @property
-    def about_axis(self) -> TipMass:
-        """The body with its moments of inertia about the axis of the beam, not its centre of gravity."""
-        if not self.offset_across:
+    def about(self, across: float) -> TipMass:
+        """The body with its moments of inertia about a line beside the axis, in the direction across [m]."""
+        if self.offset_across == across:
             return self
-        more = self.mass * self.offset_across**2
-        across = self.inertia_about_bending_direction + more
-        return replace(self, transverse_inertia=across, axial_inertia=self.axial_inertia + more)
+        more = self.mass * (self.offset_across - across) ** 2
+        of_bending = self.inertia_about_bending_direction + more
+        return replace(self, transverse_inertia=of_bending, axial_inertia=self.axial_inertia + more)
 
 
 @dataclass(frozen=True)

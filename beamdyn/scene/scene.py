@@ -120,7 +120,9 @@ class Scene(OneLine):
             set_fields(self, physics_choice=None)  # the choice was that of another physics
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
-        _check_axis(self.beam, self.physics)
+        _check_matrices(self.beam, self.physics)
+        if not self.chooses_physics:
+            check_axis(self.beam, self.physics)
         _check_large_deflection(self)
         _check_springs(self.mount, self.modelled_beam)
         _check_point_springs(self)
@@ -183,12 +185,14 @@ class Scene(OneLine):
     def straightened(self) -> Scene:
         """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
 
-        Torsion of a twisted strip, which large deflection alone has, is left out.
+        What couples strains in the matrices of sections is left out, and torsion of a twisted strip, which
+        large deflection alone has.
         """
         torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
         straight = replace(self.physics, large_deflection=False, branch="straight", torsion=torsion)
-        if self.beam.is_curved:
-            return replace(self, beam=replace(self.beam, sweep=None, prebend=None), physics=straight)
+        if self.beam.is_curved or self.beam.matrices is not None:
+            beam = replace(self.beam, sweep=None, prebend=None, matrices=None)
+            return replace(self, beam=beam, physics=straight)
         return replace(self, physics=straight)
 
     @property
@@ -214,14 +218,29 @@ def check_scene(scene: object) -> None:
 # Curved axes, and large deflection -----------------------------------------------------------------
 
 
-def _check_axis(beam: Beam, physics: Physics) -> None:
-    """Refuse a curved axis in equations of straight beams, from which a choice of the physics starts, too."""
+def check_axis(beam: Beam, physics: Physics) -> None:
+    """Refuse a curved axis in equations of straight beams."""
     if beam.is_curved and not physics.large_deflection:
         name = "prebend" if beam.sweep is None else "sweep"
         given = getattr(beam, name)
         bound = "without physics.large_deflection the axis of the beam is straight"
         remedy = Words(Setting("physics", large_deflection=True), " includes it")
         raise InvalidValue(name, float(given(np.ones(1))[0]), bound, remedy, "rad", where=" at the tip")
+
+
+_OF_MATRICES = ("shear", "stretch", "torsion", "large_deflection")  # effects that 6 x 6 matrices couple
+
+
+def _check_matrices(beam: Beam, physics: Physics) -> None:
+    """Refuse sections whose matrices couple all strains in equations that lack some of them."""
+    if beam.matrices is None or isinstance(physics, AutomaticPhysics):
+        return
+    lacking = [name for name in _OF_MATRICES if not getattr(physics, name)]
+    if physics.planes == 1 or lacking:
+        name = "planes" if physics.planes == 1 else lacking[0]
+        bound = "the 6 x 6 matrices of the sections couple all strains"
+        wanted = Setting("physics", planes=2, **dict.fromkeys(_OF_MATRICES, True))
+        raise InvalidValue(f"physics.{name}", getattr(physics, name), bound, Words("give ", wanted))
 
 
 def _check_large_deflection(scene: Scene) -> None:
@@ -239,10 +258,6 @@ def _check_large_deflection(scene: Scene) -> None:
         bound = "with physics.large_deflection there is none: the tip also moves along the beam"
         remedy = "give damping.ratios, or leave large_deflection out"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
-    if scene.physics.torsion and scene.beam.has_offsets:
-        bound = "with large_deflection and torsion the centres of the sections are on the axis of the beam"
-        remedy = "leave the offsets, torsion or large_deflection out"
-        raise InvalidValue("physics.large_deflection", True, bound, remedy)
     if scene.bends_in_space:
         for name, spring in zip(("", "second_"), scene.mount.root_stiffnesses, strict=True):
             if spring < math.inf:

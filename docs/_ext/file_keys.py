@@ -18,7 +18,7 @@ from brakes.answers import STANDARD
 from brakes.answers.machine import MachineType
 
 MARK = re.compile(r"^<!-- keys of (\S+):(\w+)(?: \[(\w+)\])? -->$", re.MULTILINE)
-_BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section"}
+_BEAMS = {"RectangularInput": "rectangular", "StiffnessInput": "any section", "MatricesInput": "matrices"}
 _HEAD = "| key | what | default | only with |\n|---|---|---|---|"
 
 

@@ -236,6 +236,107 @@ def test_about_the_straight_beam_every_matrix_and_load_is_that_of_linear_theory(
     np.testing.assert_allclose(found.tips, linear.tips, rtol=0, atol=1e-13)
 
 
+# Offsets of the centres of mass and of tension ----------------------------------------------------
+
+
+def with_offsets(mass: float, tension: float, tip: float, mount: bd.Mount, **given: Any) -> bd.Scene:
+    """An untwisted beam of torsion, whose centres lie beside the shear centre, with a body at the tip."""
+    body = bd.TipMass(0.2, 0.05, 0.01, 0.012, 0.005, offset_across=tip)
+    values: dict[str, Any] = {"second_bending_stiffness": 1.3, "torsion_stiffness": 40.0}
+    values |= {"rotary_inertia": 0.01, "second_rotary_inertia": 0.02}
+    beam = bd.Beam.from_stiffness(
+        1.0, 1.0, 200.0, tip=body, mass_offset=mass, tension_offset=tension, **(values | given)
+    )
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    return bd.Scene(beam, mount, physics=physics)
+
+
+def test_mass_and_stiffness_with_offsets_are_those_of_linear_theory() -> None:
+    """Of beams without twist; the rest depends on second moments, which linear theory has in part."""
+    scene = with_offsets(0.05, -0.03, 0.1, bd.Mount(0.5, np.pi))
+    model = Model(scene, bd.Ritz(6))
+    found, linear = model.bent.about_straight, model.equations
+    for order in (0, 2):
+        values = (each.matrices[order]["unity"] for each in (found, linear))
+        np.testing.assert_allclose(
+            *values, rtol=0, atol=1e-13 * np.abs(linear.matrices[order]["unity"]).max()
+        )
+    small = replace(scene, physics=replace(scene.physics, large_deflection=False))
+    frequencies = (bd.natural_modes(each, 0.0, 5, bd.Ritz(8)).frequency for each in (scene, small))
+    np.testing.assert_allclose(*frequencies, rtol=1e-9)
+
+
+def test_a_beam_whose_centres_lie_beside_its_axis_is_one_that_stands_there() -> None:
+    """In the plane of rotation, where nothing twists it: bent far, against the elastica."""
+    radius, angle, beside, speed = 0.6, 2.0, 0.08, 3.0
+    scene = with_offsets(beside, beside, beside, bd.Mount(radius, angle, np.pi / 2))
+    along, across = -radius * np.cos(angle), radius * np.sin(angle) + beside
+    moved = bd.Mount(np.hypot(along, across), np.arctan2(across, -along))
+    body = bd.TipMass(0.2, 0.05, 0.012)  # the moment about what is now the axis of bending
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.3, rotary_inertia=0.02, tip=body)
+    planar = bd.Scene(beam, moved, physics=bd.Physics(rotary_inertia=True, large_deflection=True))
+    basis = bd.Ritz(10)
+    found, expected = (bd.natural_modes(each, speed, 4, basis).frequency for each in (scene, planar))
+    assert abs(bd.equilibrium(planar, speed, discretization=basis).tip[1]) > 0.4
+    np.testing.assert_allclose(found[[0, 1, 3]], expected[:3], rtol=1e-10)
+
+
+VALUES = {
+    "mass_per_length": 2.0,
+    "axial_stiffness": 1e5,
+    "shear_stiffness": 1e4,
+    "second_shear_stiffness": 2e4,
+    "torsion_stiffness": 40.0,
+    "second_bending_stiffness": 200.0,
+    "bending_stiffness": 90.0,
+    "rotary_inertia": 0.01,
+    "second_rotary_inertia": 0.02,
+}
+
+
+def matrices_with_offsets(mass: float, tension: float) -> bd.SectionMatrices:
+    """The 6 x 6 matrices of sections whose centres lie beside the axis, in the direction across."""
+    strain, velocity = np.eye(6), np.eye(6)
+    strain[0, 4] = tension  # stretch of the centre of tension by the second curvature
+    velocity[0, 4], velocity[1, 3] = mass, -mass
+    m, *diagonal, first, second = VALUES.values()
+    stiffness = strain.T @ np.diag(diagonal) @ strain
+    inertia = velocity.T @ np.diag([m, m, m, first + second, second, first]) @ velocity
+    return bd.SectionMatrices.at_stations([0.0, 0.4, 1.0], [stiffness] * 3, [inertia] * 3)
+
+
+def test_matrices_of_offsets_are_offsets() -> None:
+    """Of a swept and twisted beam: by the 6 x 6 law, or by stretch that bending causes at the axis."""
+    shape: dict[str, Any] = {"twist": Polynomial([0.3, 0.5]), "sweep": Polynomial([0.0, 0.3])}
+    shape |= {"tip": bd.TipMass(0.2, 0.05, 0.01, 0.012, 0.005, offset_across=0.1)}
+    by_offsets = bd.Beam.from_stiffness(1.3, mass_offset=0.05, tension_offset=-0.03, **VALUES, **shape)
+    by_matrices = bd.Beam.from_matrices(1.3, matrices_with_offsets(0.05, -0.03), **shape)
+    scenes = [bd.Scene(beam, bd.Mount(0.5, 2.0, 0.4), physics=ALL) for beam in (by_offsets, by_matrices)]
+    first, second = (bd.natural_modes(scene, 2.0, 4, bd.Ritz(8)) for scene in scenes)
+    np.testing.assert_allclose(second.frequency, first.frequency, rtol=1e-8)  # of unlike segments
+    tips = (bd.equilibrium(scene, 2.0, discretization=bd.Ritz(8)).tip for scene in scenes)
+    np.testing.assert_allclose(*tips, rtol=0, atol=1e-9)
+    by_forces = bd.natural_modes(scenes[1], 2.0, 4, bd.Ritz(12, "moments"))
+    np.testing.assert_allclose(by_forces.frequency, first.frequency, rtol=1e-6)
+
+
+def test_damping_ratio_is_that_of_the_modes_at_rest_of_sections_with_matrices() -> None:
+    beam = bd.Beam.from_matrices(1.3, matrices_with_offsets(0.05, -0.03), sweep=Polynomial([0.0, 0.3]))
+    found = bd.natural_modes(bd.Scene(beam, damping_ratio=0.02, physics=ALL), 0.0, 3, bd.Ritz(6))
+    undamped = bd.natural_modes(bd.Scene(beam, physics=ALL), 0.0, 3, bd.Ritz(6))
+    np.testing.assert_allclose(-found.growth_rate, 0.02 * 2 * np.pi * undamped.frequency, rtol=1e-8)
+
+
+def test_offsets_turn_with_the_sections() -> None:
+    """By the bending angle, or by the twist of the whole beam."""
+    by_twist = with_offsets(0.05, -0.03, 0.1, bd.Mount(0.5, 2.0, 0.4), twist=Polynomial([0.3, 0.5]))
+    mount = bd.Mount(0.5, 2.0, 0.7)
+    by_mount = with_offsets(0.05, -0.03, 0.1, mount, twist=Polynomial([0.0, 0.5]))
+    basis = bd.Ritz(6)
+    first, second = (bd.natural_modes(each, 2.0, 4, basis).frequency for each in (by_twist, by_mount))
+    np.testing.assert_allclose(second, first, rtol=1e-11)
+
+
 @pytest.mark.parametrize(
     ("gamma", "haringx"),
     [(12.0, [12.9630, 35.8047]), (4.0, [10.0870, 29.4247])],  # digits printed, by another program

@@ -177,16 +177,19 @@ def test_terms_are_the_work_of_point_masses(of, quantity, order):
     assert np.abs(expected).max() > 1e-3 * scale
 
 
-@pytest.mark.parametrize(("quantity", "order"), [("unity", 2), ("speed_squared", 0)])
-def test_second_moments_are_about_the_axis(quantity, order):
+@pytest.mark.parametrize(
+    ("of", "quantity", "order"),
+    [("mass", "unity", 2), ("mass", "speed_squared", 0), ("tension", "speed_squared", 0)],
+)
+def test_second_moments_are_about_the_axis(of, quantity, order):
     """In torsion: the even part, but for that without offsets."""
 
     def even(matrices):
         return (matrices(1.0) + matrices(-1.0)) / 2 - matrices(0.0)
 
     turn = assembled(1.0).blocks["torsion"]
-    ours = even(lambda scale: assembled(scale).matrices[order][quantity])[turn, turn]
-    expected = even(lambda scale: work(scale, "mass")[quantity, order])[turn, turn]
+    ours = even(lambda scale: assembled(scale, of).matrices[order][quantity])[turn, turn]
+    expected = even(lambda scale: work(scale, of)[quantity, order])[turn, turn]
     np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-6 * np.abs(expected).max())  # of differences
 
 

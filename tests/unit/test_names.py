@@ -32,7 +32,7 @@ ELSEWHERE |= {
     "LinearSystem",
     "ModalSystem",
 }  # parts of results, made by nobody
-ELSEWHERE |= {"ElastoDyn", "DejaVu", "TipDxb1", "RootMyb1"}  # a program, a font, channels of FAST
+ELSEWHERE |= {"BeamDyn", "ElastoDyn", "DejaVu", "TipDxb1", "RootMyb1"}  # a program, a font, channels of FAST
 ELSEWHERE |= {"Described", "FieldsOnly", "SampledScene"}  # for who extends the package
 ELSEWHERE |= {"Re", "RecurDyn", "with_speed"}  # no advice: a formula, a paper's program, a method at fault
 

@@ -413,3 +413,22 @@ def test_commands_take_the_word_in_place_of_the_physics_of_the_file(
     printed = " ".join(capsys.readouterr().out.split())
     assert 'physics "auto", for 0.001: large deflection (9.1 %;' in printed
     assert main(["modes", str(file), "--physics", "all"]) == 2
+
+
+def test_a_curved_axis_is_a_beam_in_space_from_the_start() -> None:
+    strip = bd.Beam.rectangular(
+        0.9,
+        0.025,
+        0.0016,
+        73e9,
+        2682.0,
+        poissons_ratio=0.33,
+        sweep=bd.Table([0, 0.8, 0.8, 1], [0, 0, 0.3, 0.3]),
+    )
+    scene = bd.Scene(strip, bd.Mount(0.06, np.pi, np.pi / 2), physics="auto")
+    chosen = bd.natural_modes(scene, 10.0, 2, tolerance=0.01)
+    physics = chosen.scene.physics
+    assert (physics.planes, physics.torsion, physics.large_deflection) == (2, True, True)
+    assert chosen.physics_choice is not None
+    given = bd.natural_modes(replace(scene, physics=physics), 10.0, 2, tolerance=0.01)
+    np.testing.assert_allclose(chosen.frequency, given.frequency, rtol=1e-6)

@@ -59,6 +59,15 @@ def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
     return np.einsum("...acj,...dcj->...adj", half, R)
 
 
+def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
+    """Turn matrices (6, 6, N) of forces and moments by rotations (3, 3, N)."""
+    turned = np.empty_like(law)
+    for i in (slice(0, 3), slice(3, 6)):
+        for j in (slice(0, 3), slice(3, 6)):
+            turned[i, j] = turn_tensors(R, law[i, j])
+    return turned
+
+
 def integrate_curvature(
     cells: Cells, curvature: np.ndarray, kinks: np.ndarray, turn_of_root: np.ndarray | float = 0.0
 ) -> np.ndarray:

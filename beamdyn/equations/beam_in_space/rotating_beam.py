@@ -15,21 +15,32 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.equations.assembly import damping_terms
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
-from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, ForcedBeam
-from beamdyn.equations.beam_in_space.finite_rotations import turn_tensors
+from beamdyn.equations.beam_in_space.bent_beam import (
+    STRAINS,
+    BeamInSpace,
+    BentBeam,
+    ForcedBeam,
+    elastic_stiffness,
+)
+from beamdyn.equations.beam_in_space.finite_rotations import turn, turn_law, turn_tensors
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
 from beamdyn.equations.fields.bending_and_shear import Bending, SecondBending, SecondShear, Shear
 from beamdyn.equations.fields.field import Deflection, Load, Term
+from beamdyn.equations.ritz import Ritz
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.section_matrices import split_mass
+from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
 _KEPT = 4  # states of the beam that are kept
@@ -47,7 +58,7 @@ class _Strain(NamedTuple):
 
 
 def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
-    """The strain of each field; positive deflection across turns sections backwards."""
+    """The strain of each field; positive deflection across, and torsion, turn sections backwards."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     torsion = CLAMPED if warps else FIXED
     resists = "warping_stiffness" if warps else "torsion_stiffness"
@@ -57,7 +68,7 @@ def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
         "shear": _Strain("shear", 1, Shear().conditions(mount)),
         "second shear": _Strain("second shear", 1, SecondShear().conditions(mount)),
         "stretch": _Strain("stretch", 1, FIXED._replace(stiffness="axial_stiffness")),
-        "torsion": _Strain("twist rate", 1, torsion._replace(stiffness=resists)),
+        "torsion": _Strain("twist rate", 1, torsion._replace(stiffness=resists), -1.0),
     }
 
 
@@ -81,6 +92,8 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
         if strain.name == "curvature":
             slopes[place] = of_field.evaluate(np.concatenate([[0.0], quadrature.xi, [1.0]]), 1) / length
+    if beam.matrices is None:
+        _keep_lengths(functions, _tension(beam, quadrature.xi))
     curvature, kinks = curve_of_axis(beam, quadrature)
     nothing = np.zeros((linear.size, linear.size))
     model = BeamInSpace(
@@ -95,38 +108,116 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         slopes[:, 0] if np.isfinite(scene.mount.root_stiffness) else None,
         slopes[:, 1:],
     )
-    return RotatingBeam(model, linear, axis_of_rotation(scene))
+    rotating = RotatingBeam(model, linear, axis_of_rotation(scene))
+    return rotating if beam.matrices is None else _with_law(rotating, scene, discretization)
+
+
+def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
+    """The beam with the stiffness of its sections' matrices, and damping of its modes with that."""
+    beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
+    assert beam.matrices is not None
+    xi = model.stations.quadrature.xi
+    law = turn_law(_turned_sections(beam, xi)[..., :-1], beam.matrices.at("stiffness", xi))
+    if isinstance(discretization, Ritz) and not discretization.on_each_segment:
+        linear = _with_blocks_of(linear, discretization.functions)
+        strains = [STRAINS.index(_strains_of_fields(scene)[name].name) for name in linear.blocks]
+        model = replace(model, functions=_strains_by_forces(model, law, discretization.functions)[strains])
+        model = replace(model, functions=model.functions.reshape(linear.size, *law.shape[1:]))
+    K = elastic_stiffness(model.stations, model.functions, law)
+    terms, none = [*terms_of_blocks(linear, "stiffness", K, 0)], np.zeros_like(K)
+    undamped = replace(
+        rotating,
+        beam=replace(model, stiffness=K, damping=none),
+        linear=replace(linear, terms=(*terms,)),
+    )
+    if not scene.is_damped:
+        return undamped
+    terms += damping_terms(undamped.about_straight, scene)
+    damped = replace(linear, terms=(*terms,))
+    damping = damped.matrices[1]["unity"]
+    return replace(undamped, beam=replace(undamped.beam, damping=damping), linear=damped)
+
+
+def _with_blocks_of(linear: Equations, size: int) -> Equations:
+    """Equations with the same blocks, of one size each."""
+    blocks = {name: slice(k * size, (k + 1) * size) for k, name in enumerate(linear.blocks)}
+    shapes = {name: Shape(name, np.eye(size)) for name in blocks}
+    return replace(linear, blocks=blocks, terms=(), loads=(), shapes=shapes, sections=(), coarse=None)
+
+
+def _strains_by_forces(model: BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
+    """Strains (6, n, 6, N) by forces and moments that are n polynomials over the whole beam each.
+
+    Those in space are smooth; their components in the axes of the sections turn with the axis of the beam.
+    """
+    xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
+    back = np.zeros_like(law)
+    back[:3, :3] = back[3:, 3:] = unloaded.swapaxes(0, 1)
+    compliance = np.linalg.inv(np.moveaxis(law, 2, 0)) @ np.moveaxis(back, 2, 0)
+    each = legendre.legvander(2 * xi - 1, count - 1).T
+    return each[:, None] * np.moveaxis(compliance, 0, 2).swapaxes(0, 1)[:, None]
+
+
+def terms_of_blocks(
+    equations: Equations, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
+) -> Iterator[Term]:
+    """Yield terms of a matrix (n, n), block by block."""
+    for row, i in equations.blocks.items():
+        for column, j in equations.blocks.items():
+            if matrix[i, j].any():
+                yield Term(name, row, column, order, matrix[i, j], quantity)
 
 
 def _masses(scene: Scene, stations: BeamStations) -> Masses:
     """Masses of a scene's beam at stations: of sections, of the body at the tip, and point masses."""
     beam, tip, xi = scene.modelled_beam, scene.beam.tip or TipMass(0.0), stations.quadrature.xi
     weights = stations.quadrature.weights * beam.length
-    first, second = (
-        weights * (np.zeros_like(xi) if inertia is None else inertia(xi))
-        for inertia in (beam.rotary_inertia, beam.second_rotary_inertia)
-    )
-    body = tip.axial_inertia, tip.inertia_about_bending_direction, tip.inertia
-    principal = np.column_stack([np.stack([first + second, second, first]), body])
-    centre = np.zeros((3, stations.sections))
-    centre[0, -1] = tip.offset
-    mass = np.concatenate([weights * beam.mass_per_length(xi), [tip.mass], beam.lumps[1]])
-    return Masses(
-        mass, centre, turn_tensors(_turned_sections(beam, xi), principal[:, None] * _AXES[..., None])
-    )
+    m, centre, inertia = _masses_of_sections(beam, xi)
+    body = np.diag([tip.axial_inertia, tip.inertia_about_bending_direction, tip.inertia])
+    inertia = np.concatenate([weights * inertia, body[..., None]], axis=2)
+    centre = np.column_stack([centre, [tip.offset, 0.0, tip.offset_across]])
+    axes = _turned_sections(beam, xi)
+    mass = np.concatenate([weights * m, [tip.mass], beam.lumps[1]])
+    return Masses(mass, turn(axes, centre), turn_tensors(axes, inertia))
+
+
+def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass per length (N,), its centre (3, N) and inertia (3, 3, N) in the axes of the sections, at xi."""
+    if beam.matrices is not None:
+        return split_mass(beam.matrices.at("mass", xi))
+    none = np.zeros_like(xi)
+    given = beam.rotary_inertia, beam.second_rotary_inertia, beam.mass_offset
+    first, second, across = (none if each is None else each(xi) for each in given)
+    inertia = np.stack([first + second, second, first])[:, None] * _AXES[..., None]
+    return beam.mass_per_length(xi), np.stack([none, none, across]), inertia
+
+
+def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
+    """Components (2, N) in the direction of bending and across of the centres of tension [m], at xi."""
+    if beam.matrices is not None:
+        K = beam.matrices.at("stiffness", xi)
+        return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]
+    return np.stack([np.zeros_like(xi) if c is None else c(xi) for c in offset_components(beam)[2:]])
+
+
+def _keep_lengths(functions: np.ndarray, tension: np.ndarray) -> None:
+    """Let bending (n, 6, N) stretch the axis so that the centres of tension (2, N) keep their distances."""
+    functions[:, 0] += tension[0] * functions[:, 5] - tension[1] * functions[:, 4]
 
 
 def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean square distance (N,) of fibres from the axis, and twist (N,) of the unloaded sections, at xi.
 
-    Sections are as homogeneous in their stiffness as in their mass; without torsion it does not matter.
+    About their centre of tension, sections are as homogeneous in their stiffness as in their mass about its
+    own; without torsion it does not matter.
     """
     twist = np.zeros_like(xi) if beam.twist is None else beam.twist.derivative()(xi) / beam.length
     if beam.torsion_stiffness is None:
         return np.zeros_like(xi), twist
     assert beam.rotary_inertia is not None and beam.second_rotary_inertia is not None
     polar = beam.rotary_inertia(xi) + beam.second_rotary_inertia(xi)
-    return polar / beam.mass_per_length(xi), twist
+    beside = (_tension(beam, xi) ** 2).sum(axis=0)
+    return polar / beam.mass_per_length(xi) + beside, twist
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
@@ -312,13 +403,14 @@ class BentState(FieldsOnly):
         """Equations of small motions about this state, the elastic force of which is among the loads."""
         linear, beam = self.of.linear, self.of.beam
         terms = [
-            *self._terms("mass", self.bent.mass, 2),
-            *self._terms("Coriolis coupling", self.gyroscopic, 1, "speed"),
+            *terms_of_blocks(linear, "mass", self.bent.mass, 2),
+            *terms_of_blocks(linear, "Coriolis coupling", self.gyroscopic, 1, "speed"),
             *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
         ]
         loads = [*self._loads("elastic force", beam.stiffness @ self.bent.q, "unity")]
         for quantity in self.of.quantities:
-            terms += self._terms(f"stiffness by {quantity}", self.stiffness_of(quantity), 0, quantity)
+            change = self.stiffness_of(quantity)
+            terms += terms_of_blocks(linear, f"stiffness by {quantity}", change, 0, quantity)
             loads += self._loads(f"load by {quantity}", self.inertia_of(quantity), quantity)
         shapes, deflections = {}, {}
         for name, place in linear.blocks.items():
@@ -331,16 +423,6 @@ class BentState(FieldsOnly):
         return replace(
             linear, terms=(*terms,), loads=(*loads,), deflections=deflections, shapes=shapes, coarse=None
         )
-
-    def _terms(
-        self, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
-    ) -> Iterator[Term]:
-        """Terms of a matrix (n, n), by blocks."""
-        blocks = self.of.linear.blocks
-        for row, i in blocks.items():
-            for column, j in blocks.items():
-                if matrix[i, j].any():
-                    yield Term(name, row, column, order, matrix[i, j], quantity)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
         """Loads of the left-hand side (n,), by blocks."""

@@ -13,7 +13,7 @@ its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  Th
 In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
 are its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
-inertia (`beamdyn.scene.sections`, `TipMass.about_axis`) and their terms; products of a tilt and a turn with
+inertia (`beamdyn.scene.sections`, `TipMass.about`) and their terms; products of a tilt and a turn with
 them are left out, as are Coriolis and Euler forces of a tilt, which moves the mass along the beam: these
 change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
 straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.

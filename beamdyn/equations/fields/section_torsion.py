@@ -21,7 +21,7 @@ given.  What couples torsion with bending is in `beamdyn.equations.fields.offset
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -147,13 +147,13 @@ def _loads(scene: Scene, space: Space) -> Iterator[Load]:
 
 def _tip_body(scene: Scene) -> TipMass:
     """The body at the tip, with moments of inertia about the axis of the beam."""
-    return (scene.beam.tip or TipMass(0.0)).about_axis
+    return (scene.beam.tip or TipMass(0.0)).about(0.0)
 
 
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
-    """R11 + R22, R22 - R11, and R12 if it is not 0."""
-    R = section_tensor(beam, "rotary_inertia")
+    """R11 + R22, R22 - R11, and R12 if it is not 0: about the shear centre, about which sections turn."""
+    R = section_tensor(replace(beam, tension_offset=None), "rotary_inertia")
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
 

@@ -89,7 +89,7 @@ class Trial:
     def of(cls, field: TransverseField, scene: Scene, spaces: Spaces) -> Trial:
         """Trial functions of a field over function spaces."""
         beam, conditions = scene.modelled_beam, field.conditions(scene.mount)
-        tip, space = (beam.tip or _NO_BODY).about_axis, spaces.functions(conditions)
+        tip, space = (beam.tip or _NO_BODY).about(beam.tip_tension_offset), spaces.functions(conditions)
         slope = space.end(1) / beam.length
         rotation = slope if field.rotates else np.zeros_like(slope)
         centre = space.end(0) + tip.offset * rotation

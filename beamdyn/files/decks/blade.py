@@ -242,6 +242,23 @@ class IgnoredProperty:
 
 
 @dataclass(frozen=True)
+class BladeMatrices:
+    """6 x 6 matrices of a blade's sections, in the order and axes of `SectionMatrices`.
+
+    Parameters
+    ----------
+    stations : ndarray, shape (n,)
+        Positions x/L.
+    stiffness, mass : ndarray, shape (n, 6, 6)
+        The matrices, SI.
+    """
+
+    stations: np.ndarray
+    stiffness: np.ndarray
+    mass: np.ndarray
+
+
+@dataclass(frozen=True)
 class Blade:
     """A blade as its deck describes it.
 
@@ -258,7 +275,7 @@ class Blade:
     stations : ndarray, shape (n,)
         Positions x/L.
     columns : dict of ndarray, shape (n,)
-        Properties by the name that `Beam.from_stiffness` has for them, in SI units, but twist in degrees.
+        Properties by the name that `Beam.from_stiffness` has for them, in SI units, but angles in degrees.
     tip : dict of float
         Arguments of `TipMass`.
     pitch : float
@@ -275,6 +292,8 @@ class Blade:
         Properties of the deck that are not in this blade.
     doubts : tuple of str
         What the deck's own program would read otherwise.
+    matrices : BladeMatrices, optional
+        Matrices of the sections, in place of properties.
     """
 
     kind: str
@@ -292,6 +311,7 @@ class Blade:
     polynomials: dict[str, np.ndarray] = field(default_factory=dict)
     ignored: tuple[IgnoredProperty, ...] = ()
     doubts: tuple[str, ...] = ()
+    matrices: BladeMatrices | None = None
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:

@@ -16,7 +16,7 @@ from beamdyn.common.inputs.checks import InvalidValue, moderate, not_negative, s
 from beamdyn.common.results.files import check_writable, write_text
 from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
-from beamdyn.files.decks import bmodes, csv_table, elastodyn
+from beamdyn.files.decks import beamdyn_blade, bmodes, csv_table, elastodyn, openfast
 from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, audit, fit_mode_polynomials
 from beamdyn.files.decks.blade import Blade, IgnoredProperty
 from beamdyn.files.decks.scene_file import tables_of, text_of
@@ -24,8 +24,8 @@ from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
 _KINDS = (
-    "a blade file or the main file of ElastoDyn, FAST 7 or OpenFAST, a .bmi or section properties of BModes, "
-    "or a CSV table with units in its heads"
+    "a blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties "
+    "of BModes, or a CSV table with units in its heads"
 )
 
 
@@ -111,7 +111,12 @@ class Deck(Result):
         comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
         if self.blade.pitch:
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
-        if self.scene.physics.torsion:
+        if self.blade.matrices is not None:
+            comments["beam"] = [
+                "rows and columns of the matrices: 1 along the axis, 2 against flap, 3 across"
+            ]
+            comments["beam"] += ["K11 to K66 are stiffnesses, M11 to M66 masses, about the axis of the blade"]
+        elif self.scene.physics.torsion:
             comments["beam"] += ["offsets are from the shear centre, on the axis of the beam"]
         elif "rotary_inertia" in self.blade.columns:
             comments["physics"] = ["rotary_inertia = true adds that of the sections"]
@@ -140,7 +145,7 @@ class Deck(Result):
 def read_deck(
     path: str | PathLike[str], length: float | None = None, hub_radius: float | None = None
 ) -> Deck:
-    """Read a blade of ElastoDyn, FAST 7 or BModes, or from a CSV table with units in its heads.
+    """Read a blade of ElastoDyn, FAST 7, BeamDyn or BModes, or from a CSV table with units in its heads.
 
     Parameters
     ----------
@@ -181,30 +186,39 @@ def read_deck(
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:
     """The blade of a file, whatever program wrote it."""
-    for read, names, remedy in _READERS:
+    for read, names, remedy, wanted in _READERS:
         if len(named_values(text, names)) == len(names):
-            needed = _needed(text, given, remedy, length=bool(remedy), hub_radius=bool(remedy))
-            return read(text, *(needed if remedy else ()))
+            needed = _needed(text, given, remedy, **{name: name in wanted for name in given})
+            return read(text, *(needed[name] for name in wanted))
     if csv_table.is_csv(text):
         length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
         remedy = "a column r [m], from the axis of rotation, says both"
-        return csv_table.read_csv_blade(text, *_needed(text, given, remedy, length, hub_radius))
+        needed = _needed(text, given, remedy, length, hub_radius)
+        return csv_table.read_csv_blade(text, **needed)
     raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])
 
 
-# Readers, the values that tell their files from others, and what says length and hub radius if they do not.
-_READERS: tuple[tuple[Callable[..., Blade], set[str], str], ...] = (
-    (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad"),
-    (elastodyn.read_main_file, {"tiprad", "bldfile1"}, ""),
-    (elastodyn.read_openfast_file, {"edfile"}, ""),
-    (bmodes.read_main_file, {"secpropsfile"}, ""),
-    (bmodes.read_section_file, {"nsecs"}, "the main file (.bmi) has both"),
+_BOTH = ("length", "hub_radius")
+# Readers, the values that tell their files from others, what says what their files lack, and what that is.
+_READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
+    (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
+    (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
+    (openfast.read_openfast_file, {"edfile"}, "", ()),
+    (
+        beamdyn_blade.read_main_file,
+        {"kptotal", "bldfile"},
+        "the OpenFAST file (.fst) says it",
+        ("hub_radius",),
+    ),
+    (beamdyn_blade.read_blade_file, {"stationtotal"}, "the OpenFAST file (.fst) says both", _BOTH),
+    (bmodes.read_main_file, {"secpropsfile"}, "", ()),
+    (bmodes.read_section_file, {"nsecs"}, "the main file (.bmi) has both", _BOTH),
 )
 
 
 def _needed(
-    text: DataText, given: dict[str, float | None], remedy: str, length: bool = True, hub_radius: bool = True
-) -> tuple[float, float]:
+    text: DataText, given: dict[str, float | None], remedy: str, length: bool, hub_radius: bool
+) -> dict[str, float]:
     """Length and radius of the hub, each of which must be given where it is needed, and only there."""
     needed = {"length": length, "hub_radius": hub_radius}
     for name, value in given.items():
@@ -216,7 +230,5 @@ def _needed(
         options = " and ".join(f"--{name.replace('_', '-')}" for name in missing)
         said = f"{names}: missing; the file does not say {unsaid}: give {names} ({options}); {remedy}"
         raise ConfigError(str(text.path), [said])
-    values = (given[name] if needed[name] else math.nan for name in needed)
-    found_length, found_radius = values
-    assert found_length is not None and found_radius is not None
-    return found_length, found_radius
+    values = {name: given[name] if needed[name] else math.nan for name in needed}
+    return {name: value for name, value in values.items() if value is not None}

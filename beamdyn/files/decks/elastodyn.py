@@ -79,18 +79,7 @@ _MAIN_NAMES = {
     data_text.plain_name(name): name
     for name in ("TipRad", "HubRad", "PreCone(1)", "TipMass(1)", "BldFile(1)")
 }
-_ELASTODYN = 1  # CompElast: 2 is BeamDyn's blades with ElastoDyn's hub, 3 a simplified ElastoDyn
 _MAIN_MORE = {data_text.plain_name(name): name for name in ("BlPitch(1)", "RotSpeed")}
-
-
-def read_openfast_file(text: data_text.DataText) -> Blade:
-    """Read the first blade of the turbine: the file of ElastoDyn and all that it names."""
-    found = data_text.named_values(text, {"edfile", "compelast"})
-    blade = read_main_file(data_text.read_data(named_file(text, found["edfile"])))
-    model = data_text.named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
-    reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
-    ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *blade.ignored)
-    return replace(blade, sources=(text.path, *blade.sources), ignored=ignored)
 
 
 def read_main_file(text: data_text.DataText) -> Blade:

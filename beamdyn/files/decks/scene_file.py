@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from beamdyn.common.inputs.described import descriptions
-from beamdyn.files.decks.blade import Blade
-from beamdyn.scene.beam import OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS
+from beamdyn.files.decks.blade import Blade, BladeMatrices
+from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS
 from beamdyn.scene.points import TipMass
+from beamdyn.scene.section_matrices import UPPER, entry_name, entry_units
 
-_UNITS = {"twist": "deg"} | PROPERTY_UNITS
+_UNITS = dict.fromkeys(ANGLE_UNITS, "deg") | PROPERTY_UNITS
 _TIP_UNITS = {name: each.unit for name, each in descriptions(TipMass).items()}
 _DIGITS = 15  # digits of numbers in the file: those that a float keeps
 
@@ -22,7 +23,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
     rotation where twist and pitch are 0.
     """
     tables: dict[str, Any] = {
-        "beam": {"length": f"{_number(blade.length)} m", "stations": _rows(blade)},
+        "beam": {"length": f"{_number(blade.length)} m"} | _tables_of_stations(blade),
         "mount": {
             "radius": f"{_number(blade.hub_radius)} m",
             "setting_angle": "180 deg",
@@ -43,7 +44,30 @@ def tables_of(blade: Blade) -> dict[str, Any]:
         tables["physics"] = {"planes": 2}
     if any(_names(blade, OFFSETS)) or blade.tip.get("offset_across"):
         tables["physics"]["torsion"] = True
+    if blade.matrices is not None:
+        effects = ("shear", "rotary_inertia", "stretch", "torsion", "large_deflection")
+        tables["physics"] = {"planes": 2} | dict.fromkeys(effects, True)
     return tables
+
+
+def _tables_of_stations(blade: Blade) -> dict[str, Any]:
+    """What varies along the blade, and where there are any, the matrices of its sections."""
+    if blade.matrices is None:
+        return {"stations": _rows(blade)}
+    given = {"stations": _rows(blade)} if _names(blade, _UNITS) else {}
+    return given | {"matrices": _matrix_rows(blade.matrices)}
+
+
+def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
+    """Heads and rows of the entries that are not 0 throughout."""
+    both = {"K": matrices.stiffness, "M": matrices.mass}
+    entries = {
+        f"{entry_name(letter, i, j)}": values[:, i, j] for letter, values in both.items() for i, j in UPPER
+    }
+    units = entry_units()
+    kept = {f"{name} [{units[name]}]": values for name, values in entries.items() if values.any()}
+    columns = [matrices.stations, *kept.values()]
+    return [["x/L", *kept], *([float(_number(value)) for value in row] for row in zip(*columns, strict=True))]
 
 
 def _names(blade: Blade, among: Iterable[str]) -> list[str]:

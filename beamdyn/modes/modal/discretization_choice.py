@@ -30,6 +30,8 @@ DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits b
 TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
 MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
 FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
+# Smallest targets of beams in space, of few segments and of many, where each function costs much.
+SPACE_TARGET, SEGMENTED_SPACE_TARGET = 1e-7, 1e-4
 PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
 _MOST_SEGMENTS = 200  # segments of a beam between its stations and breakpoints
 _MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
@@ -183,7 +185,9 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
     """A target of the error, or the least that finite elements, or the functions of a plate, aim at."""
     if not isinstance(discretization, str):
         return target
-    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width)
+    of_space = SEGMENTED_SPACE_TARGET if _count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
+    least = FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width
+    return max(target, *least, of_space * scene.bends_in_space)
 
 
 def within_reach(discretization: Discretization, target: float) -> float:

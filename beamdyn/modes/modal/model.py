@@ -15,7 +15,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.uncoupled import solver_of
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_axis
 
 if TYPE_CHECKING:
     from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
@@ -49,7 +49,15 @@ class Model(FieldsOnly):
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations of motion, linear about the straight beam."""
+        """Equations of motion, linear about the straight beam; with matrices of sections about its axis."""
+        if self.scene.beam.matrices is not None:
+            return self.bent.about_straight
+        return self._of_fields
+
+    @cached_property
+    def _of_fields(self) -> Equations:
+        """Equations of motion by the fields of a straight beam."""
+        check_axis(self.scene.beam, self.scene.physics)  # of an analysis that does not choose the physics
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
@@ -72,7 +80,7 @@ class Model(FieldsOnly):
         # Few scenes need it.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        return assemble_beam_in_space(self.scene, self.discretization, self.equations)
+        return assemble_beam_in_space(self.scene, self.discretization, self._of_fields)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:

@@ -32,6 +32,7 @@ from beamdyn.modes.model_error.left_out_changes import (
     without_large_deflection,
 )
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.scene.beam import Beam
 from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import refuse_bending_in_space
@@ -148,8 +149,24 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
 
 
 def plain_physics(scene: Scene) -> Scene:
-    """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone."""
-    return replace(scene, physics=Physics()) if scene.chooses_physics else scene
+    """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone.
+
+    A curved axis bends in both directions and twists under any load, as far as the beam has the data: it is
+    a beam in space from the start.
+    """
+    return replace(scene, physics=_plain_of(scene.beam)) if scene.chooses_physics else scene
+
+
+def _plain_of(beam: Beam) -> Physics:
+    """The least physics that has the axis of a beam."""
+    if beam.matrices is not None:
+        return Physics(2, shear=True, rotary_inertia=True, stretch=True, torsion=True, large_deflection=True)
+    if not beam.is_curved:
+        return Physics()
+    twists = beam.torsion_stiffness is not None and beam.second_rotary_inertia is not None
+    twists |= beam.section is not None and beam.section.poissons_ratio is not None
+    planes = 1 if beam.second_bending_stiffness is None else 2
+    return Physics(planes, torsion=twists, large_deflection=True)
 
 
 def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:

@@ -1,0 +1,249 @@
+"""Blades of BeamDyn: its primary file with the blade file that it names, or the blade file alone.
+
+The blade's axes are x downwind, y to the trailing edge, z from root to tip.  The reference line goes through
+key points by cubic splines, natural at the ends of each member.  A section's axes are z along the line, x
+without a component along y of the root, both turned about -z by the twist.  Here they are 1 = z, 2 = -x and
+3 = -y, so that forces and moments (Fx, Fy, Fz, Mx, My, Mz) are (-F2, -F3, F1, -M2, -M3, M1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from beamdyn.common.edge.data_text import (
+    DataText,
+    NamedValue,
+    check_all_there,
+    named_count,
+    named_values,
+    number_at,
+    plain_name,
+    read_data,
+)
+from beamdyn.common.numerics import gauss_rule
+from beamdyn.files.decks.blade import Blade, BladeMatrices, IgnoredProperty, check_order, ignore
+from beamdyn.files.decks.elastodyn import named_file
+from beamdyn.scene.section_matrices import asymmetry, least_eigenvalues, strangeness
+
+_ROWS, _SIGNS = [2, 0, 1, 5, 3, 4], np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
+_LEAST, _ASYMMETRY, _STRANGE = 1e-10, 1e-4, 1e-4  # those of SectionMatrices, refused with the line here
+_ANGLE = 0.05  # degrees by which angles that are linear between stations may be off the splines
+_SAMPLES = 8  # of each part of a spline, between key points
+_MOST_STATIONS = 100
+_MAIN_NAMES = {plain_name(name): name for name in ("member_total", "kp_total", "BldFile")}
+_BLADE_NAMES = {plain_name(name): name for name in ("station_total", "damp_type")}
+_DAMPED = "natural frequencies are undamped; stiffness_factor in [damping] damps all strains alike"
+
+
+def read_main_file(text: DataText, hub_radius: float) -> Blade:
+    """Read the primary file, with the key points, and the blade file that it names.
+
+    Raises
+    ------
+    ConfigError
+        If something is missing or not as expected, or the reference line turns back on itself.
+    """
+    found = named_values(text, _MAIN_NAMES.keys())
+    check_all_there(text, found, _MAIN_NAMES)
+    points, lines = _read_key_points(text, found)
+    members = _read_members(text, found, len(points))
+    blade = read_blade_file(read_data(named_file(text, found["bldfile"])), 1.0, hub_radius)
+    assert blade.matrices is not None
+    _check_line(text, points, lines)
+    x, angles = _angles_of_line(points, members)
+    kept = _places(x / x[-1], angles, blade.matrices.stations)
+    columns = dict(
+        zip(("twist", "sweep", "prebend"), (np.interp(kept, x / x[-1], a) for a in angles), strict=True)
+    )
+    return replace(
+        blade,
+        kind=f"BeamDyn primary file and {blade.kind}",
+        title=text.lines[1].strip() if len(text.lines) > 1 else "",
+        sources=(text.path, *blade.sources),
+        length=float(x[-1]),
+        stations=kept,
+        columns=columns,
+    )
+
+
+# Key points ---------------------------------------------------------------------------------------
+
+
+def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, list[int]]:
+    """Coordinates [m] and twist [deg] of the key points (k, 4), and their lines."""
+    count = named_count(text, found["kptotal"], least=3)
+    heads = ("kpxr", "kpyr", "kpzr", "initialtwist")
+    at = [n for n in range(1, len(text.lines) + 1) if [*map(plain_name, text.words(n)[:4])] == [*heads]]
+    if not at:
+        raise text.lacking("expected the heads kp_xr kp_yr kp_zr initial_twist above the key points")
+    first = at[0] + 2
+    lines = [*range(first, first + count)]
+    return np.array([_numbers(text, line, 4, "the coordinates of a key point") for line in lines]), lines
+
+
+def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> list[slice]:
+    """Key points of each member, the first of which is the last of the one before."""
+    count, line = named_count(text, found["membertotal"], least=1), found["kptotal"].line
+    members, start = [], 0
+    for k in range(1, count + 1):
+        number = int(_numbers(text, line + k, 2, "the number of a member and of its key points")[1])
+        if number < 3 or start + number > points:
+            said = f"expected 3 key points or more, at most the {points - start} that are left"
+            raise text.refusal(line + k, f"{said}, found {number}")
+        members.append(slice(start, start + number))
+        start += number - 1
+    if start + 1 != points:
+        said = f"the members have {start + 1} key points, kp_total in line {line} says {points}"
+        raise text.refusal(line + count, f"{said}; neighbours share one")
+    return members
+
+
+def _numbers(text: DataText, line: int, count: int, name: str) -> list[float]:
+    """The first numbers of a line, which must have as many."""
+    words = text.words(line)[:count] if line <= len(text.lines) else []
+    if len(words) < count:
+        raise text.refusal(min(line, len(text.lines)), f"expected {count} numbers, {name}")
+    return [number_at(text, line, word, name) for word in words]
+
+
+def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> None:
+    """Refuse a reference line that does not begin at the root, or turns back on itself."""
+    if points[0, :3].any():
+        raise text.refusal(lines[0], "expected the first key point at 0 0 0, the root")
+    chords = np.diff(points[:, :3], axis=0)
+    along = np.concatenate([[[0.0, 0.0, 1.0]], chords])
+    ahead = (along[1:] * along[:-1]).sum(axis=1)
+    if (bad := np.flatnonzero(ahead <= 0)).size:
+        k = bad[0] + 1
+        said = f"the reference line turns back on itself at key point {k}" if k > 1 else "it starts backwards"
+        raise text.refusal(
+            lines[k], f"{said}; expected points in order from root to tip, at most 90 deg apart"
+        )
+
+
+def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Lengths along the line [m] (n,), and twist, sweep and prebend there [deg], of many places."""
+    lengths, found = [np.zeros(1)], []
+    for member in members:
+        own = points[member]
+        chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(own[:, :3], axis=0), axis=1))])
+        spline = CubicSpline(chord, own, bc_type="natural")
+        at = np.concatenate([np.linspace(a, b, _SAMPLES + 1)[:-1] for a, b in pairwise(chord)])
+        at = np.append(at, chord[-1])
+        lengths.append(lengths[-1][-1] + np.append(0.0, np.cumsum(_arcs(spline, at))))
+        tx, ty, tz = (spline(at, 1)[:, :3] / np.linalg.norm(spline(at, 1)[:, :3], axis=1)[:, None]).T
+        angles = [-spline(at)[:, 3], np.degrees(np.arcsin(-ty)), np.degrees(np.arctan2(-tx, tz))]
+        found.append(np.array(angles))
+    return np.concatenate(lengths[1:]), [*np.concatenate(found, axis=1)]
+
+
+def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
+    """Lengths of a curve between neighbouring places."""
+    t, w = gauss_rule(4)
+    middle, half = (at[1:] + at[:-1]) / 2, np.diff(at) / 2
+    speed = np.linalg.norm(spline(middle[:, None] + half[:, None] * t, 1)[..., :3], axis=2)
+    return half * (speed @ w)
+
+
+def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
+    """Stations x/L, and those between which the angles are linear enough."""
+    kept = stations
+    while len(kept) < _MOST_STATIONS:
+        apart = np.max([np.abs(a - np.interp(x, kept, np.interp(kept, x, a))) for a in angles], axis=0)
+        if apart.max() <= _ANGLE:
+            break
+        kept = np.union1d(kept, x[apart.argmax()])
+    return kept
+
+
+# Matrices -----------------------------------------------------------------------------------------
+
+
+def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
+    """Read a blade file, the matrices of the sections: of a straight blade without twist.
+
+    Parameters
+    ----------
+    text : DataText
+        The file.
+    length, hub_radius : float
+        Length of the blade and radius of the hub [m].
+
+    Raises
+    ------
+    ConfigError
+        If something is missing or not as expected, or a matrix is not positive definite.
+    """
+    found = named_values(text, _BLADE_NAMES.keys())
+    check_all_there(text, found, _BLADE_NAMES)
+    stations, lines, both = _read_matrices(text, named_count(text, found["stationtotal"]))
+    for name, matrices in zip(("stiffness", "mass"), both, strict=True):
+        _check_matrices(text, name, stations, lines, matrices)
+    stiffness, mass = ((each + each.swapaxes(1, 2)) / 2 for each in both)
+    return Blade(
+        kind="BeamDyn blade file",
+        title=text.lines[1].strip() if len(text.lines) > 1 else "",
+        sources=(text.path,),
+        length=length,
+        hub_radius=hub_radius,
+        stations=stations,
+        columns={},
+        ignored=_damping(text, found["damptype"]),
+        matrices=BladeMatrices(stations, _to_ours(stiffness), _to_ours(mass)),
+    )
+
+
+def _to_ours(matrices: np.ndarray) -> np.ndarray:
+    """Matrices (n, 6, 6) in the order and axes of this package."""
+    return _SIGNS[:, None] * matrices[:, _ROWS][:, :, _ROWS] * _SIGNS
+
+
+def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], list[np.ndarray]]:
+    """Stations (n,), their lines, and the two matrices (n, 6, 6) of each, in the file's order."""
+    heads = [n for n, line in enumerate(text.lines, 1) if "distributedproperties" in plain_name(line)]
+    if not heads:
+        raise text.lacking("expected a line DISTRIBUTED PROPERTIES above the stations")
+    rows = [n for n in range(heads[0] + 1, len(text.lines) + 1) if text.lines[n - 1].strip()]
+    if len(rows) < 13 * count:
+        raise text.lacking(f"expected {count} stations of 13 lines, two matrices of 6 x 6 each")
+    places, matrices = rows[: 13 * count : 13], np.empty((2, count, 6, 6))
+    for k in range(count):
+        for r, at in enumerate(rows[13 * k + 1 : 13 * k + 13]):
+            matrices[r // 6, k, r % 6] = _numbers(text, at, 6, "a row of a matrix")
+    stations = np.array([_numbers(text, line, 1, "a station")[0] for line in places])
+    check_order(text, places, "station", stations)
+    return stations, places, [*matrices]
+
+
+def _check_matrices(
+    text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
+) -> None:
+    """Refuse matrices that are not symmetric and positive definite, or the mass of no section."""
+    ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
+    checks = [
+        (asymmetry(matrices) > _ASYMMETRY, "a symmetric matrix"),
+        (least_eigenvalues(ours) <= _LEAST, "a positive definite matrix: this section deforms by itself"),
+    ]
+    if name == "mass":
+        checks += [(strangeness(ours) > _STRANGE, "m on the diagonal, and m times the centre beside it")]
+    for bad, wanted in checks:
+        if bad.any():
+            k = int(bad.argmax())
+            said = f"the {name} of the section at eta = {stations[k]:g}"
+            raise text.refusal(lines[k], f"{said}: expected {wanted}")
+
+
+def _damping(text: DataText, kind: NamedValue) -> tuple[IgnoredProperty, ...]:
+    """The record of the damping, if there is any."""
+    if kind.word == "0":
+        return ()
+    heads = [n for n in range(kind.line, len(text.lines) + 1) if text.words(n)[:1] == ["mu1"]]
+    if not heads:
+        raise text.lacking("expected the heads mu1 to mu6 above the damping coefficients")
+    values = _numbers(text, heads[0] + 2, 6, "the damping coefficients")
+    return ignore("mu1 to mu6", values, "s", _DAMPED)

@@ -1,0 +1,212 @@
+"""Sections by their 6 x 6 matrices of stiffness and of mass, with all that couples their strains.
+
+Rows and columns are those of the forces and moments (F1, F2, F3, M1, M2, M3) about the axis of the beam: 1
+along it, 2 in the direction of bending and 3 across, in the axes of the section, which the twist turns.  The
+stiffness gives them by stretch, the shears, twist rate and the curvatures about 2 and 3; the mass matrix,
+per length, by accelerations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, kind, set_fields
+from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.scene.profile import Profile, Table, to_profile
+
+SIZE = 6
+UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # entries that are given
+_FORCES = 3  # rows of forces; the others are of moments
+_LEAST = 1e-10  # eigenvalue of a matrix with a diagonal of 1 below which it is not positive definite
+_ASYMMETRY = 1e-4  # difference of two entries that should be equal, over the root of their diagonal entries
+_OF_MASS = 1e-4  # the same, of entries that no rigid section has
+# Diagonal entries of the stiffness, by the name of the property of the beam that they are.
+_DIAGONAL = {
+    "axial_stiffness": 0,
+    "shear_stiffness": 1,
+    "second_shear_stiffness": 2,
+    "torsion_stiffness": 3,
+    "second_bending_stiffness": 4,
+    "bending_stiffness": 5,
+}
+
+
+def entry_units() -> dict[str, str]:
+    """Units of the entries in files: K11 to K66 of the stiffness, M11 to M66 of the mass, upper triangles."""
+    units = {}
+    for letter, by_moments in (("K", ("N", "N m", "N m2")), ("M", ("kg/m", "kg", "kg m"))):
+        units |= {entry_name(letter, i, j): by_moments[(i >= _FORCES) + (j >= _FORCES)] for i, j in UPPER}
+    return units
+
+
+def entry_name(letter: str, i: int, j: int) -> str:
+    """Name of an entry, such as K16, by its row and column from 0."""
+    return f"{letter}{i + 1}{j + 1}"
+
+
+@dataclass(frozen=True)
+class SectionMatrices(FieldsOnly):
+    """Matrices of the sections along a beam.
+
+    Parameters
+    ----------
+    stiffness, mass : sequence of Profile
+        The 21 entries of the upper triangle of each, row by row, over x/L [N, N m, N m2; kg/m, kg, kg m].
+
+    Raises
+    ------
+    ValueError
+        If a matrix is not positive definite, or the mass is not that of a rigid section.
+
+    Examples
+    --------
+    >>> stiffness = np.diag([1e9, 1e8, 1e8, 1e6, 4e6, 1e6])  # N, N m2
+    >>> mass = np.diag([100.0, 100.0, 100.0, 3.0, 1.0, 2.0])  # kg/m, kg m
+    >>> of_sections = bd.SectionMatrices.at_stations([0.0, 1.0], [stiffness] * 2, [mass] * 2)
+    >>> float(of_sections.properties["bending_stiffness"](0.5))  # N m2
+    1000000.0
+    """
+
+    stiffness: Sequence[Profile]
+    mass: Sequence[Profile]
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "mass"):
+            entries = tuple(getattr(self, name))
+            if len(entries) != len(UPPER):
+                bound = f"give the {len(UPPER)} entries of the upper triangle, row by row"
+                raise InvalidValue(f"matrices.{name}", len(entries), bound)
+            for k, entry in enumerate(entries):
+                kind(f"matrices.{name}[{k}]", entry, Profile, "SectionMatrices.at_stations makes them")
+            set_fields(self, **{name: entries})
+            self._check(name)
+
+    @classmethod
+    def at_stations(cls, stations: Any, stiffness: Any, mass: Any) -> SectionMatrices:
+        """Matrices that are linear between stations.
+
+        Parameters
+        ----------
+        stations : array_like, shape (n,)
+            Positions x/L, from 0 to 1, ascending; a station given twice is a jump.
+        stiffness, mass : array_like, shape (n, 6, 6)
+            The matrices.
+
+        Returns
+        -------
+        SectionMatrices
+
+        Raises
+        ------
+        ValueError
+            If a matrix is not symmetric and positive definite, or the mass is not that of a rigid section.
+        """
+        entries = []
+        for name, given in (("stiffness", stiffness), ("mass", mass)):
+            matrices = np.asarray(given, dtype=float)
+            if matrices.shape != (len(stations), SIZE, SIZE):
+                bound = f"give {len(stations)} matrices of 6 x 6, one for each station"
+                raise InvalidValue(f"matrices.{name}", str(matrices.shape), bound)
+            _check_symmetry(name, stations, matrices)
+            matrices = (matrices + matrices.swapaxes(1, 2)) / 2
+            entries.append([_profile(name, stations, matrices[:, i, j]) for i, j in UPPER])
+        return cls(*entries)
+
+    @cached_property
+    def _stations(self) -> np.ndarray:
+        """Breakpoints x/L of all entries."""
+        return np.unique(np.concatenate([entry.breakpoints for entry in (*self.stiffness, *self.mass)]))
+
+    def at(self, name: str, xi: np.ndarray) -> np.ndarray:
+        """Evaluate the matrices "stiffness" or "mass" (6, 6, N) at x/L = xi (N,)."""
+        found = np.empty((SIZE, SIZE, len(xi)))
+        for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
+            found[i, j] = found[j, i] = entry(xi)
+        return found
+
+    @cached_property
+    def properties(self) -> dict[str, Profile]:
+        """Properties of `Beam` that the matrices say: diagonal entries, mass, inertia about its centre."""
+        found = {name: self.stiffness[UPPER.index((k, k))] for name, k in _DIAGONAL.items()}
+        xi = self._stations
+        _, _, inertia = split_mass(self.at("mass", xi))
+        for name, k in (("rotary_inertia", 2), ("second_rotary_inertia", 1)):
+            found[name] = _profile(name, xi, inertia[k, k])
+        return found | {"mass_per_length": self.mass[0]}
+
+    def _check(self, name: str) -> None:
+        """Refuse matrices that are not positive definite at a breakpoint, and so between; and odd masses."""
+        xi = self._stations
+        matrices = self.at(name, xi)
+        least = least_eigenvalues(matrices)
+        if (bad := np.flatnonzero(least <= _LEAST)).size:
+            k = bad[0]
+            bound = "its least eigenvalue, with a diagonal of 1, must be above {limit}"
+            remedy = (
+                "such a section deforms without a force" if name == "stiffness" else "it has negative mass"
+            )
+            where = f" at x/L = {xi[k]:.4g}"
+            raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", _LEAST, where=where)
+        if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > _OF_MASS)).size:
+            bound = "no rigid section has such a mass matrix: its forces are m on the diagonal, m c beside it"
+            value, where = float(strangeness(matrices)[bad[0]]), f" at x/L = {xi[bad[0]]:.4g}"
+            raise InvalidValue("matrices.mass", value, bound, "check its entries", where=where)
+
+
+def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarray) -> Profile:
+    return to_profile(f"matrices.{name}", Table([*map(float, stations)], values.tolist()))
+
+
+def _scaled(matrices: np.ndarray) -> np.ndarray:
+    """Matrices (n, 6, 6) with a diagonal of 1; one that is not positive stays as it is."""
+    diagonal = np.einsum("nii->ni", matrices)
+    roots = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    return matrices / (roots[:, :, None] * roots[:, None, :])
+
+
+def least_eigenvalues(matrices: np.ndarray) -> np.ndarray:
+    """Least eigenvalue (N,) of matrices (6, 6, N), scaled to a diagonal of 1."""
+    return np.linalg.eigvalsh(_scaled(np.moveaxis(matrices, 2, 0)))[:, 0]
+
+
+def _check_symmetry(name: str, stations: Any, matrices: np.ndarray) -> None:
+    apart = asymmetry(matrices)
+    if (bad := np.flatnonzero(apart > _ASYMMETRY)).size:
+        bound, where = "it must be symmetric, within {limit}", f" at x/L = {float(stations[bad[0]]):.4g}"
+        value = float(apart[bad[0]])
+        raise InvalidValue(
+            f"matrices.{name}", value, bound, "check both entries", "", _ASYMMETRY, where=where
+        )
+
+
+def asymmetry(matrices: np.ndarray) -> np.ndarray:
+    """Largest difference (n,) of two entries of matrices (n, 6, 6), over the root of their diagonal ones."""
+    scaled = _scaled(matrices)
+    return np.abs(scaled - scaled.swapaxes(1, 2)).max(axis=(1, 2))
+
+
+def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass per length (N,), its centre (3, N) from the axis and inertia (3, 3, N) about it, of (6, 6, N)."""
+    m = matrices[0, 0]
+    c2, c3 = -matrices[0, 5] / m, matrices[0, 4] / m
+    none = np.zeros_like(m)
+    lever = np.stack([np.stack([none, -c3, c2]), np.stack([c3, none, none]), np.stack([-c2, none, none])])
+    about_axis = -m * np.einsum("abj,bcj->acj", lever, lever)
+    return m, np.stack([none, c2, c3]), matrices[3:, 3:] - about_axis
+
+
+def strangeness(matrices: np.ndarray) -> np.ndarray:
+    """Largest difference (N,) of mass matrices (6, 6, N) from those of rigid sections, scaled."""
+    m, (_, c2, c3), _ = split_mass(matrices)
+    rigid = matrices.copy()
+    rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0
+    rigid[0, 4], rigid[0, 5], rigid[1, 3], rigid[2, 3] = m * c3, -m * c2, -m * c3, m * c2
+    rigid[3:, :3] = rigid[:3, 3:].swapaxes(0, 1)
+    apart = np.moveaxis(matrices - rigid, 2, 0)
+    roots = np.sqrt(np.abs(np.einsum("iin->ni", matrices)))
+    return np.abs(apart / (roots[:, :, None] * roots[:, None, :])).max(axis=(1, 2))

@@ -1,0 +1,73 @@
+"""Whether the stated errors of frequencies of beams in space cover the true ones.
+
+Run: python -m benchmarks.stated_space_errors [--scenes N] [--seed N] [--save FILE].  Random beams that are
+twisted, swept and prebent, shear, stretch and have offsets, about their equilibria under rotation, at three
+tolerances, against the same equations over a basis of many functions, whose uncertainty is its distance from
+one of fewer: what is tested is the stated error of the discretization, not the equations.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import warnings
+from collections.abc import Iterator
+from functools import partial
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+
+import numpy as np
+
+import beamdyn as bd
+from benchmarks.cases.random_space import random_space_scene
+from benchmarks.cases.reference.resolved import Known
+from benchmarks.resumable import Cases, add_options
+from benchmarks.rows import Row, show
+from benchmarks.stated_physics_errors import TOLERANCES, Answer, answer, summarize
+
+SEED, _MODES = 33, 4
+_REFERENCE = 24, 20  # functions
+
+
+def measure(number: int, seed: int) -> list[Answer]:
+    """Answers for the scene with this number."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scene, speed = random_space_scene(np.random.default_rng([seed, number]))
+        try:
+            known = _known(scene, speed)
+        except ArithmeticError as error:
+            return [Answer(number, None, 0.0, refusal=f"reference: {error}")]
+        return [answer(number, scene, speed, "ritz", tolerance, known) for tolerance in TOLERANCES]
+
+
+def _known(scene: bd.Scene, speed: float) -> Known:
+    """Eigenvalues over many functions, with their distance from those over fewer, and rounding."""
+    fine, coarse = (bd.natural_modes(scene, speed, _MODES, bd.Ritz(n)).eigenvalue for n in _REFERENCE)
+    uncertainty = np.abs(fine / coarse - 1) + 1e-13
+    return Known(fine, uncertainty, 0.0)
+
+
+def cases(seed: int = SEED) -> Cases[Answer]:
+    """The random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Answer)
+
+
+def measure_sample() -> Iterator[Row]:
+    """The first 12 scenes."""
+    yield from summarize(cases().measure_all(range(12)))
+
+
+PARTS = (measure_sample,)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_options(parser, scenes=300, seed=SEED)
+    given = parser.parse_args()
+    answers = cases(given.seed).run(given)
+    show("stated errors of frequencies of beams in space", lambda: summarize(answers))
+
+
+if __name__ == "__main__":
+    main()
