@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
@@ -17,6 +17,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
+_ACROSS = 8  # functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest number accepted
 MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
 # Shortest segment over the length, below which rounding leaves no digit, with a margin for its last digit.
@@ -52,9 +53,6 @@ class Fem:
     3.516015
     """
 
-    order: ClassVar[int] = 4  # the error of eigenvalues is as the fourth power of the element length
-    converges_regularly: ClassVar[bool] = True
-
     elements: int = 80
     mesh: Literal["graded", "uniform"] = "graded"
     on_each: int = 2
@@ -73,6 +71,16 @@ class Fem:
         mesh = "" if self.mesh == "graded" else " on a uniform mesh"
         least = "" if self.on_each == 2 else f", at least {self.on_each} on each segment"
         return f"{self.elements} finite elements{mesh}{least}"
+
+    @property
+    def order(self) -> int:
+        """Order of convergence: the error of eigenvalues is as the fourth power of the element length."""
+        return 4
+
+    @property
+    def converges_regularly(self) -> bool:
+        """The error falls as a power of the element length."""
+        return True
 
     @property
     def rounding(self) -> float:
@@ -152,9 +160,6 @@ class FemSpaces(FieldsOnly):
         Polynomial degree that the quadrature integrates exactly.
     """
 
-    across: ClassVar[int] = 8  # functions across the width of a plate
-    fewer_across: ClassVar[int] = 8  # of the coarser model: its mesh differs along the beam alone
-
     nodes: np.ndarray
     order: int
 
@@ -172,6 +177,16 @@ class FemSpaces(FieldsOnly):
     ) -> np.ndarray:
         """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate beyond the mean."""
+        return _ACROSS
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of functions `across` of the coarser model: its mesh differs along the beam alone."""
+        return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
         """Whether the nodes are the same."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache
 from itertools import pairwise
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -56,9 +56,6 @@ class Ritz:
     3.516015269
     """
 
-    order: ClassVar[None] = None  # the error does not fall as a power of the size
-    rounding: ClassVar[float] = 0.0  # scaling of the functions keeps all digits of their integrals
-
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
 
@@ -74,6 +71,16 @@ class Ritz:
     def on_each_segment(self) -> bool:
         """Whether each segment between breakpoints has its own functions."""
         return self.basis == "legendre"
+
+    @property
+    def order(self) -> None:
+        """None: the error does not fall as a power of the size."""
+        return None
+
+    @property
+    def rounding(self) -> float:
+        """0: scaling of the functions keeps all digits of their integrals."""
+        return 0.0
 
     @property
     def converges_regularly(self) -> bool:

@@ -77,9 +77,13 @@ class Trajectory:
         """Whether each segment has equal steps."""
         return all(isinstance(segment, Segment) for segment in self.segments)
 
-    @cached_property
+    @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
+        return self._samples
+
+    @cached_property
+    def _samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         n = self.segments[0].acceleration.shape[2]
         last = self.segments[-1].state[-1:]
         end = np.array([self.end]), last[:, 1 : n + 1], last[:, n + 1 :]
