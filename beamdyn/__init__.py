@@ -53,8 +53,6 @@ if TYPE_CHECKING:
     from beamdyn.files.decks.deck import Deck, read_deck
     from beamdyn.files.measured_data import read_measurements
     from beamdyn.files.scenes import load_scene
-    from beamdyn.floquet.chart import StabilityChart, stability_chart
-    from beamdyn.floquet.point import FloquetMultipliers, floquet_multipliers
     from beamdyn.linear.frequency_response import FrequencyResponse, frequency_response
     from beamdyn.linear.inputs_outputs import (
         AccelerationAt,
@@ -128,6 +126,8 @@ if TYPE_CHECKING:
     from beamdyn.studies.beside_data.single_numbers import OneNumberFit
     from beamdyn.studies.campbell.diagram import Campbell, campbell
     from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
+    from beamdyn.studies.floquet.point import FloquetMultipliers, floquet_multipliers
+    from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
     from beamdyn.studies.sensitivities.sensitivities import (
         critical_speed_sensitivities,
         crossing_sensitivities,

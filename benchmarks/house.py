@@ -53,7 +53,7 @@ READERS = {
     "beamdyn/analyses/about_linear_models.py",
     "beamdyn/analyses/values.py",
     "beamdyn/app/scene_form.py",
-    "beamdyn/cli/campbell_diagram.py",
+    "beamdyn/analyses/about_campbell.py",
     "beamdyn/common/screens/examples.py",
     "beamdyn/common/screens/form_entries.py",
     "beamdyn/common/screens/open_document.py",

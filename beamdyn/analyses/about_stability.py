@@ -17,8 +17,8 @@ from beamdyn.common.edge.varied_inputs import OPTION, parse_axis
 from beamdyn.scene.numbers import SPEED, number_at
 
 if TYPE_CHECKING:
-    from beamdyn.floquet.point import FloquetMultipliers
     from beamdyn.scene.scene import Scene
+    from beamdyn.studies.floquet.point import FloquetMultipliers
 
 _FREQUENCY = "motion.frequency"
 _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"

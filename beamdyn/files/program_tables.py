@@ -97,10 +97,10 @@ def _of_list(text: DataText, head: int) -> list[str]:
     if not rows:
         raise text.lacking("expected lines of numbers below ANSYS POST26 VARIABLE LISTING")
     first = min(rows)
-    said = " ".join(text.lines[head:first]).upper()
-    names = re.findall(r"\b[A-Z]\w*_\d+\b", said) or _VARIABLE.findall(said)
-    if "FREQ" in said.split():
-        if "PHASE" not in said or len(rows[first]) != 3:
+    heading = " ".join(text.lines[head:first]).upper()
+    names = re.findall(r"\b[A-Z]\w*_\d+\b", heading) or _VARIABLE.findall(heading)
+    if "FREQ" in heading.split():
+        if "PHASE" not in heading or len(rows[first]) != 3:
             raise text.refusal(head + 1, "expected one variable by amplitude and phase: PRCPLX,1, then PRVAR")
         heads = ["frequency [Hz]", names[0], "phase [deg]"]
     else:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.floquet.interpolation import interpolate_on_grid
-from beamdyn.floquet.monodromy import Monodromy
-from beamdyn.floquet.multipliers import multipliers_of
-from beamdyn.floquet.period import period_of
 from beamdyn.scene.motion import check_consistent
+from beamdyn.studies.floquet.interpolation import interpolate_on_grid
+from beamdyn.studies.floquet.monodromy import Monodromy
+from beamdyn.studies.floquet.multipliers import multipliers_of
+from beamdyn.studies.floquet.period import period_of
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 PULSATING = bd.PulsatingRotation(50.0, 0.1, 20.0)

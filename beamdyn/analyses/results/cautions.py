@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -19,9 +18,6 @@ if TYPE_CHECKING:
 
     from beamdyn.modes.critical import CriticalPoint
     from beamdyn.modes.modes import Modes
-
-
-_FIRST_PART = re.compile(r";(?![^(]*\))")  # ends at a semicolon outside brackets
 
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
@@ -67,7 +63,15 @@ def notes_of(result: Any) -> list[str]:
         return ["with large deflection"]
     outside = of_kind(getattr(result, "warnings", ()), OUTSIDE, MODEL_ERROR)
     said = (*outside, *_of_model_error(result))
-    return [_FIRST_PART.split(worded(each, _words_of(result)))[0] for each in said]
+    return [_first_clause(worded(each, _words_of(result))) for each in said]
+
+
+def _first_clause(sentence: str) -> str:
+    """A sentence up to its first semicolon outside brackets."""
+    clause, *more = sentence.split(";")
+    while clause.count("(") > clause.count(")"):
+        clause += ";" + more.pop(0)
+    return clause
 
 
 def critical_label(point: CriticalPoint) -> str:

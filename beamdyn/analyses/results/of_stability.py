@@ -12,11 +12,11 @@ from rich.console import Group
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.floquet.multipliers import STABLE, UNDECIDED
+from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
 if TYPE_CHECKING:
-    from beamdyn.floquet.chart import StabilityChart
-    from beamdyn.floquet.point import FloquetMultipliers
+    from beamdyn.studies.floquet.point import FloquetMultipliers
+    from beamdyn.studies.floquet.stability_chart import StabilityChart
 
 _MOST_ROWS = 21  # values of the first number in a table
 _SI: Mapping[str, tuple[str, float]] = {}

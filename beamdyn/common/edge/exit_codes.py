@@ -196,8 +196,6 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     except CycloptsError as error:
         return _complain(name, say_mistake(app, error, given), BAD_INPUT)
     except (NoAnswer, ArithmeticError, ValueError, OSError) as error:
-        from beamdyn.common.edge.exit_codes import as_typed, is_no_answer  # with numpy, which help lacks
-
         if isinstance(error, NoAnswer) or is_no_answer(error):
             return _complain(name, f"no answer: {as_typed(error)}", NO_ANSWER)
         return _complain(name, as_typed(error), BAD_INPUT)

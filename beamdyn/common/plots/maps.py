@@ -226,8 +226,7 @@ def _draw_map(
 
 def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> None:
     """Draw lines of equal value with their labels, and pale colours between them."""
-    from matplotlib import colormaps
-    from matplotlib.colors import ListedColormap
+    from matplotlib import colormaps, colors
 
     known = z[np.isfinite(z)]
     if not known.size:
@@ -238,7 +237,7 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
         labels.add(f"{(low + high) / 2:.{_DIGITS}g} wherever there is an answer", middle)
         return
     levels = levels_of(known)
-    pale = ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
+    pale = colors.ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
     bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
     ax.contourf(x, y, z, bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)

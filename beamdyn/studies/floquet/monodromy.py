@@ -14,8 +14,8 @@ from functools import reduce
 import numpy as np
 
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.floquet.period import Period
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.floquet.period import Period
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 

@@ -18,20 +18,20 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.plots.stability import plot_stability_chart
+from beamdyn.common.plots.stability_charts import plot_stability_chart
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
-from beamdyn.floquet.interpolation import interpolate_on_grid
-from beamdyn.floquet.monodromy import COARSER, Monodromy
-from beamdyn.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
-from beamdyn.floquet.period import period_of
-from beamdyn.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.numbers import check_path, unit_of
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
+from beamdyn.studies.floquet.interpolation import interpolate_on_grid
+from beamdyn.studies.floquet.monodromy import COARSER, Monodromy
+from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
+from beamdyn.studies.floquet.period import period_of
+from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

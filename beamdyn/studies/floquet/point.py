@@ -13,18 +13,18 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.plots.stability import plot_multipliers
+from beamdyn.common.plots.stability_charts import plot_multipliers
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, announced_of_plain_beam
-from beamdyn.floquet.monodromy import COARSER
-from beamdyn.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
-from beamdyn.floquet.periodic_scenes import check_periodic
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
+from beamdyn.studies.floquet.monodromy import COARSER
+from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
+from beamdyn.studies.floquet.periodic_scenes import check_periodic
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,14 +12,14 @@ from beamdyn.common.inputs.checks import InvalidValue, count
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.floquet.monodromy import Monodromy, monodromy
-from beamdyn.floquet.period import period_of
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.floquet.monodromy import Monodromy, monodromy
+from beamdyn.studies.floquet.period import period_of
 
 _STRAIGHT = "stability in periodic motion is that of the straight beam"
 

@@ -16,7 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.floquet.monodromy import Monodromy
+from beamdyn.studies.floquet.monodromy import Monodromy
 
 STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
 _EIGENVALUES = 8 * np.finfo(float).eps  # backward error of an eigenvalue solver, over the matrix

@@ -19,7 +19,7 @@ _SAFETY = 4.0  # error over that size
 
 
 @dataclass(frozen=True)
-class Axis:
+class ChartAxis:
     """A number, at values between whose smallest and largest a function is interpolated.
 
     Parameters
@@ -34,11 +34,11 @@ class Axis:
     degree: int | None
 
     @classmethod
-    def coarsest(cls, values: np.ndarray) -> Axis:
+    def coarsest(cls, values: np.ndarray) -> ChartAxis:
         """An axis with the lowest degree that is tried."""
         return cls(values, _FIRST if len(values) > _FIRST + 1 else None)
 
-    def finer(self) -> Axis:
+    def finer(self) -> ChartAxis:
         """The axis with twice the degree, or with the values."""
         assert self.degree is not None
         return replace(self, degree=2 * self.degree if len(self.values) > 2 * self.degree + 1 else None)
@@ -124,7 +124,7 @@ def interpolate_on_grid(
             known[x, y] = function(x, y)
         return known[x, y]
 
-    axes = [Axis.coarsest(each) for each in values]
+    axes = [ChartAxis.coarsest(each) for each in values]
     while True:
         first, second = (axis.nodes.tolist() for axis in axes)
         found = np.array([[sample(x, y) for y in second] for x in first])
