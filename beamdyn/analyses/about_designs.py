@@ -16,17 +16,8 @@ from beamdyn.analyses.results.cautions import warnings_of
 from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed, parse_window
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varied_inputs import (
-    NO_SPREAD,
-    NOTHING_VARIED,
-    OPTION,
-    SpreadOptions,
-    VaryOptions,
-    designs_of,
-    numbers,
-    parse_axis,
-    parse_spreads,
-)
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
 from beamdyn.common.results.display_units import ShownUnit
@@ -114,9 +105,10 @@ Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"
 
 
 @analysis(
-    'beamdyn study examples/tyre_harvester.toml --vary "thickness=0.1:0.4:9 mm" --vary "speed=0:99:9 rad/s"',
+    'beamdyn study examples/tyre_harvester.toml --vary "thickness=0.1:0.4:9 mm"',
     'beamdyn study examples/tyre_harvester.toml --spread "beam.thickness=+-2%"',
     screen="Map",
+    opens_with=("--vary", "thickness=0.1:0.4:9 mm", "--vary", "speed=0:99:9 rad/s"),
 )
 def study(
     scene: Scene,

@@ -134,7 +134,7 @@ Duration = Annotated[float, positive("s", default="1 h")]
 
 
 @analysis(
-    'beamdyn loads examples/tyre_harvester.toml --speed "50 rad/s" --quantity force --plot loads.png',
+    'beamdyn loads examples/tyre_harvester.toml --speed "50 rad/s"',
     'beamdyn loads examples/rolling_harvester.toml --t-end "12 s" --modes 3',
     screen="Loads",
     about_scene="The scene; a transient and steady response take its motion.",

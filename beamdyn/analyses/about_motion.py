@@ -19,7 +19,7 @@ from beamdyn.analyses.values import at_most, parse_positive, parse_window
 from beamdyn.common.edge.exit_codes import Interrupted
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varied_inputs import Folder
+from beamdyn.common.edge.varying import Folder
 from beamdyn.common.plots.export import animate
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Discretization, ModeCount
 from beamdyn.analyses.results.of_stability import chart_table
 from beamdyn.analyses.values import in_unit_of
-from beamdyn.common.edge.varied_inputs import OPTION, parse_axis
+from beamdyn.common.edge.varied_inputs import parse_axis
+from beamdyn.common.edge.varying import OPTION
 from beamdyn.scene.numbers import SPEED, number_at
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from cyclopts import Parameter
 from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import exit_codes
-from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, Question, Report, on_axes, write
+from beamdyn.common.edge.html_report import Question, Report
+from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
 from beamdyn.common.edge.tables import show
 from beamdyn.common.edge.views import picture_of, rows_of, tables_of
 from beamdyn.files.scenes import load_scene
@@ -129,6 +130,8 @@ class Analysis:
         Annotation of the option on physics; None if the analysis takes that of the scene.
     screen : str
         Name of the screen that is made of it; empty if there is none.
+    opens_with : tuple of str
+        Options, as they are typed, with which the screen opens; empty for those of the first example.
     """
 
     function: Callable[..., Result | Answer]
@@ -137,6 +140,7 @@ class Analysis:
     moving: Callable[[Mapping[str, Any]], bool] = lambda _: False
     physics: Any = Physics
     screen: str = ""
+    opens_with: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:

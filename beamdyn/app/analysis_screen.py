@@ -84,8 +84,8 @@ def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Entries of the form on opening: the options of the example in the help of the command."""
-    name, words = analysis.function.__name__, shlex.split(analysis.examples[0])
+    """Entries of the form on opening: those stated, or the options of the example in the command's help."""
+    name, words = analysis.function.__name__, analysis.opens_with or shlex.split(analysis.examples[0])
     given: dict[str, str] = {}
     for word, text in pairwise(words):
         if word.startswith("--"):

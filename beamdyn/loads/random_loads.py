@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refuse, within
-from beamdyn.common.results.display_units import percent, supported
+from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear.convergence import check_linear, with_forces

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, set_fields
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.display_units import percent
+from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Result, plain
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import TOLERANCE, Statement, joined

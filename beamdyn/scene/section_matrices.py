@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, kind, set_fields
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, set_fields, several
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.scene.profile import Profile, Table, to_profile
 
@@ -77,13 +77,13 @@ class SectionMatrices(FieldsOnly):
 
     def __post_init__(self) -> None:
         for name in ("stiffness", "mass"):
-            entries = tuple(getattr(self, name))
+            remedy = "SectionMatrices.at_stations makes them"
+            entries = several(f"matrices.{name}", getattr(self, name), Profile, remedy)
             if len(entries) != len(UPPER):
                 bound = f"give the {len(UPPER)} entries of the upper triangle, row by row"
                 raise InvalidValue(f"matrices.{name}", len(entries), bound)
-            for k, entry in enumerate(entries):
-                kind(f"matrices.{name}[{k}]", entry, Profile, "SectionMatrices.at_stations makes them")
             set_fields(self, **{name: entries})
+        for name in ("stiffness", "mass"):
             self._check(name)
 
     @classmethod
@@ -106,12 +106,12 @@ class SectionMatrices(FieldsOnly):
         ValueError
             If a matrix is not symmetric and positive definite, or the mass is not that of a rigid section.
         """
-        entries = []
+        entries, stations = [], real_array("stations", stations)
         for name, given in (("stiffness", stiffness), ("mass", mass)):
-            matrices = np.asarray(given, dtype=float)
-            if matrices.shape != (len(stations), SIZE, SIZE):
-                bound = f"give {len(stations)} matrices of 6 x 6, one for each station"
-                raise InvalidValue(f"matrices.{name}", str(matrices.shape), bound)
+            matrices = as_floats(given)
+            if matrices is None or matrices.shape != (len(stations), SIZE, SIZE):
+                bound = f"give {len(stations)} matrices of 6 x 6 numbers, one for each of the stations"
+                raise InvalidValue(f"matrices.{name}", given, bound)
             _check_symmetry(name, stations, matrices)
             matrices = (matrices + matrices.swapaxes(1, 2)) / 2
             entries.append([_profile(name, stations, matrices[:, i, j]) for i, j in UPPER])

@@ -73,7 +73,7 @@ def fade_of_stops(
     ...     stopped, drums, 0.39, lambda mu: 0.728 * mu / 0.39, stops=3, friction_curve=curve
     ... )
     >>> found.angle.round(1)  # rad: each stop is longer
-    array([57.4, 66.3, 79.9])
+    array([51.4, 57.9, 67. ])
     """
     kind("braked", braked, BrakedStop)
     stop, force = braked.stop, braked.actuation.actuator_force

@@ -17,14 +17,7 @@ from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.outputs import Outputs, write
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.tables import show
-from beamdyn.common.edge.varied_inputs import (
-    NO_SPREAD,
-    NOTHING_VARIED,
-    OPTION,
-    SPREAD,
-    SpreadOptions,
-    VaryOptions,
-)
+from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SPREAD, SpreadOptions, VaryOptions
 
 if TYPE_CHECKING:
     from brakes.answers.base import Answer, BrakeType
@@ -166,7 +159,7 @@ def run_command(
     ValueError
         For bad input.
     """
-    from beamdyn.common.edge.outputs import Question, Report
+    from beamdyn.common.edge.html_report import Question, Report
     from beamdyn.common.edge.views import picture_of, rows_of, tables_of
 
     written = {option: path for option, (path, _) in (further or {}).items()}

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder
 from beamdyn.common.edge.tables import console, show
-from beamdyn.common.edge.varied_inputs import SomeFolder
+from beamdyn.common.edge.varying import SomeFolder
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD

@@ -104,10 +104,12 @@ def find_whole(
 
     Parameters
     ----------
-    answer, target, why
+    answer, target
         As for `find`.
     samples : array_like, shape (n,)
         The numbers, in ascending order; each is tried.
+    why
+        As for `find`.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
-from beamdyn.transient import integration, record_steps, step_size
+from beamdyn.transient import record_steps, step_size
 from beamdyn.transient.gauss import tableau
 from beamdyn.transient.record_steps import RecordSteps, propagate_record
 from beamdyn.transient.step_size import StepSize
@@ -63,7 +63,7 @@ def test_errors_follow_the_tolerance(name: str, monkeypatch) -> None:
     options = {"gravity": 9.81, "damping_ratio": 0.02} if name in ("noisy", "irregular") else {}
     made, t = scene(RECORDS[name], **options), np.linspace(0, END, 4001)
     runs = [bd.simulate(made, END, 2, tolerance) for tolerance in (1e-2, 1e-3, 1e-5, 1e-7)]
-    monkeypatch.setattr(integration, "is_record", lambda *arguments: False)
+    monkeypatch.setattr(record_steps, "is_record", lambda *arguments: False)
     monkeypatch.setattr(step_size, "_PARTS", 1)
     exact = bd.simulate(made, END, 2, 1e-8)
     for run, tolerance in zip(runs, (1e-2, 1e-3, 1e-5, 1e-7), strict=True):

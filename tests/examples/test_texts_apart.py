@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.analyses import analyses
-from beamdyn.cli import program
+from beamdyn.cli import commands
 from beamdyn.common.edge import outputs
 from brakes.cli import answering
 from tests.drawn_texts import drawn_texts, overlapping
@@ -75,7 +75,7 @@ def examples_of_commands():
 
 @pytest.mark.parametrize("words", [*examples_of_commands()])
 def test_examples_in_the_help_of_commands(draw, words):
-    assert [overlapping(figure) for figure in draw(program.main, *words)] == [[]]
+    assert [overlapping(figure) for figure in draw(commands.main, *words)] == [[]]
 
 
 @pytest.mark.parametrize(("command", "file"), BRAKES)
@@ -89,7 +89,7 @@ def test_brakes(draw, command, file):
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[0])
 def test_every_scene_by_every_command(draw, scene, command):
-    figures = draw(program.main, command[0], f"examples/{scene}", *command[1:])
+    figures = draw(commands.main, command[0], f"examples/{scene}", *command[1:])
     assert not any(overlapping(figure) for figure in figures)
 
 

@@ -18,7 +18,7 @@ import beamdyn.cli
 import brakes.cli
 from beamdyn import __version__
 from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
-from beamdyn.common.edge.outputs import Question, report_page
+from beamdyn.common.edge.html_report import Question, report_page
 from brakes.calipers import NAMED
 from brakes.config.caliper import named
 from brakes.config.mechanism import parse_mechanism

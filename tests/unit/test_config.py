@@ -332,4 +332,12 @@ def test_every_input_of_a_scene_is_described():
 
 def test_choices_are_described():
     kinds = [found.choices for found in describe(SceneInput) if found.path == "motion.kind"]
-    assert kinds == [("steady",), ("spin_up",), ("sampled",), ("rolling",), ("sampled_translation",)]
+    assert kinds == [
+        ("steady",),
+        ("spin_up",),
+        ("pulsating",),
+        ("sampled",),
+        ("rolling",),
+        ("shaken",),
+        ("sampled_translation",),
+    ]

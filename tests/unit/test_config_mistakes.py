@@ -171,7 +171,8 @@ from tests.unit.toml_scenes import (
         (
             "motion",
             {"kind": "odd", "speed": "1 rpm"},
-            "motion.kind = \"odd\": give 'steady', 'spin_up', 'sampled', 'rolling' or 'sampled_translation'",
+            "motion.kind = \"odd\": give 'steady', 'spin_up', 'pulsating', 'sampled', 'rolling', 'shaken' "
+            "or 'sampled_translation'",
         ),
         ("motion", {"kind": [1]}, "motion.kind = [1]: give 'steady'"),
         ("motion", 55, "motion = 55: give a table"),

@@ -88,15 +88,6 @@ def test_heads_put_the_number_of_a_mode_last():
     assert list(head[1:3]) == ["frequency_Hz_1", "frequency_Hz_2"]
 
 
-def test_all_modes_are_drawn_over_two_inputs():
-    vary = {"beam.thickness": [2e-4, 3e-4], "beam.length": [0.04, 0.05, 0.06]}
-    found = bd.study(bd.Scene(bd.Beam.rectangular(**BEAM)), vary, "frequencies", modes=2)
-    lines = [line for line in found.plot().get_lines() if len(line.get_xdata()) == 2]
-    drawn = sorted(tuple(np.asarray(line.get_ydata())) for line in lines)
-    assert drawn == sorted(tuple(found.value[:, j, k]) for j in range(3) for k in range(2))
-    assert len({line.get_label() for line in lines}) == 6
-
-
 def test_a_row_without_an_answer_has_no_error():
     from rich.console import Console
 

@@ -253,7 +253,7 @@ def test_newtons_and_newton_metres_have_axes_of_their_own(tmp_path):
     text = BLOCK_BRAKE.replace("[[contact]]", "[[slot]]").replace("normal = [0, 1]", "along = [1, 0]")
     text = text.replace("friction = 0.4", "friction = 0").replace("[run]", '[run]\ntravel = "1 deg"')
     figure = MECHANISM.solve(parse_mechanism(text)).figure()
-    labels = [ax.get_ylabel() for ax in figure.axes[1:]]
+    labels = [ax.get_ylabel().replace("\n", " ") for ax in figure.axes[1:]]
     assert labels == ["force of the load [N]", "moment of the load [N m]"]
     curves = [
         [line.get_label() for line in ax.get_lines() if line.get_label()[0] != "_"] for ax in figure.axes[1:]
@@ -268,7 +268,7 @@ def test_a_couple_in_a_caliper_is_not_drawn_among_its_forces():
         'at = "right_pad"', 'at = ["10 mm", "-40 mm"]'
     )
     figure = MECHANISM.solve(parse_mechanism(text.replace("friction = 0.15", ""))).figure()
-    labels = [ax.get_ylabel() for ax in figure.axes[3:]]
+    labels = [ax.get_ylabel().replace("\n", " ") for ax in figure.axes[3:]]
     assert labels == ["force of the joint [N]", "couple of the joint [N m]"]
     forces, couples = ({line.get_label() for line in ax.get_lines()} for ax in figure.axes[3:])
     assert "springs" in couples and "springs" not in forces

@@ -17,7 +17,7 @@ from beamdyn.cli.commands import main
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.results.display_units import count_sure
+from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
 from beamdyn.modes.model_error.reference_modes import shift_eigenvalues

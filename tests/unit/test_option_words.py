@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from beamdyn.common.edge.exit_codes import DONE, as_typed
+from beamdyn.common.edge.exit_codes import DONE
+from beamdyn.common.edge.refusal_words import as_typed
 from beamdyn.common.inputs.checks import InvalidValue
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -22,6 +22,12 @@ PULSATING = bd.Scene(BEAM, bd.Mount(0.2), bd.PulsatingRotation(5.0, 0.1, 100.0))
 RUN, RESPONSE = bd.simulate(MOVING, 0.02, 2, 1e-3), bd.steady_response(MOVING, [5.0], 2)
 LOADS = bd.transient_loads(RUN, at=[0.0])
 
+SECTIONS = {
+    "stations": [0.0, 1.0],
+    "stiffness": [np.diag([1e9, 1e8, 1e8, 1e6, 4e6, 1e6])] * 2,
+    "mass": [np.diag([100.0, 100.0, 100.0, 3.0, 1.0, 2.0])] * 2,
+}
+
 
 def tabulated(stations, values):
     return bd.Beam.rectangular(0.05, bd.Table(stations, values), 0.0002, 200e9, 7850.0)
@@ -46,6 +52,16 @@ CALLS = {
         | {"sweep": 0.1, "prebend": None}
         | {"mass_offset": 1e-3, "tension_offset": -1e-3},
     ),
+    "Beam.from_matrices": (
+        bd.Beam.from_matrices,
+        {"length": 5.0, "matrices": bd.SectionMatrices.at_stations(**SECTIONS), "tip": None, "twist": 0.1}
+        | {"breakpoints": (), "point_masses": (), "point_springs": (), "sweep": None, "prebend": 0.1},
+    ),
+    "SectionMatrices": (
+        bd.SectionMatrices,
+        {name: getattr(bd.SectionMatrices.at_stations(**SECTIONS), name) for name in ("stiffness", "mass")},
+    ),
+    "SectionMatrices.at_stations": (bd.SectionMatrices.at_stations, SECTIONS),
     "PointMass": (bd.PointMass, {"position": 0.02, "mass": 1e-3}),
     "PointSpring": (bd.PointSpring, {"position": 0.02, "stiffness": 1.0, "direction": "bending"}),
     "Damping": (

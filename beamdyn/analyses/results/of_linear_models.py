@@ -12,7 +12,7 @@ from rich.text import Text
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.display_units import supported
+from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import rounded_up
 
 if TYPE_CHECKING:

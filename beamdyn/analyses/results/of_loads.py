@@ -13,7 +13,8 @@ from rich.text import Text
 from beamdyn.common.edge.tables import table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.results.display_units import SI_UNITS, supported
+from beamdyn.common.results.digits import supported
+from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES

@@ -14,7 +14,7 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.display_units import supported, supported_or_range
+from beamdyn.common.results.digits import supported, supported_or_range
 from beamdyn.common.results.statements import OUTSIDE, of_kind
 from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.kinds import BENDING

@@ -21,7 +21,7 @@ from beamdyn.common.results.columns import (
     columns_of_rows,
     name_in_heads,
 )
-from beamdyn.common.results.display_units import supported
+from beamdyn.common.results.digits import supported
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.equations.effects import first_drawn
 

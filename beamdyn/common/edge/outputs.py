@@ -1,133 +1,27 @@
-"""Files that commands write; a report is inputs, results, drawings and warnings in one HTML file."""
+"""Files that commands write."""
 
 from __future__ import annotations
 
 import os
-import shlex
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from html import escape
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beamdyn._version import __version__
-from beamdyn.common.edge.config import read
-from beamdyn.common.edge.rendering import STYLE, drawing, html, picture
 from beamdyn.common.results.files import check_writable, same_file, write_text
 from beamdyn.common.results.pictures import figure_of, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from rich.console import RenderableType
 
+    from beamdyn.common.edge.html_report import Report
     from beamdyn.common.results.result import Result
-
-
-_STYLE = """
-body { font-family: sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-pre { background: #f4f4f4; padding: 1rem; white-space: pre-wrap; overflow-wrap: anywhere; }
-.warning { border-left: 4px solid #E69F00; padding-left: 0.5rem; }
-"""
-
-
-@dataclass(frozen=True)
-class Question:
-    """A command with its options and its input file, as a report shows them.
-
-    Parameters
-    ----------
-    title : str
-        Command and file.
-    inputs : str
-        The command with its options in a comment, above the text of its file: valid TOML as a whole.
-    """
-
-    title: str
-    inputs: str
-
-    @classmethod
-    def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """Make one from the text of the file; options that are None, False or empty are left out."""
-        words = [*command.split(), str(file)]
-        for name, value in options.items():
-            option = f"--{name.replace('_', '-')}"
-            for given in value if isinstance(value, tuple) else (value,):
-                if given is not None and given is not False:
-                    words += [option] if given is True else [option, str(given)]
-        line = "".join(c if c.isprintable() else " " for c in shlex.join(words))  # as a comment
-        return cls(f"{command}: {file}", f"# {line}\n\n{text}")
-
-    @classmethod
-    def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """Make one from a file; raises `ConfigError` if it cannot be read."""
-        return cls.of(command, file, read(file), **options)
-
-
-@dataclass(frozen=True)
-class Report:
-    """Contents of a command's HTML report, besides its main drawing.
-
-    Parameters
-    ----------
-    question : Question
-        The command and its input.
-    tables : sequence of rich renderables
-        Tables and sentences, as printed.
-    warnings : sequence of str
-        Warnings, and why there is no answer.
-    more : sequence of (title, callable)
-        Further parts; each callable returns HTML.
-    """
-
-    question: Question
-    tables: Sequence[RenderableType]
-    warnings: Sequence[str] = ()
-    more: Sequence[tuple[str, Callable[[], str]]] = ()
-
-    def page(self, draw: Callable[[], Figure] | None) -> str:
-        """The report as HTML, with a main drawing unless `draw` is None."""
-        tables = html(self.tables) + further(self.more)
-        title = self.question.title
-        made = "" if draw is None else picture(drawing(draw), title)
-        part = ("Results", self.warnings, tables, made)
-        return report_page(title, self.question.inputs, [part])
-
-
-def further(parts: Iterable[tuple[str, Callable[[], str]]]) -> str:
-    """Further parts, each under its title, in HTML."""
-    return "\n".join(f"<h3>{escape(title)}</h3>{make()}" for title, make in parts)
-
-
-def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
-    """The HTML page of a report, which needs no other file.
-
-    Parameters
-    ----------
-    title : str
-        Title of the report.
-    inputs : str
-        The design as TOML.
-    parts : iterable of (name, warnings, tables, drawing)
-        Content for each screen; tables are HTML, drawings are elements as `picture` makes them.
-    """
-    warning = '<p class="warning"><strong>Warning:</strong> {}</p>'
-    body = "".join(
-        f"<h2>{escape(name)}</h2>"
-        f"{''.join(warning.format(escape(said)) for said in dict.fromkeys(warnings))}{made}{tables}"
-        for name, warnings, tables, made in parts
-    )
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{_STYLE}{STYLE}</style></head>'
-        f'<body class="shown"><h1>{escape(title)}</h1>{body}<h2>Inputs</h2><pre>{escape(inputs)}</pre>'
-        f"<p>beamdyn {escape(__version__)}</p></body></html>\n"
-    )
 
 
 Flag = Annotated[bool, Parameter(negative="")]

@@ -13,7 +13,7 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.common.results.display_units import percent, supported
+from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.spreading.spread_result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
 

@@ -19,7 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beamdyn.common.edge.progress import quiet
-from beamdyn.common.results.display_units import count_sure, supported
+from beamdyn.common.results.digits import count_sure, supported
 
 if TYPE_CHECKING:  # the columns need numpy, which help does without
     from beamdyn.common.results.columns import Column, Columns

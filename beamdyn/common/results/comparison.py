@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamdyn.common.results.display_units import supported
+from beamdyn.common.results.digits import supported
 
 
 class Verdict:

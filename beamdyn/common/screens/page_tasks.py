@@ -11,8 +11,8 @@ from html import escape
 from typing import Any
 
 from beamdyn.common.edge.exit_codes import NoAnswer
+from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.edge.outputs import further, report_page
 from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
 from beamdyn.common.edge.tables import FittedTable
 from beamdyn.common.inputs.checks import reason_of

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.results.display_units import supported
+from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, new_axes, new_figure
 from beamdyn.common.results.result import Provenance, Result

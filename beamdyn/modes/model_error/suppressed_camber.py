@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamdyn.common.results.display_units import percent, told_from
+from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import MODEL_ERROR, Statement
 from beamdyn.common.words import Words
 from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO

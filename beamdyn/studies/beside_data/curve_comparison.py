@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
-from beamdyn.common.results.display_units import percent
+from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import COLOURS, new_axes
 from beamdyn.common.results.result import Provenance, Result, plain

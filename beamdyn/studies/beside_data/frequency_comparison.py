@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn.common.plots.plots import mark_points, plot_locus
-from beamdyn.common.results.display_units import percent
+from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds, joined, unannounced

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.display_units import percent
+from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import number
 from beamdyn.common.words import Named, amount
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies

@@ -38,6 +38,7 @@ from beamdyn.studies.sensitivities.changes import (
     critical_vector,
     steady_pencils,
 )
+from beamdyn.studies.sensitivities.sensitivity_result import Sensitivities
 
 _SAME = 1e-6  # relative distance of eigenvalues below which modes cross
 _HZ = 1 / (2 * np.pi)
@@ -51,7 +52,7 @@ def frequency_sensitivities(
     inputs: Sequence[str] | None = None,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> sensitivity_result.Sensitivities:
+) -> Sensitivities:
     """Compute the derivatives of natural frequencies by the numbers of a scene, and by the speed.
 
     Parameters
@@ -118,7 +119,7 @@ def critical_speed_sensitivities(
     inputs: Sequence[str] | None = None,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> sensitivity_result.Sensitivities:
+) -> Sensitivities:
     """Compute the derivatives of the critical speed by the numbers of a scene.
 
     Parameters
@@ -176,7 +177,7 @@ def crossing_sensitivities(
     order: int = 1,
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
-) -> sensitivity_result.Sensitivities:
+) -> Sensitivities:
     """Compute the derivatives of resonance speeds by the numbers of a scene; its motion is not varied.
 
     Parameters
@@ -242,11 +243,11 @@ def _result(
     derivative: np.ndarray,
     error: np.ndarray,
     warnings: tuple[str, ...],
-) -> sensitivity_result.Sensitivities:
+) -> Sensitivities:
     names = str(model.discretization), str(model.coarser.discretization)
     provenance = Provenance(__version__, *names, perf_counter() - start)
     of = tuple(answers), unit, value
-    return sensitivity_result.Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
+    return Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
 
 
 # Frequencies --------------------------------------------------------------------------------------
