@@ -22,7 +22,6 @@ SHOWN_BY.update(
         "analyses.results.of_loads": ("loads",),
         "analyses.results.of_modes": ("equations", "modes", "scene"),
         "analyses.results.of_motion": ("steady", "transient"),
-        "analyses.results.of_stability": ("floquet",),
         "analyses.results.of_studies": ("studies",),
     }.items()
     for room in rooms

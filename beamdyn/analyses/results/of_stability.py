@@ -12,6 +12,7 @@ from rich.console import Group
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
+from beamdyn.common.results.digits import supported_or_range
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
 if TYPE_CHECKING:
@@ -25,7 +26,8 @@ _SI: Mapping[str, tuple[str, float]] = {}
 def multiplier_columns(result: FloquetMultipliers) -> Columns:
     """A row a multiplier: size, angle, error and sign."""
     size, value = np.abs(result.multipliers), result.multipliers
-    error = f"growth rate {result.growth_rate:.6g} 1/s, error {result.growth_rate_error:.1g} 1/s"
+    errors = result.growth_rate_error, result.mode_error
+    rate = supported_or_range(result.growth_rate, sum(errors), 6)
     return Columns(
         Column("multiplier", np.arange(1, len(size) + 1)),
         Column("size", size, error=result.multiplier_errors, form=".10g"),
@@ -33,7 +35,8 @@ def multiplier_columns(result: FloquetMultipliers) -> Columns:
         Column("error", result.multiplier_errors, form=".1e"),
         Column("krein_sign", result.krein_sign.astype(int), words="Krein sign"),
         title=f"{result.status}: multipliers over {result.period:.6g} s, by {result.provenance.method}",
-        note=f"Largest {error} of the modes that are kept, {result.mode_error:.1g} 1/s by those left out.",
+        note=f"Largest growth rate {rate} 1/s, error {errors[0]:.1g} 1/s of the modes that are kept, "
+        f"{errors[1]:.1g} 1/s by those left out.",
     )
 
 

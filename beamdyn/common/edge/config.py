@@ -152,6 +152,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
         raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
+_MOST_KEYS = 24  # known keys that a message lists
 _LONGEST_KEY = 60  # length of the longest key that is shown whole
 _WORDS = {
     "bool_type": "give true or false",
@@ -321,6 +322,7 @@ def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     elif near := difflib.get_close_matches(key, names, n=1):
         remedy = f"did you mean {near[0]}?"
     else:
-        remedy = f"known are {', '.join(names)}"
+        more = [f"{len(names) - _MOST_KEYS} more"] if len(names) > _MOST_KEYS + 1 else []
+        remedy = f"known are {', '.join([*names[:_MOST_KEYS], *more])}"
     shown = key if key.isprintable() and len(key) <= _LONGEST_KEY else show(key)
     return f"{f'{_path(loc[:-1])}.{shown}'.removeprefix('.')}: unknown key; {remedy}"
