@@ -17,14 +17,16 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, set_fields, several
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.scene.profile import Profile, Table, to_profile
+from beamdyn.scene.profile import Profile, Table, merge_breakpoints, to_profile
 
 SIZE = 6
 UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # entries that are given
 _FORCES = 3  # rows of forces; the others are of moments
-_LEAST = 1e-10  # eigenvalue of a matrix with a diagonal of 1 below which it is not positive definite
-_ASYMMETRY = 1e-4  # difference of two entries that should be equal, over the root of their diagonal entries
-_OF_MASS = 1e-4  # the same, of entries that no rigid section has
+LEAST = 1e-10  # eigenvalue of a matrix with a diagonal of 1 below which it is not positive definite
+MOST_ASYMMETRY = (
+    1e-4  # difference of two entries that should be equal, over the root of their diagonal entries
+)
+MOST_STRANGENESS = 1e-4  # the same, of entries that no rigid section has
 # Diagonal entries of the stiffness, by the name of the property of the beam that they are.
 _DIAGONAL = {
     "axial_stiffness": 0,
@@ -118,9 +120,17 @@ class SectionMatrices(FieldsOnly):
         return cls(*entries)
 
     @cached_property
-    def _stations(self) -> np.ndarray:
+    def _breakpoints(self) -> tuple[float, ...]:
         """Breakpoints x/L of all entries."""
-        return np.unique(np.concatenate([entry.breakpoints for entry in (*self.stiffness, *self.mass)]))
+        return merge_breakpoints(np.concatenate([each.breakpoints for each in (*self.stiffness, *self.mass)]))
+
+    def _at_breakpoints(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Positions x/L (N,) of both ends of each segment between breakpoints, and the matrices (6, 6, N)."""
+        ends = self._breakpoints
+        found = np.empty((SIZE, SIZE, 2 * (len(ends) - 1)))
+        for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
+            found[i, j] = found[j, i] = np.stack(entry.split(ends).end_values(), axis=1).ravel()
+        return np.repeat(ends, 2)[1:-1], found
 
     def at(self, name: str, xi: np.ndarray) -> np.ndarray:
         """Evaluate the matrices "stiffness" or "mass" (6, 6, N) at x/L = xi (N,)."""
@@ -133,26 +143,25 @@ class SectionMatrices(FieldsOnly):
     def properties(self) -> dict[str, Profile]:
         """Properties of `Beam` that the matrices say: diagonal entries, mass, inertia about its centre."""
         found = {name: self.stiffness[UPPER.index((k, k))] for name, k in _DIAGONAL.items()}
-        xi = self._stations
-        _, _, inertia = split_mass(self.at("mass", xi))
+        xi, mass = self._at_breakpoints("mass")
+        _, _, inertia = split_mass(mass)
         for name, k in (("rotary_inertia", 2), ("second_rotary_inertia", 1)):
             found[name] = _profile(name, xi, inertia[k, k])
         return found | {"mass_per_length": self.mass[0]}
 
     def _check(self, name: str) -> None:
-        """Refuse matrices that are not positive definite at a breakpoint, and so between; and odd masses."""
-        xi = self._stations
-        matrices = self.at(name, xi)
+        """Refuse matrices that are not positive definite on a side of a breakpoint, and odd masses."""
+        xi, matrices = self._at_breakpoints(name)
         least = least_eigenvalues(matrices)
-        if (bad := np.flatnonzero(least <= _LEAST)).size:
+        if (bad := np.flatnonzero(least <= LEAST)).size:
             k = bad[0]
             bound = "its least eigenvalue, with a diagonal of 1, must be above {limit}"
             remedy = (
                 "such a section deforms without a force" if name == "stiffness" else "it has negative mass"
             )
             where = f" at x/L = {xi[k]:.4g}"
-            raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", _LEAST, where=where)
-        if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > _OF_MASS)).size:
+            raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", LEAST, where=where)
+        if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > MOST_STRANGENESS)).size:
             bound = "no rigid section has such a mass matrix: its forces are m on the diagonal, m c beside it"
             value, where = float(strangeness(matrices)[bad[0]]), f" at x/L = {xi[bad[0]]:.4g}"
             raise InvalidValue("matrices.mass", value, bound, "check its entries", where=where)
@@ -176,11 +185,11 @@ def least_eigenvalues(matrices: np.ndarray) -> np.ndarray:
 
 def _check_symmetry(name: str, stations: Any, matrices: np.ndarray) -> None:
     apart = asymmetry(matrices)
-    if (bad := np.flatnonzero(apart > _ASYMMETRY)).size:
+    if (bad := np.flatnonzero(apart > MOST_ASYMMETRY)).size:
         bound, where = "it must be symmetric, within {limit}", f" at x/L = {float(stations[bad[0]]):.4g}"
         value = float(apart[bad[0]])
         raise InvalidValue(
-            f"matrices.{name}", value, bound, "check both entries", "", _ASYMMETRY, where=where
+            f"matrices.{name}", value, bound, "check both entries", "", MOST_ASYMMETRY, where=where
         )
 
 

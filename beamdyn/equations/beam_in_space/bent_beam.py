@@ -12,7 +12,8 @@ effect): with the mean strain e of the fibres, i^2 the mean square of their dist
 twist of the unloaded sections against the axes in which strains are given,
 
     g1 = e - i^2/2 ((k1 + t)^2 - (k1_0 + t)^2).
-  A change of the coordinates turns the sections by W and displaces the axis by X,
+
+A change of the coordinates turns the sections by W and displaces the axis by X,
 
     W' = R dk,   X' = W x r' + R dg,
 

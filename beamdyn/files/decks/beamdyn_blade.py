@@ -28,10 +28,16 @@ from beamdyn.common.edge.data_text import (
 from beamdyn.common.numerics import gauss_rule
 from beamdyn.files.decks.blade import Blade, BladeMatrices, IgnoredProperty, check_order, ignore
 from beamdyn.files.decks.elastodyn import named_file
-from beamdyn.scene.section_matrices import asymmetry, least_eigenvalues, strangeness
+from beamdyn.scene.section_matrices import (
+    LEAST,
+    MOST_ASYMMETRY,
+    MOST_STRANGENESS,
+    asymmetry,
+    least_eigenvalues,
+    strangeness,
+)
 
 _ROWS, _SIGNS = [2, 0, 1, 5, 3, 4], np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
-_LEAST, _ASYMMETRY, _STRANGE = 1e-10, 1e-4, 1e-4  # those of SectionMatrices, refused with the line here
 _ANGLE = 0.05  # degrees by which angles that are linear between stations may be off the splines
 _SAMPLES = 8  # of each part of a spline, between key points
 _MOST_STATIONS = 100
@@ -226,11 +232,13 @@ def _check_matrices(
     """Refuse matrices that are not symmetric and positive definite, or the mass of no section."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
-        (asymmetry(matrices) > _ASYMMETRY, "a symmetric matrix"),
-        (least_eigenvalues(ours) <= _LEAST, "a positive definite matrix: this section deforms by itself"),
+        (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
+        (least_eigenvalues(ours) <= LEAST, "a positive definite matrix: this section deforms by itself"),
     ]
     if name == "mass":
-        checks += [(strangeness(ours) > _STRANGE, "m on the diagonal, and m times the centre beside it")]
+        checks += [
+            (strangeness(ours) > MOST_STRANGENESS, "m on the diagonal, and m times the centre beside it")
+        ]
     for bad, wanted in checks:
         if bad.any():
             k = int(bad.argmax())

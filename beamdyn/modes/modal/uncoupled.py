@@ -152,12 +152,7 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 
 def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
     """Eigensolver of equations at steady speed that are solved together."""
-    if len(pencil.M) <= LARGE:
-        return Solver(pencil)
-    # It is imported here for the time that sparse algebra takes to import.
-    from beamdyn.modes.modal.uncoupled import LargeSolver
-
-    return LargeSolver(pencil)
+    return Solver(pencil) if len(pencil.M) <= LARGE else LargeSolver(pencil)
 
 
 class UncoupledSolver(Eigensolver):
