@@ -138,3 +138,19 @@ def test_both_sides_of_a_jump_of_matrices_count():
         bd.SectionMatrices.at_stations(stations, [K, soft, K, K], [M] * 4)
     found = bd.SectionMatrices.at_stations(stations, [K] * 4, [M, M, 4 * M, 4 * M]).properties
     np.testing.assert_allclose(found["rotary_inertia"](np.array([0.0, 0.49, 0.51, 1.0])), [2, 2, 8, 8])
+
+
+def test_members_that_meet_at_a_kink(tmp_path):
+    """Splines are natural at the ends of members: a straight member and a bent one meet at an angle."""
+    points = ((0, 0, 0, 0), (0, 0, 5, 0), (0, 0, 10, 0), (0.5, 0, 15, 0), (2, 0, 20, 0))
+    primary = written.primary_file(points, members=("1 3", "2 3"))
+    deck = read(written.write_turbine(tmp_path, primary_dat=primary))
+    prebend, kink = deck.scene.beam.prebend, 10 / deck.scene.beam.length
+    assert prebend is not None
+    slope = -np.degrees(
+        np.arctan(0.05)
+    )  # at the end of the natural spline through 0, 0.5 and 2 at 0, 5 and 10
+    np.testing.assert_allclose(
+        np.degrees(prebend(np.array([kink - 1e-6, kink + 1e-6]))), [0.0, slope], atol=0.3
+    )
+    assert len(deck.blade.stations) < 40

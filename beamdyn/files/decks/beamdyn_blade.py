@@ -63,9 +63,8 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
     _check_line(text, points, lines)
     x, angles = _angles_of_line(points, members)
     kept = _places(x / x[-1], angles, blade.matrices.stations)
-    columns = dict(
-        zip(("twist", "sweep", "prebend"), (np.interp(kept, x / x[-1], a) for a in angles), strict=True)
-    )
+    at_kept = (_interpolated(kept, x / x[-1], a) for a in angles)
+    columns = dict(zip(("twist", "sweep", "prebend"), at_kept, strict=True))
     return replace(
         blade,
         kind=f"BeamDyn primary file and {blade.kind}",
@@ -157,14 +156,24 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Stations x/L, and those between which the angles are linear enough."""
-    kept = stations
+    """Stations x/L, and those between which the angles are linear enough; twice where members meet at a kink."""
+    jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
+    kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
+    kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
     while len(kept) < _MOST_STATIONS:
-        apart = np.max([np.abs(a - np.interp(x, kept, np.interp(kept, x, a))) for a in angles], axis=0)
+        along = [_interpolated(x, kept, _interpolated(kept, x, a)) for a in angles]
+        apart = np.abs(np.subtract(angles, along)).max(axis=0)
+        apart[np.isin(x, kept)] = 0.0  # nothing is gained by a station that is kept
         if apart.max() <= _ANGLE:
             break
-        kept = np.union1d(kept, x[apart.argmax()])
+        kept = np.sort(np.append(kept, x[apart.argmax()]))
     return kept
+
+
+def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values at places in ascending order; one that is twice in both has those of both sides of a jump."""
+    left, right = np.interp(-at, -x[::-1], values[::-1]), np.interp(at, x, values)
+    return np.where(np.append(at[1:] == at[:-1], False), left, right)
 
 
 # Matrices -----------------------------------------------------------------------------------------
