@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,7 +24,7 @@ _SPREAD = "uncertainty"
 _SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *\w+)\s*(?=[,;\t]|$)", re.IGNORECASE)
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
-_MOST = 40  # shapes
+_MOST = 40  # shapes in a file
 _REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
 
 Half = Callable[[str], float]
@@ -126,25 +127,32 @@ def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredRe
 
 def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]:
     """Unit of a response in SI, and its output and input by their words."""
-    match = _RESPONSE.fullmatch(column.head)
+    said = f"expected a head such as 'tip by tip force [mm/N]', found '{column.head}'"
+    if (match := _RESPONSE.fullmatch(column.head)) is None:
+        raise table.text.refusal(table.head_line, said)
     try:
-        assert match is not None
         seen, drive = as_observation("output", match[1]), as_excitation("input", match[2])
-    except (AssertionError, ValueError) as error:
-        said = f"expected a head such as 'tip by tip force [mm/N]', found '{column.head}'"
-        more = f": {error}" if isinstance(error, ValueError) else ""
-        raise table.text.refusal(table.head_line, said + more) from None
+    except ValueError as error:
+        raise table.text.refusal(table.head_line, f"{said}: {error}") from None
     for sign in re.finditer(r"/| per ", column.unit):  # at which the unit of the input may begin
         above, below = (
             part.strip(" ()") for part in (column.unit[: sign.start()], column.unit[sign.end() :])
         )
         try:
-            size = quantity(f"1 {above}", seen.unit) if seen.unit else float(above.replace("-", "1") or 1)
+            size = quantity(f"1 {above}", seen.unit) if seen.unit else _plain_unit(above)
             return size / quantity(f"1 {below}", drive.unit), match[1], match[2]
         except (InvalidInput, ValueError):
             continue
     expected = f"expected a unit like [{seen.unit or '1'} per {drive.unit}] for {column.head}"
     raise table.text.refusal(table.head_line, f"{expected}, found [{column.unit}]")
+
+
+def _plain_unit(unit: str) -> float:
+    """The unit of a plain number, such as strain: "", "-" or a positive number as "1e-6"; else a ValueError."""
+    size = 1.0 if unit in ("", "-") else float(unit)
+    if not 0 < size < math.inf:
+        raise ValueError(unit)
+    return size
 
 
 # Shapes -------------------------------------------------------------------------------------------
@@ -154,6 +162,8 @@ def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFreq
     """Read mode shapes: a column of positions, and one a mode, such as "shape at 62.1 Hz"."""
     line = head_line(text)
     given = _SHAPE.findall(text.lines[line - 1])
+    if len(given) > _MOST:
+        raise text.refusal(line, f"expected at most {_MOST} shapes, found {len(given)}")
     numbers = iter(range(1, _MOST + 1))
     heads = _SHAPE.sub(lambda _: f" shape {next(numbers)}", text.lines[line - 1])
     other = next((o for o in _OTHER_SHAPE.findall(heads) if not re.fullmatch(r"shape \d+", o)), "")

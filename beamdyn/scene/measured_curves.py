@@ -49,6 +49,8 @@ class MeasuredCurves(ReadOnlyArrays):
             raise InvalidValue("names", names, "it is empty", f"give {', '.join(units)}")
         for name in names:
             checks.one_of("names", name, (*units,))
+        if len(set(names)) < len(names):
+            raise InvalidValue("names", names, "one stands twice", "give each column a name of its own")
         array = checks.as_floats(given)
         values = table_of("value", given if array is None or array.ndim != 1 else array[:, None])
         if values.shape != (len(self.x), len(names)) or not np.isfinite(values).all():

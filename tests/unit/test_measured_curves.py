@@ -160,3 +160,21 @@ def test_one_speed_and_known_columns_are_asked_for(read):
         read(HISTORY, speeds=[1.0])
     with pytest.raises(ValueError, match="line 1: there is no column 'Tip2'; the heads are time"):
         read(HISTORY, columns={"tip": "Tip2"})
+
+
+def test_more_shapes_than_are_read_are_refused_by_their_line(read):
+    heads = ", ".join(f"shape at {k} Hz" for k in range(1, 46))
+    rows = "\n".join(", ".join([x, *["1"] * 45]) for x in ("10", "20"))
+    with pytest.raises(bd.ConfigError, match=r"line 1: expected at most 40 shapes, found 45"):
+        read(f"position [mm], {heads}\n{rows}\n")
+
+
+@pytest.mark.parametrize(("unit", "size"), [("1e-6/N", 1e-6), ("-/N", 1.0), ("1/kN", 1e-3)])
+def test_strain_by_a_force_has_a_plain_number_as_its_unit(read, unit, size):
+    data = read(f"frequency [Hz], root strain by tip force [{unit}]\n10, 3\n20, 4\n")
+    np.testing.assert_allclose(data.magnitude, [3 * size, 4 * size], rtol=1e-12)  # one product
+
+
+def test_a_name_that_stands_twice_is_refused():
+    with pytest.raises(ValueError, match=r"names = \('tip', 'tip'\): one stands twice"):
+        bd.MeasuredHistory([0.0, 0.1], [[1.0, 2.0], [3.0, 4.0]], ["tip", "tip"])

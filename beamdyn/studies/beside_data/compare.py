@@ -30,6 +30,7 @@ from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyC
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.beside_data.single_numbers import explain
 
+_ROUNDING = 1e-9  # of the length, by which a position may lie beyond the tip
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
 
 
@@ -155,10 +156,8 @@ def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
     """Refuse shapes at points that the beam does not have."""
     if data.positions is None:
         return
-    length, beyond = (
-        scene.beam.length,
-        (data.positions < 0) | (data.positions > scene.beam.length * (1 + 1e-9)),
-    )
+    length = scene.beam.length
+    beyond = (data.positions < 0) | (data.positions > length * (1 + _ROUNDING))
     if beyond.any():
         bound = f"positions of shapes run from 0 to the length of the beam, {length:g} m"
         raise InvalidValue("positions", float(data.positions[beyond][0]), bound, "measure from the root", "m")
