@@ -129,3 +129,13 @@ def test_columns_are_given_in_pairs(text, capsys):
     command = ["compare", "examples/tyre_harvester.toml", "examples/epps.csv", "--columns", text]
     assert main(command) == 2
     assert "tip = TipDxb1; root moment" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_history_up_to_the_end_of_a_recorded_motion():
+    """The run ends with the motion; a curve can then be found to be late, but no earlier than it begins."""
+    t = np.linspace(0.0, 0.5, 51)
+    scene = replace(PLAIN, motion=bd.SampledRotation(t, 20 * np.sin(3 * t) ** 2))
+    run, times = bd.simulate(scene, 0.5), np.linspace(0.0, 0.5, 400)
+    late = 1e-3
+    data = bd.MeasuredHistory(times, run.deflection(np.maximum(times - late, 0.0)), rounding=1e-12)
+    np.testing.assert_allclose(bd.compare(scene, data).delay, late, rtol=1e-3)

@@ -156,7 +156,7 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Stations x/L, and those between which the angles are linear enough; twice where members meet at a kink."""
+    """Stations x/L, and those between which the angles are linear enough; a kink between members twice."""
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))

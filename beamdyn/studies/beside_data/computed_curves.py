@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -21,7 +22,7 @@ from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, Measur
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient, simulate
 
-_DELAYS = 33  # delays tried within a period
+_DELAYS = 33  # delays tried between the limits
 _COMPARED = 4000  # times at which histories are aligned; at most twice as many
 _SHARP = 1e-9  # accuracy of a delay over the period
 _LOADS = {
@@ -94,7 +95,7 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
     """Histories of the scene's motion, later by the delay with which they come nearest to measured ones."""
     period = _period(scene, data)
     with unannounced():
-        run = simulate(scene, float(data.time[-1]) + period / 2)
+        run = simulate(scene, _end_of_run(scene, float(data.time[-1]), period / 2))
     curves = [*_curves(run, data.names)]
 
     def at(t: np.ndarray) -> np.ndarray:
@@ -104,7 +105,8 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
     value, error, delay = at(data.time), np.array([each for _, each in curves]), 0.0
     off = np.sqrt(((data.value - value) ** 2).mean(axis=0))
     if not (off <= np.sqrt((data.allowance**2).mean(axis=0)) + error).all():
-        delay = _delay(at, data, period)
+        ahead = min(period / 2, run.path.end - float(data.time[-1]))
+        delay = _delay(at, data, (-max(ahead, 0.0), period / 2), period)
         value = at(data.time - delay)
     phase = -2 * np.pi * _main_frequency(data) * delay
     units = tuple(data.units[name] for name in data.names)
@@ -112,7 +114,7 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
 
 
 def _period(scene: Scene, data: MeasuredHistory) -> float:
-    """Period of the first mode at rest [s]; a ValueError if the history is shorter."""
+    """Period of the first mode at rest [s], 0 of a free hinge; a ValueError if the history is shorter."""
     with unannounced():
         frequency = float(natural_modes(scene, 0.0, 1).frequency[0])
     period, length = 1 / frequency if frequency > 0 else 0.0, float(data.time[-1] - data.time[0])
@@ -142,8 +144,19 @@ def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndar
     return outputs(t)[:, 0, place]
 
 
-def _delay(at: Callable[[np.ndarray], np.ndarray], data: MeasuredHistory, period: float) -> float:
-    """Delay [s] within half a period either way by which the curves come nearest to the measured ones."""
+def _end_of_run(scene: Scene, last: float, more: float) -> float:
+    """Time [s] up to which a run goes: later than the last measured one by some more, if the motion lasts."""
+    end = math.inf if scene.motion is None else scene.motion.end
+    return max(min(last + more, end), last)
+
+
+def _delay(
+    at: Callable[[np.ndarray], np.ndarray],
+    data: MeasuredHistory,
+    limits: tuple[float, float],
+    period: float,
+) -> float:
+    """Delay [s] between two limits by which the curves come nearest to the measured ones."""
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]
     sizes = np.abs(data.value).max(axis=0)
@@ -152,7 +165,7 @@ def _delay(at: Callable[[np.ndarray], np.ndarray], data: MeasuredHistory, period
     def misfit(delay: float) -> float:
         return float((((values - at(t - delay)) / sizes) ** 2).sum())
 
-    tried = np.linspace(-period / 2, period / 2, _DELAYS)
+    tried = np.linspace(*limits, _DELAYS)
     best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
     between = max(best - step, tried[0]), min(best + step, tried[-1])
     options = {"xatol": _SHARP * period}
@@ -160,7 +173,9 @@ def _delay(at: Callable[[np.ndarray], np.ndarray], data: MeasuredHistory, period
 
 
 def _main_frequency(data: MeasuredHistory) -> float:
-    """Frequency of the largest line of the first column [Hz], by its transform on equal steps."""
+    """Frequency of the largest line of the first column [Hz], on equal steps; 0 of a single value."""
+    if len(data.time) < 2:
+        return 0.0
     t = np.linspace(data.time[0], data.time[-1], len(data.time))
     values = np.interp(t, data.time, data.value[:, 0])
     lines = np.abs(np.fft.rfft(values - values.mean()))
