@@ -48,7 +48,8 @@ def compare(
     """Compare measured values with those of a scene, and find what would explain deviations of frequencies.
 
     Histories are compared with the scene's motion from rest, aligned in time within half a period of the
-    first mode at rest; loads with those in equilibrium, and responses at their frequencies, both at a steady speed.
+    first mode at rest; loads with those in equilibrium, and responses at their frequencies, both at a steady
+    speed.
 
     Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
     where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and

@@ -10,7 +10,8 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.motion import Rotation
 from beamdyn.scene.scene import Scene
 
-MOST_TURNS = 64  # periods of the slowest and of any other phase, in which they must meet again
+MOST_TURNS = 64  # periods of the first phase in which all must meet again
+_MOST_OTHERS = MOST_TURNS**2  # periods of any other phase in these
 _COMMENSURATE = 1e-12  # distance of a ratio of rates from a fraction, over it, that rounding makes
 
 
@@ -37,7 +38,8 @@ def period_of(scene: Scene) -> Period:
     Raises
     ------
     InvalidValue
-        If there is no motion, it does not repeat itself, or its phases do not meet again within 64 periods.
+        If there is no motion, it does not repeat itself, or its phases do not meet again within 64 periods of
+        the first, or 4096 of another.
     """
     motion = scene.motion
     if motion is None:
@@ -58,10 +60,12 @@ def _fraction(rate: float, first: float) -> Fraction:
     """Ratio of two rates as a fraction; refused if it is none of small numbers."""
     ratio = rate / first
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
-    if abs(found - Fraction(ratio)) > _COMMENSURATE * ratio or found.numerator > MOST_TURNS**2:
-        bound = f"its rates {first:.9g} and {rate:.9g} rad/s never meet again: their ratio is {ratio:.9g}"
+    nearest = min(max(found, Fraction(1, MOST_TURNS)), Fraction(_MOST_OTHERS))
+    if abs(found - Fraction(ratio)) > _COMMENSURATE * ratio or found.numerator > _MOST_OTHERS:
+        within = f"{MOST_TURNS} periods of the first and {_MOST_OTHERS} of the other"
+        bound = f"its rates {first:.9g} and {rate:.9g} rad/s do not meet again within {within}"
         remedy = (
-            f"take the nearest, {found.numerator}/{found.denominator}; at steady speed, steady_response "
+            f"take the ratio {nearest.numerator}/{nearest.denominator}; at steady speed, steady_response "
             "says where motion with two such rates is stable"
         )
         raise InvalidValue("scene.motion", ratio, bound, remedy)

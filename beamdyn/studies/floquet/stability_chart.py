@@ -172,7 +172,7 @@ def stability_chart(
     """
     start = perf_counter()
     scenes = check_periodic(scene, modes, discretization)
-    grid = _Grid(scenes, _check_inputs(vary, scenes.modes))
+    grid = _Grid(scenes, _check_inputs(vary, scenes))
     found, integrated = grid.solved()
     model, _ = scenes.modal(scenes.at(grid.numbers(0)))
     method = f"{model.discretization}, {scenes.modes} modes, Gauss collocation of order 16, interpolated"
@@ -190,7 +190,9 @@ def stability_chart(
     )
 
 
-def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray], modes: int) -> tuple[VariedInput, ...]:
+def _check_inputs(
+    vary: Mapping[str, Sequence[float] | np.ndarray], scenes: PeriodicScenes
+) -> tuple[VariedInput, ...]:
     """Check the two numbers and their values."""
     if not isinstance(vary, Mapping) or len(vary) != 2:
         bound, remedy = "a chart is over two numbers", 'such as {"motion.frequency": [...], "speed": [...]}'
@@ -198,7 +200,7 @@ def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray], modes: int) 
     paths = [check_path("vary", path) for path in vary]
     values = [ascending(f"vary[{path!r}]", each) for path, each in vary.items()]
     inputs = [VariedInput(path, unit_of(path) or "", each) for path, each in zip(paths, values, strict=True)]
-    check_designs(Designs(inputs), most=_MOST_ENTRIES // (2 * modes) ** 2)
+    check_designs(Designs(inputs), most=_MOST_ENTRIES // scenes.size**2)
     return tuple(inputs)
 
 
