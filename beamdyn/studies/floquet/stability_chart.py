@@ -273,7 +273,7 @@ class _Grid:
             raise InvalidValue("vary", names, bound, "vary what leaves the ratio of its rates")
         flat = on_grid.value.reshape(-1, 2 * size**2 + 1)
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
-        error = np.full(len(flat), max(errors) + on_grid.error)
+        error = np.full(len(flat), max(errors) + size * on_grid.error)  # the norm of an error of all entries
         return Monodromy(
             matrix, error, flat[:, -1], None if True in damped else form, max(turns)
         ), on_grid.samples
