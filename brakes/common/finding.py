@@ -25,7 +25,7 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
 from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps
-_SURE = 1e-13  # relative difference from the wanted value that is rounding
+_SURE = 1e-13  # difference from the wanted value that is rounding, over it or over the last step to it
 _JUMP = 1e-6  # part of a bracket's height that the answer at a root of a continuous function has not left
 _TURN = 1e-9  # relative width of the place of a turning point: its height is known to the square
 _EDGE = 1e-13  # relative width of the place past which there is no answer, or where it becomes level
@@ -327,7 +327,8 @@ def _solve(
     found, jumps = list[float](), list[float]()
     for x, y in pieces:
         past = y - target
-        ends = [x[i] for i in (0, -1) if abs(past[i]) <= _SURE * abs(target)]
+        steps = {0: y[1] - y[0], -1: y[-1] - y[-2]}  # beside which the height of a turning point is rounding
+        ends = [x[i] for i, way in steps.items() if abs(past[i]) <= _SURE * max(abs(target), abs(way))]
         if not ends and past[0] * past[-1] < 0:
             k = int(np.argmax(np.sign(past) != np.sign(past[0])))
             root, jumped = _root(

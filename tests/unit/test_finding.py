@@ -42,6 +42,16 @@ def test_a_value_that_is_only_touched_is_found():
     assert found.values == pytest.approx([2.0], rel=1e-7)  # a turning point is sharp to the root of rounding
 
 
+def test_zero_that_is_only_touched_is_found():
+    """No height is small beside a wanted 0: it is rounding beside the last step to the turning point."""
+    found = brakes.find(lambda x: (x - 0.3) ** 2, 0.0, np.linspace(-1.0, 1.0, 9))
+    np.testing.assert_allclose(found.values, [0.3], rtol=1e-8)  # the place of a turning point
+    missed = brakes.find(lambda x: (x - 0.3) ** 2 + 1e-9, 0.0, np.linspace(-1.0, 1.0, 9))
+    assert missed.values.size == 0
+    pole = brakes.find(lambda x: 5.0 + 1 / x**2, 4.9, np.geomspace(1e-7, 10.0, 9))
+    assert pole.values.size == 0
+
+
 @pytest.mark.parametrize(
     ("answer", "target", "said"),
     [
