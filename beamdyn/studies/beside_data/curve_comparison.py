@@ -41,8 +41,8 @@ class CurveComparison(Result):
     x : ndarray, shape (n,)
         Times [s], positions [m] or frequencies [Hz].
     measured, computed : ndarray, shape (n, C)
-        The values [unit of the curve]; computed ones at times later by `delay`.  Responses are complex where
-        the phase was measured.
+        The values [unit of the curve].  Computed histories are shifted to times later by `delay`: at x they
+        have the values of x - delay.  Responses are complex where the phase was measured.
     allowance : ndarray, shape (n, C)
         By how much measured values may be off [same unit]: half of the last digit, and twice the uncertainty.
     error : ndarray, shape (n, C)
@@ -50,7 +50,7 @@ class CurveComparison(Result):
     model_error : ndarray, shape (C,)
         What the effects that the model leaves out would change, over the largest value, as far as known.
     delay : float
-        Time by which the histories are behind the computed ones [s], which is taken out; 0 of other curves.
+        Time by which measured histories lag behind the computed ones [s]; 0 of other curves.
     phase : ndarray, shape (C,)
         Phase by which the measured curve leads [rad]: of a history by the delay, at its main frequency; of a
         response where it is largest; nan where it is not known.

@@ -1,8 +1,9 @@
-"""A smooth function of two numbers on a grid of their values, from as few of its values as resolve it.
+"""Interpolation of a smooth function of two numbers on a grid, from as few evaluations as resolve it.
 
-Along each number it is interpolated by a polynomial through the extremes of a Chebyshev polynomial, of twice
-the degree until the last coefficients are small.  Where that takes as many as there are values, it is taken
-at the values themselves.
+Along each number the function is interpolated by a polynomial through the Chebyshev points (the extremes of a
+Chebyshev polynomial).  Its degree is doubled until the last Chebyshev coefficients are small.  Where a
+polynomial would need as many evaluations as the grid has values along that number, the function is evaluated
+at these values instead.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ _SAFETY = 4.0  # error over that size
 
 @dataclass(frozen=True)
 class ChartAxis:
-    """A number, at values between whose smallest and largest a function is interpolated.
+    """One axis of the grid: the values of a number, and how a function is interpolated over their range.
 
     Parameters
     ----------
     values : ndarray, shape (k,)
-        The values.
+        Values of the number on the grid.
     degree : int or None
-        Degree of the polynomial; None where the function is taken at the values.
+        Degree of the interpolating polynomial; None if the function is evaluated at the values themselves.
     """
 
     values: np.ndarray
@@ -35,17 +36,17 @@ class ChartAxis:
 
     @classmethod
     def coarsest(cls, values: np.ndarray) -> ChartAxis:
-        """An axis with the lowest degree that is tried."""
+        """Make an axis with the lowest degree that is tried."""
         return cls(values, _FIRST if len(values) > _FIRST + 1 else None)
 
     def finer(self) -> ChartAxis:
-        """The axis with twice the degree, or with the values."""
+        """Copy the axis with twice the degree, or without a polynomial where that saves nothing."""
         assert self.degree is not None
         return replace(self, degree=2 * self.degree if len(self.values) > 2 * self.degree + 1 else None)
 
     @property
     def nodes(self) -> np.ndarray:
-        """Where the function is computed."""
+        """Values of the number at which the function is evaluated."""
         if self.degree is None:
             return self.values
         low, high = self.values.min(), self.values.max()
@@ -57,7 +58,7 @@ class ChartAxis:
         return chebvander((2 * at - low - high) / (high - low), self.degree)
 
     def coefficients(self, samples: np.ndarray, axis: int) -> np.ndarray:
-        """Chebyshev coefficients along an axis of samples at the nodes; themselves at the values."""
+        """Chebyshev coefficients along an axis of samples at the nodes; the samples where degree is None."""
         if self.degree is None:
             return samples
         moved = np.moveaxis(samples, axis, 0)
@@ -65,7 +66,7 @@ class ChartAxis:
         return np.moveaxis(found.reshape(moved.shape), 0, axis)
 
     def at_values(self, coefficients: np.ndarray, axis: int) -> np.ndarray:
-        """The function at the values, along an axis of its coefficients."""
+        """Evaluate the function at the values of the grid, from its coefficients along an axis."""
         if self.degree is None:
             return coefficients
         moved = np.moveaxis(coefficients, axis, 0)
@@ -73,7 +74,7 @@ class ChartAxis:
         return np.moveaxis(found.reshape(-1, *moved.shape[1:]), 0, axis)
 
     def tail(self, coefficients: np.ndarray, axis: int) -> float:
-        """Largest size of the last coefficients along an axis: about what those left out are."""
+        """Largest of the last coefficients along an axis, which estimates the size of those left out."""
         if self.degree is None:
             return 0.0
         return float(np.abs(np.take(coefficients, range(-_LAST, 0), axis=axis)).max())
@@ -81,14 +82,15 @@ class ChartAxis:
 
 @dataclass(frozen=True)
 class OnGrid:
-    """A function on a grid of values of two numbers.
+    """Interpolated values of a function on a grid of two numbers.
 
     Parameters
     ----------
     value : ndarray, shape (A, B, ...)
         The function at each pair of values.
     error : float
-        Estimated error by the interpolation, of the entries that the tolerance is for; 0 without one.
+        Estimated interpolation error of the entries to which the tolerance applies; 0 if none are
+        interpolated.
     samples : int
         Number of pairs at which the function was computed.
     """
@@ -109,13 +111,14 @@ def interpolate_on_grid(
     Parameters
     ----------
     function : callable
-        The function of two numbers: an array (k,).  It is called at values between those given.
+        The function: it takes two numbers, also between the given values, and returns an array (k,).
     values : tuple of ndarray, shapes (A,) and (B,)
-        The values.
+        Values of the two numbers on the grid.
     tolerance : callable
-        Largest size of coefficients left out, once the function has been called.
+        Returns the largest allowed size of the last coefficients.  It is asked after the function has been
+        evaluated, on whose own error it may depend.
     entries : slice
-        Entries of the array for which the tolerance is.
+        Entries of the array to which the tolerance applies.
     """
     known: dict[tuple[float, float], np.ndarray] = {}
 

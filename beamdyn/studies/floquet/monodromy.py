@@ -1,4 +1,4 @@
-"""The monodromy matrix: the free motion over a period, as a linear map of its state at the beginning.
+"""The monodromy matrix, which maps the state of a free motion over one period, from beginning to end.
 
 The steps are those of the transients, Gauss collocation of order 16, which keeps the symplectic form of
 undamped motion.  Displacements are multiplied by the frequencies at rest, so that in free vibration at rest

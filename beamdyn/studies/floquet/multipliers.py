@@ -1,12 +1,15 @@
 """Floquet multipliers, eigenvalues of monodromy matrices, and what they say of stability.
 
-An error d of a matrix moves a multiplier by up to k d, k its condition, the product of the lengths of its
-left and right vector over their product.  Where two multipliers meet, k has no bound, but k times their
-distance has: they are m +- sqrt(s), and an error D of s moves them by at most sqrt(D).
+To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number:
+the norms of its left and right eigenvector, multiplied, over their inner product.  Where two multipliers
+meet, k is unbounded, but k times their distance is not: the two are m +- sqrt(s), and an error D of s moves
+them by at most sqrt(D).
 
-Undamped motion keeps a form, so that with each multiplier its reciprocal is one.  A multiplier on the unit
-circle, further from the others than the errors, has no other to be the reciprocal of: it lies on the circle.
-Where several meet, they stay on it if the form has one sign on their vectors (Krein).
+Undamped motion preserves an antisymmetric form, so that multipliers come in pairs m, 1 / conj(m).  The
+partner of a multiplier beside the unit circle would lie as close to the circle on its other side.  A
+multiplier that is further from all others than the errors has no such partner, and so lies on the circle
+itself.  Where several meet, they stay on the circle if the form has the same sign on all of their
+vectors (Krein).
 """
 
 from __future__ import annotations
