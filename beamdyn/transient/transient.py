@@ -165,11 +165,6 @@ class Transient(StatesModelError):
         """Changes of the largest deflection by effects left out, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
-    @property
-    def relative_mode_error(self) -> float:
-        """The modal truncation error over the largest deflection, which is `mode_error`."""
-        return self.mode_error
-
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
         """Copy with further warnings, which keeps the refined run if it has been computed."""
         copy = replace(self, warnings=(*self.warnings, *more))
