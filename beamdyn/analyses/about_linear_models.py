@@ -267,7 +267,6 @@ def response(
 
 @analysis(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
-    screen="Random road",
     about_scene="The scene, damped; with a rolling wheel for a road.",
 )
 def random(

@@ -92,8 +92,7 @@ def test_screens_on_own_data_take_it_as_text_and_no_files(name):
 @pytest.mark.parametrize("described", SHOWN, ids=lambda each: each.screen)
 def test_screens_open_with_an_answer_and_a_picture_for_each_width(described):
     screen = next(each for each in SCENE.screens if each.name == described.screen)
-    damped = {"model.damping_ratio": "0.01"} if described.screen == "Random road" else {}
-    answer = solve(screen, {**SCENE.base_entries, **damped})
+    answer = solve(screen, SCENE.base_entries)
     assert len([*screen.rows(answer)]) > 1 and [*screen.headline(answer)]
     assert all(screen.picture(answer, narrow).axes for narrow in (False, True))
 

@@ -16,15 +16,12 @@ from beamdyn.scene.physics import Physics
 
 # Rows of an outline, of modes, of settings, of measured values, and of unknown numbers.
 FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20, "Compare": 4, "Identify": 2, "Loads": 22, "Map": 82}
-NEEDS = {"Random road": ("model.damping_ratio", "0.01")}  # what the first scene lacks
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.mark.parametrize("screen", SCENE.screens, ids=lambda s: s.name)
 def test_screen_answers_draws_and_tabulates(screen):
     work = OpenDocument(SCENE)
-    if screen.name in NEEDS:
-        work.put(*NEEDS[screen.name])
     assert work.solve(screen), work.mistakes
     answer = work.answered[screen.name].answer
     assert drawn(screen, answer, 1.0).startswith("<?xml")
