@@ -134,6 +134,8 @@ def _amount(text: str, unit: str) -> float:
     """A number with a unit in another unit; an angle may be given by its rise in %."""
     if unit == "deg":
         return SlopeQuantity("rad").convert(text) / SCALES["deg"]
+    if unit == "K" and not text.endswith("K"):
+        raise InvalidValue("", text, "it is a difference from the temperature of the surroundings: give K")
     return Quantity(unit).convert(text if unit else float(text))
 
 

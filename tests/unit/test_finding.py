@@ -155,6 +155,7 @@ def test_command_finds_a_diameter_for_a_torque(capsys):
         (("plates", "plates.faces=1:9e5:2", "torque = 1 N m"), 2, "there are more than 100000 whole numbers"),
         (("disc", "load.torque", "torque = 100 N m"), 2, "the file gives it no value"),
         (("disc", "brake.friction", "torque = 100 MPa"), 2, "a unit of pressure or modulus where moment"),
+        (("disc", "heat.stops", "hottest = 200 degC"), 2, "a difference from the temperature of the surr"),
         (("disc", "brake.friction", "torque"), 2, 'give RESULT = VALUE, such as "torque = 1 N m"'),
         (("disc", "brake.friction", "c_star = x"), 2, "give a plain number"),
         (("disc", "friktion", "c_star = 1"), 2, "did you mean friction?"),

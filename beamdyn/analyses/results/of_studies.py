@@ -96,7 +96,9 @@ def study_columns(result: Study) -> Columns:
 def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> list[str]:
     """Cells of an answer in all designs: the number, or why there is none."""
     return [
-        supported(number, wrong * number, _DIGITS) if np.isfinite(number) else str(state)
+        supported(number, wrong * abs(number) if number else 0.0, _DIGITS)
+        if np.isfinite(number)
+        else str(state)
         for number, wrong, state in zip(value, error, status, strict=True)
     ]
 
