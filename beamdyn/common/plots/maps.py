@@ -128,7 +128,7 @@ def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes
     shown = [*_panels(inputs, answers)]
     if ax is None:
         ax = new_axes(*map_size(inputs, answers))
-    inches = ax.bbox.width / ax.get_figure(root=True).dpi  # pyright: ignore[reportOptionalMemberAccess]
+    inches = ax.bbox.width / ax.figure.dpi
     count, columns = _grid(inputs, answers, inches)
     whole, each = (ax, [ax]) if count == 1 else panels(count, ax, columns)
     for k, (panel, (title, value, reason, meets)) in enumerate(zip(each, shown, strict=True)):

@@ -65,7 +65,7 @@ class PlacedLabels(Artist):
         assert self.axes is not None
         centred: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9, "bbox": _HALO}
         made = Text(places[0, 0], places[0, 1], text, **centred | style)
-        made.set_figure(self.axes.get_figure(root=False))  # pyright: ignore[reportArgumentType]
+        made.set_figure(self.axes.figure)
         made.set_transform(self.axes.transData)
         places = places[:: -(-len(places) // _MOST)]
         self._texts.append((made, places, _WAYS if beside else _ON_IT))
