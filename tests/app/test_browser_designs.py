@@ -71,7 +71,7 @@ def test_a_long_name_does_not_push_the_values_of_a_design_out_of_sight(opened):
     page = opened("beamdyn")
     page.set_viewport_size({"width": 390, "height": 844})
     page.get_by_role("button", name="Designs").click(timeout=20_000)
-    page.get_by_role("button", name="Compare").first.click(timeout=20_000)
+    page.get_by_role("button", name="Compare An aluminium fan blade").first.click(timeout=20_000)
     head = page.locator("th:visible", has_text="An aluminium fan blade").first
     box = head.bounding_box(timeout=20_000)
     assert box["x"] + box["width"] <= 390
