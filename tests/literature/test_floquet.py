@@ -74,7 +74,7 @@ def test_boundaries_of_mathieus_tongues(tongue, p):
         found = bd.floquet_multipliers(bd.Scene(UNIT, motion=shaken), 1)
         return float(np.real(found.multipliers.sum())) / 2 * multiple - 1
 
-    for value in characteristic_values(tongue, p):
-        near = 1e-4 * min(1.0, np.ptp(characteristic_values(tongue, p)))
+    for value in (ends := characteristic_values(tongue, p)):
+        near = min(1e-4, 0.25 * np.ptp(ends))  # further, the excess is above rounding in a narrow tongue
         a = brentq(excess, value - near, value + near, xtol=1e-13)
         assert a == pytest.approx(value, rel=1e-8)
