@@ -75,8 +75,9 @@ def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
     """The picture of an answer, with its notes below."""
     result: Any = answer.result
     if narrow:
-        size = result.picture_size(_NARROW[0]) if hasattr(result, "picture_size") else _NARROW
-        draw = partial(figure_of, answer.draw or result.plot, size)
+        own = hasattr(result, "picture_size")  # of a picture with panels
+        size, plot = (result.picture_size(_NARROW[0]), result.plot_panels) if own else (_NARROW, result.plot)
+        draw = partial(figure_of, answer.draw or plot, size)
     else:
         draw = picture_of(result) if answer.draw is None else partial(figure_of, answer.draw)
     assert draw is not None

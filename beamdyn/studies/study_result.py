@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.plots.axes_and_lines import set_up_axes
+from beamdyn.common.plots.curves import curves, mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
+from beamdyn.common.results.pictures import add_legend
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import InputValue, Statement, joined
 from beamdyn.common.words import Part, Words
@@ -203,8 +206,28 @@ class Study(StatesModelError):
 
         The present design is marked.  Of a third input some values have maps of their own; further ones have
         their first value.  Where there is no answer the picture is hatched, and says why; frequencies over
-        speed have the lines that excite them.
+        speed have the lines that excite them.  Several answers over one input have a panel each in a new
+        figure; in axes that are given they are curves, beside what is there.
         """
+        inputs, answers = self._picture
+        if ax is None or len(answers) == 1 or sum(len(each.values) > 1 for each in inputs) > 1:
+            return plot_maps(inputs, answers, ax)
+        return self._plot_curves(ax, *self._picture)
+
+    def _plot_curves(self, ax: Axes, inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Axes:
+        """Draw each answer as a curve over the one input that varies, in axes that may have others."""
+        over = max(range(len(inputs)), key=lambda k: len(inputs[k].values))
+        x = inputs[over].values
+        order = np.argsort(x, kind="stable")
+        rows = np.array([each.value.reshape(len(x))[order] for each in answers])
+        unit = self.unit_shown(self.unit, "mm")
+        set_up_axes(ax, inputs[over].label, f"{self.question.kind.word} [{unit.name}]")
+        curves(ax, x[order], rows, self.labels)
+        mark_missing(ax, "no answer")
+        return add_legend(ax)
+
+    def plot_panels(self, ax: Axes) -> Axes:
+        """Draw the picture that `plot` makes in a new figure, in the place of some axes."""
         return plot_maps(*self._picture, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:

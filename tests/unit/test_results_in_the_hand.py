@@ -265,7 +265,7 @@ def axes():
 def test_two_results_on_one_pair_of_axes_are_told_apart(name):
     ax = axes()
     first = made(name).plot(ax=ax, label="thin")
-    if name in ("Tradeoff", "Equilibrium", "Study"):  # panels of their own; one line to scale
+    if name in ("Tradeoff", "Equilibrium"):  # panels of their own; one line to scale
         return
     count = len(ax.lines)
     assert made(name).plot(ax=ax, label="thick") is first

@@ -333,7 +333,7 @@ VIEWS = OF_DATA | OF_STABILITY | {
     "Diagram": View(diagram_table, diagram_csv),
     "Sensitivities": View(sensitivities_table, sensitivities_csv, 1),
     "Study": View(
-        study_table, study_columns, 0, lambda result: figure_of(result.plot, result.picture_size())
+        study_table, study_columns, 0, lambda result: figure_of(result.plot_panels, result.picture_size())
     ),
     "Tradeoff": View(lambda result: Group(*map(diagram_table, result.diagrams)), tradeoff_csv, 3,
                      _tradeoff_figure),

@@ -20,7 +20,7 @@ _SAFETY = 4.0  # error over that size
 
 
 @dataclass(frozen=True)
-class ChartAxis:
+class ChebyshevAxis:
     """One axis of the grid: the values of a number, and how a function is interpolated over their range.
 
     Parameters
@@ -35,11 +35,11 @@ class ChartAxis:
     degree: int | None
 
     @classmethod
-    def coarsest(cls, values: np.ndarray) -> ChartAxis:
+    def coarsest(cls, values: np.ndarray) -> ChebyshevAxis:
         """Make an axis with the lowest degree that is tried."""
         return cls(values, _FIRST if len(values) > _FIRST + 1 else None)
 
-    def finer(self) -> ChartAxis:
+    def finer(self) -> ChebyshevAxis:
         """Copy the axis with twice the degree, or without a polynomial where that saves nothing."""
         assert self.degree is not None
         return replace(self, degree=2 * self.degree if len(self.values) > 2 * self.degree + 1 else None)
@@ -127,7 +127,7 @@ def interpolate_on_grid(
             known[x, y] = function(x, y)
         return known[x, y]
 
-    axes = [ChartAxis.coarsest(each) for each in values]
+    axes = [ChebyshevAxis.coarsest(each) for each in values]
     while True:
         first, second = (axis.nodes.tolist() for axis in axes)
         found = np.array([[sample(x, y) for y in second] for x in first])
