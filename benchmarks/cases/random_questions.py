@@ -28,7 +28,7 @@ master_bore = "22.22 mm"
 cylinder_bore = "31.75 mm"
 """
 TYPES = {name: load() for name, (_, load) in STANDARD.items()} | {"forklift": FORKLIFT}
-ROUNDING = ("error", "closure")  # results that are nothing but rounding
+ROUNDING = ("error", "closure", "residual")  # results that are nothing but rounding
 SPREAD, SOUGHT = 1.3, 1.5  # factors: of each number of a design, and of the bounds of the search
 
 
