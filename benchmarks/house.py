@@ -244,7 +244,7 @@ def _dynamic_imports() -> Iterator[tuple[str, str]]:
 
 
 def names_used_again() -> list[str]:
-    """Names that several modules of a package have, outside the rooms that share theirs by a fixed pattern."""
+    """Names that several modules of a package have, outside the rooms with a fixed pattern of names."""
     rooms = {p: p.relative_to(ROOT).parts for p in sources() if p.stem != "__init__"}
     stems = Counter((parts[0], p.stem) for p, parts in rooms.items() if parts[:2] not in PATTERN)
     return [f"{package}: {stem}" for (package, stem), n in stems.items() if n > 1]

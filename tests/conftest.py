@@ -26,12 +26,14 @@ WHOLE = {"literature"}  # folders of which every case runs: each published numbe
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
 def pytest_collection_modifyitems(items):
-    """Mark as `more` what a sample of the same test's cases shows, too; of a case that is named, there is one."""
+    """Mark as `more` the cases of a test beyond a sample; a case that is named on the command line runs."""
     tests = defaultdict(list)
     for item in items:
         tests[item.nodeid.partition("[")[0]].append(item)
     for name, cases in tests.items():
-        is_sampled = len(cases) > FEW and name.split("/")[1] not in WHOLE and "browser" not in cases[0].keywords
+        is_sampled = (
+            len(cases) > FEW and name.split("/")[1] not in WHOLE and "browser" not in cases[0].keywords
+        )
         for i, case in enumerate(cases):
             if is_sampled and i % EVERY:
                 case.add_marker(pytest.mark.more)

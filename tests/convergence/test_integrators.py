@@ -106,6 +106,7 @@ def test_energy_is_conserved_at_any_step_size(stages: int) -> None:
         np.testing.assert_allclose(energy(states), energy(states[0]), rtol=1e-11)
 
 
+@pytest.mark.slow
 def test_energy_over_a_hundred_thousand_periods() -> None:
     """Ten steps a period; the benchmark runs a million periods."""
     periods = 100_000

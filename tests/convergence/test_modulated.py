@@ -114,6 +114,7 @@ def with_transverse_stiffness(system: ModalSystem, share: float) -> ModalSystem:
     return replace(system, equations=replace(system.equations, terms=(*system.equations.terms, term)))
 
 
+@pytest.mark.slow
 def test_a_term_on_any_varying_quantity_is_treated() -> None:
     """Two varying stiffnesses: the series agrees with DOP853, in as few steps as one of them takes."""
     system = ModalSystem(Model(ROLLING, bd.Ritz(16)).modal_equations(3), replace(ROLLING.motion, speed=55.0))

@@ -107,6 +107,7 @@ def test_corrected_tables() -> None:
     assert found["table_2", "distance"][1, 1] == pytest.approx(13.425, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_reproduce_prints_and_draws(capsys, tmp_path) -> None:
     assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
     out, err = capsys.readouterr()

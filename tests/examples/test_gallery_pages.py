@@ -61,6 +61,7 @@ def build(tmp_path):
     return build, tmp_path
 
 
+@pytest.mark.slow
 def test_examples_run_again_when_what_they_ran_or_read_has_changed(build):
     run, root = build
     assert run() == "a1"

@@ -56,6 +56,7 @@ def _unsure(row: validation_manual.Row) -> list[str]:
     return [text for text in numbers if half_unit(text) < 0.999 * float(row.error)]
 
 
+@pytest.mark.slow
 def test_no_digit_is_beyond_the_stated_error() -> None:
     """Neither of ours nor of the third computation in a verdict; of the quick parts, and of all errata."""
     parts = (validation_manual.PARTS[name][1]() for name in ("single_answers", "wider_models", "brakes"))

@@ -79,6 +79,7 @@ def test_elements_state_the_error_of_a_jump(elements: int) -> None:
     assert abs(modes.frequency[0] / exact.frequency[0] - 1) <= modes.error[0]
 
 
+@pytest.mark.slow
 def test_stated_errors_of_random_tip_bodies_at_any_tolerance() -> None:
     """Scenes 1100 to 1119, of which the version before lost modes, and of which some turn at gamma 2000."""
     for number in range(1100, 1120):

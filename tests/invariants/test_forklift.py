@@ -224,6 +224,7 @@ def test_closed_form_for_parallel_forces(case):
     np.testing.assert_allclose([back.Q, back.P_L], [Q, P_L], rtol=1e-10)
 
 
+@pytest.mark.slow
 @given(cases(), st.integers(0, 2**32 - 1), st.booleans())
 def test_newton_only_ever_agrees(case, seed, damped):
     """From random starts: where it ends all-positive and along the drum, it is the reduction's solution."""

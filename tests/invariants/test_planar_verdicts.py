@@ -94,6 +94,7 @@ def test_a_drawer_pulled_beside_its_line_jams():
     assert solve_with_friction(drawer(0.1, -1e-3), "pull").squeeze.status == "self-locking"
 
 
+@pytest.mark.slow
 def test_stated_errors_cover_those_against_forty_digits():
     """Sixty of the thousand mechanisms of the benchmark, drawn far away and nearly jammed among them."""
     found = measure(60)

@@ -156,6 +156,7 @@ def record(psd, samples, step, rng):
     return np.fft.irfft(samples * np.sqrt(psd(f) / (4 * T)) * noise, samples)
 
 
+@pytest.mark.slow
 def test_against_a_long_simulation():
     """Mean squares of strain and moment over 8 s, within three standard errors of blocks of 0.4 s."""
     step, samples, psd = 1 / 2000, 2**14, bd.PowerSpectrum([5.0, 200.0], [1.0, 1.0])

@@ -130,6 +130,7 @@ def test_stated_errors_of_coarse_bases_cover(functions):
     assert apart.max() > 1e-9 * np.abs(fine.derivative).max()  # else it shows nothing
 
 
+@pytest.mark.slow
 def test_elements_agree():
     ritz, fem = (
         bd.frequency_sensitivities(OBLIQUE, 50.0, 2, discretization=name) for name in ("ritz", "fem")

@@ -189,6 +189,7 @@ def test_crossings():
         assert not found
 
 
+@pytest.mark.slow
 @by_proc
 def test_workers_and_a_killed_one_change_no_bit():
     vary = draw({"mount.radius": (0.0, 0.3), "beam.thickness": (1e-4, 4e-4)} | SPEED, 2500)

@@ -86,6 +86,7 @@ def test_threads(undisturbed):
         assert bits(run(executor=executor)) == undisturbed
 
 
+@pytest.mark.slow
 def test_processes_of_the_standard_library(undisturbed):
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
         assert bits(run(executor=executor)) == undisturbed

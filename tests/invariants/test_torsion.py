@@ -177,6 +177,7 @@ def test_torsion_of_a_width_with_a_kink_is_the_limit_of_rounded_ones(tip_width: 
     assert coarse > 5 * fine
 
 
+@pytest.mark.slow
 def test_torsion_of_a_stepped_strip_is_that_of_its_constants() -> None:
     """Saint-Venant's beam with the stiffnesses of its parts, to what warping at the clamp changes."""
     widths = bd.Table([0.0, 0.5, 0.5, 1.0], [0.01, 0.01, 0.006, 0.006])

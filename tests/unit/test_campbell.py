@@ -194,6 +194,7 @@ def test_a_line_that_is_the_frequency_is_no_crossing() -> None:
     assert any("flap 1 and 1P coincide" in warning for warning in found.warnings)
 
 
+@pytest.mark.slow
 def test_finite_elements_cross_where_assumed_modes_do() -> None:
     """Each in the other's stated errors, of which finite elements' are the larger."""
     ritz, fem = (bd.campbell(UNIFORM_BLADE, SPEEDS, 2, discretization=d) for d in ("ritz", "fem"))

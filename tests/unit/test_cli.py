@@ -67,6 +67,7 @@ def test_critical(run):
     assert "no critical speed" in run("critical", BLADE)[1]
 
 
+@pytest.mark.slow
 def test_critical_says_why_there_is_none_or_how_far_it_was_looked(run, tmp_path):
     assert "no critical speed: the rotation stiffens the beam" in run("critical", BLADE)[1]
     scene = tmp_path / "inboard.toml"

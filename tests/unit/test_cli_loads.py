@@ -110,6 +110,7 @@ def test_mistakes(run, options, code, said):
     assert said in " ".join(err.split())
 
 
+@pytest.mark.slow
 def test_the_largest_strain_on_a_rough_road_as_the_page_prints_it(monkeypatch, capsys):
     page = (EXAMPLES.parent / "docs" / "loads.md").read_text(encoding="utf-8")
     command, printed = re.findall(

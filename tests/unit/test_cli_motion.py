@@ -89,7 +89,12 @@ def test_simulate_writes_files(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "options", [("--method", "DOP853"), ("--discretization", "fem"), ("--method", "Radau")]
+    "options",
+    [
+        ("--method", "DOP853"),
+        pytest.param(("--discretization", "fem"), marks=pytest.mark.slow),
+        pytest.param(("--method", "Radau"), marks=pytest.mark.slow),
+    ],
 )
 def test_other_integrators_and_elements_agree(run, options):
     ours, other = (run("simulate", SCENE, *QUICK, *o)[1] for o in ((), options))
@@ -98,6 +103,7 @@ def test_other_integrators_and_elements_agree(run, options):
     assert ("not estimated" in other) == ("--method" in options)
 
 
+@pytest.mark.slow
 def test_outside_linear_theory_is_said_as_by_other_commands(run, edited):
     scene = edited(amplitude='velocity_amplitude = "10 m/s"', duration='duration = "0.2 s"')
     code, out, err = run("simulate", scene, *QUICK)

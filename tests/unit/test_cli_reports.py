@@ -227,6 +227,7 @@ def test_commands_load_nothing_for_a_report_that_is_not_asked_for():
     assert not {"matplotlib", "numpy", "pydantic", "nicegui", "pint"} & set(done.stdout.split())
 
 
+@pytest.mark.slow
 def test_report_needs_no_interactive_program(tmp_path):
     code = (
         "import sys; sys.modules['nicegui'] = None; from brakes.cli import main; "

@@ -62,6 +62,7 @@ def test_numbers_in_lists_may_vary():
     assert [each.unit for each in found.inputs] == ["kg", "m"]
 
 
+@pytest.mark.slow
 def test_numbers_in_lists_may_have_a_tolerance():
     scene = bd.Scene(POINTED, bd.Mount(0.2, math.pi))
     found = bd.spread(scene, {"beam.point_mass[0].mass": "+-2%"}, "frequencies", modes=1, samples=128)

@@ -184,6 +184,7 @@ def test_a_result_is_judged_after_it_was_pickled_and_loaded(tmp_path):
         assert loaded.to_json()
 
 
+@pytest.mark.slow
 def test_large_deflection_of_a_run_in_two_planes_is_not_known():
     """Nor that of its loads and cycles: rotation does not bend it, but its own motion does."""
     pytest.importorskip("rainflow")

@@ -131,6 +131,7 @@ def run(capsys, *arguments):
     return code, " ".join(shown.out.split()), " ".join(shown.err.split())
 
 
+@pytest.mark.slow
 def test_command_finds_a_diameter_for_a_torque(capsys):
     code, out, _ = run(
         capsys, "disc", "examples/disc.toml", "--find", "disc.outer_radius", "--so-that", "torque = 800 N m"

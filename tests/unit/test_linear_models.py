@@ -308,6 +308,7 @@ def test_options():
             parse_frequencies(wrong)
 
 
+@pytest.mark.slow
 def test_the_strain_on_a_rough_road_by_a_command(tmp_path, capsys):
     paths = {name: tmp_path / f"out.{name}" for name in ("json", "csv")} | {"plot": tmp_path / "out.png"}
     files = [word for name, path in paths.items() for word in (f"--{name}", str(path))]
