@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn._version import __version__
+from beamdyn.accuracy.refinement import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
 from beamdyn.common.plots.plots import plot_branches
 from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
@@ -197,6 +198,7 @@ def equilibrium(
     q = solver.equilibria(speeds)[0]
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
+    error *= SLOW_BASES.factor if solution.model.lacks_one else 1.0
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     remedy = 'branch="bent" asks for the stable one beside it'

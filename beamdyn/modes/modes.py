@@ -386,5 +386,5 @@ def warn_of_modes(
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
     """How modes were found, since a start by `perf_counter` [s]."""
-    names = str(solution.model.discretization), str(solution.model.coarser.discretization)
+    names = str(solution.model.discretization), str(solution.model.compared.discretization)
     return Provenance(__version__, *names, wall_time=perf_counter() - start)

@@ -236,15 +236,15 @@ class EvaluationInSpace:
     @cached_property
     def _tangents(self) -> np.ndarray:
         """Derivatives (3, s, n, n) by coordinates, rates and accelerations."""
-        (_, s, n), angles = self.motion.shape, self.system.elastica.angles
-        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(angles).max())
-        moved = np.broadcast_to(self.motion, (2, 3, n, 3, s, n)).copy()  # sign, of which, which; motion
-        for k, i in np.ndindex(3, n):
-            moved[:, k, i, k, :, i] += np.array([step[k], -step[k]])[:, None]
-        drive = DriveInSpace(*(np.tile(values, 6 * n) for values in self.drive))
-        motion = np.moveaxis(moved, 3, 0).reshape(3, -1, n)
-        more, less = self.system.residual(drive, motion).reshape(2, 3, n, s, n)
-        return np.moveaxis(more - less, 1, 3) / (2 * step)[:, None, None, None]
+        (q, v, a), n, beam = self.motion, self.system.size, self.system.elastica.beam
+        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(beam.angles).max())
+        steps, still = step[:, None, None, None] * np.eye(n)[:, None], np.zeros((n, 1, n))
+        moved = MovingBeam(beam.at(q + steps[0]), v + still, self.drive.carrier).residual(a + still)
+        # Coordinates that stay are turned once.
+        rates, accelerations = np.concatenate([steps[1], still]), np.concatenate([still, steps[2]])
+        at_same = MovingBeam(beam.at(q), v + rates, self.drive.carrier).residual(a + accelerations)
+        change = np.concatenate([moved, at_same]).reshape(3, n, *q.shape) - self.residual
+        return np.moveaxis(change, 1, 3) / step[:, None, None, None]
 
     @property
     def stiffness(self) -> np.ndarray:

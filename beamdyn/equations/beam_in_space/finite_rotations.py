@@ -143,7 +143,8 @@ def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
 
 def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Products of quaternions (..., 4), which are broadcast."""
-    return np.einsum("...a,...b,abc->...c", y, z, _PRODUCT)
+    from_left = (y @ _PRODUCT.reshape(4, 16)).reshape(*y.shape, 4)
+    return np.einsum("...bc,...b->...c", from_left, z)
 
 
 def _matrices(y: np.ndarray) -> np.ndarray:

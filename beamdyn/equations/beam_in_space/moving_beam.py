@@ -104,7 +104,7 @@ class MovingBeam(FieldsOnly):
             stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
         )
         carried = cross(W_rate, masses.centre) + root
-        carried += cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
+        carried = carried + cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
         F = masses.mass * (relative + carried)
         spin, spin_rate = turning + W, turning_rate + W_rate + cross(W, turning)
         M = turn(masses.inertia, spin_rate) + cross(spin, turn(masses.inertia, spin))

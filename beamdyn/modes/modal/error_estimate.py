@@ -27,6 +27,7 @@ _OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may b
 # Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
+_BY_ONE = 1.0, 0.01, 0.0  # one function more may change a mode less than the next does: always as if slow
 # Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
 _ABOVE = 0.99  # share of the lowest square at rest: so much may a scale of errors be too low
@@ -159,8 +160,8 @@ def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.nd
     are_above = np.abs(squared).min() >= _ABOVE * (quotient.min() + model.equations.shift)
     lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
     is_slender = model.scene.is_slender_beam_in_one_plane
-    margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
-    parts = parts_of_distances(model.scene, model.discretization)
+    margin = SLOW_BASES.factor if is_slender or model.lacks_one else BASES_OF_FIELDS.factor
+    parts = _BY_ONE if model.lacks_one else parts_of_distances(model.scene, model.discretization)
     return _ritz_error(distance, squared, lowest, margin, parts)
 
 

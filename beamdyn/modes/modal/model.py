@@ -12,6 +12,7 @@ from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.uncoupled import solver_of
@@ -84,9 +85,9 @@ class Model(FieldsOnly):
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
-        """Solver of the coarser model: where functions of this one span its own, over these."""
+        """Solver of the model compared with: where functions of this one span its own, over these."""
         if self.scene.physics.large_deflection:
-            return self._deflected.guiding(self.coarser.bent)
+            return self._deflected.guiding(self.compared.bent)
         if self.equations.coarse is None:
             return self.coarser.solver
         return solver_of(self.equations, self.equations.coarse)
@@ -135,6 +136,25 @@ class Model(FieldsOnly):
     def coarser(self) -> Model:
         """The coarser model, by whose results the error of this one is estimated."""
         return Model(self.scene, self.discretization.coarser())
+
+    @property
+    def lacks_one(self) -> bool:
+        """Whether the model compared with has one function less in each field.
+
+        Strains of a bent beam without breakpoints converge fast, and each function more costs much: further
+        ones would only show how far the smaller model is from this one.
+        """
+        is_whole = isinstance(self.discretization, Ritz) and len(self.scene.modelled_beam.breakpoints) == 2
+        return is_whole and self.scene.bends_in_space
+
+    @cached_property
+    def compared(self) -> Model:
+        """The model by whose eigenvalues and equilibria the error of those of this one is estimated."""
+        if self.lacks_one and isinstance(self.discretization, Ritz):
+            return Model(
+                self.scene, replace(self.discretization, functions=self.discretization.functions - 1)
+            )
+        return self.coarser
 
 
 def kinetic_energy(equations: Equations, vectors: np.ndarray) -> np.ndarray:
