@@ -1,8 +1,8 @@
 """Energy of a beam in space over many periods of large motion, at rest and at constant speed.
 
 Run: python -m benchmarks.energy_in_space [--periods 10].  A twisted and swept beam with torsion, at an
-oblique angle, starts far from its equilibrium, undamped; the energy of the rotating frame is constant.  Its
-largest change is over the kinetic energy at the largest of its samples.
+oblique angle, starts fast, undamped; the energy of the rotating frame is constant.  Its largest change is
+over the energy at the start.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.elastica_steps import propagate_elastica
 from benchmarks.rows import Row, show
 
-_MODES, _STAGES, _ON_PERIOD, _BOUND = 3, 8, 24, 1e-9
+_MODES, _STAGES, _ON_PERIOD, _BOUND = 3, 12, 10, 1e-9
+_BLOCK = 50  # periods that are kept at a time
 _START = np.array([1.0, 1.0, 0.5])  # rates of the modes
 BEAM = bd.Beam.from_stiffness(
     1.0,
@@ -39,23 +40,35 @@ BEAM = bd.Beam.from_stiffness(
 )
 
 
+def system_at(speed: float) -> tuple[BeamInSpaceSystem, float]:
+    """The equations of the beam at a speed [rad/s], and the period of its first mode [s]."""
+    motion = bd.SteadyRotation(speed)
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    scene = bd.Scene(BEAM, bd.Mount(0.5, 2.0, 0.4), motion, physics=physics)
+    system = BeamInSpaceSystem.of_model(Model(scene, bd.Ritz(6)), ModalBasis(_MODES), motion)
+    return system, 1 / float(bd.natural_modes(scene, speed, 1, bd.Ritz(6)).frequency[0])
+
+
+def follow(system: BeamInSpaceSystem, period: float, periods: int) -> Iterator[tuple[np.ndarray, float]]:
+    """Energies over the scale, and the largest deflection, of blocks of some periods, one after another."""
+    q, v, none = np.zeros(_MODES), _START, np.zeros((1, _MODES))
+    scale = float(system.energy(np.zeros(1), none, _START[None])[0])
+    for done in range(0, periods, _BLOCK):
+        some = min(_BLOCK, periods - done)
+        run = propagate_elastica(system, 0.0, some * period, _ON_PERIOD * some, q, v, stages=_STAGES)
+        q, v = np.split(run.state[:, 1:], 2, axis=1)
+        yield system.energy(np.zeros(len(q)), q, v) / scale, float(np.abs(system.deflections(q)).max())
+        q, v = q[-1], v[-1]
+
+
 def measure(periods: int) -> Iterator[Row]:
     """The largest change of the energy, at rest and turning, and how far the tip moves."""
     for speed in (0.0, 2.0):
-        motion = bd.SteadyRotation(speed)
-        physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
-        scene = bd.Scene(BEAM, bd.Mount(0.5, 2.0, 0.4), motion, physics=physics)
-        system = BeamInSpaceSystem.of_model(Model(scene, bd.Ritz(6)), ModalBasis(_MODES), motion)
-        period = 1 / float(bd.natural_modes(scene, speed, 1, bd.Ritz(6)).frequency[0])
-        start, steps = process_time(), _ON_PERIOD * periods
-        end = periods * period
-        run = propagate_elastica(system, 0.0, end, steps, np.zeros(_MODES), _START, stages=_STAGES)
-        q, v = np.split(run.state[:, 1:], 2, axis=1)
-        energy = system.energy(np.linspace(0.0, end, len(q)), q, v)
-        scale = np.abs(energy - system.energy(np.zeros(len(q)), q, 0 * v)).max()
+        start = process_time()
+        energies, deflections = zip(*follow(*system_at(speed), periods), strict=True)
         what = f"{speed:g} rad/s, {periods} periods: largest change of the energy"
-        yield what, f"{np.abs(energy - energy[0]).max() / scale:.1e}", f"{_BOUND:g}"
-        yield "... largest deflection over the length", f"{np.abs(system.deflections(q)).max():.2f}", ""
+        yield what, f"{np.abs(np.concatenate(energies) - 1).max():.1e}", f"{_BOUND:g}"
+        yield "... largest deflection over the length", f"{max(deflections):.2f}", ""
         yield "... processor time", f"{process_time() - start:.0f} s", ""
 
 

@@ -98,9 +98,8 @@ def answer(
         true = np.abs(modes.eigenvalue / known.eigenvalue - 1)
     is_zero = np.abs(modes.eigenvalue) < known.zero
     true = np.where(known.eigenvalue == 0, np.where(is_zero, 0.0, np.inf), true)
-    return Answer(
-        number, tolerance, time, *(tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
-    )
+    stated, true, uncertain = (tuple(v.tolist()) for v in (modes.error, true, known.uncertainty))
+    return Answer(number, tolerance, time, stated, true, uncertain)
 
 
 def cases(

@@ -48,7 +48,7 @@ class DriveInSpace(NamedTuple):
     @property
     def carrier(self) -> Carrier:
         """The motion of the carrier at the nodes."""
-        return Carrier(*(np.moveaxis(values, -1, -2) for values in self))
+        return Carrier(*(values.swapaxes(-1, -2) for values in self))
 
 
 class Evaluated(Protocol):
@@ -187,7 +187,7 @@ class BeamInSpaceSystem:
     def drive(self, root: RootMotion) -> Any:
         """Quantities of the root's motion as they enter the equations."""
         carrier = Carrier.of_root(self.elastica.axis, root)
-        return DriveInSpace(*(np.moveaxis(values, -1, -2) for values in vars(carrier).values()))
+        return DriveInSpace(*(values.swapaxes(-1, -2) for values in vars(carrier).values()))
 
     def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
         """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).

@@ -11,14 +11,14 @@ from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.discretization import Cells, integrals_between_points
 
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+_NEXT = np.array([1, 2, 0])  # component that follows each: the products have few operations on arrays
 _ITERATIONS = 30  # of Picard's method, enough for a turn by 2 pi
 _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion with which the iteration ends
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Vector products of vectors (..., 3, N), which are broadcast."""
-    (a1, a2, a3), (b1, b2, b3) = ((v[..., 0, :], v[..., 1, :], v[..., 2, :]) for v in (a, b))
-    return np.stack([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1], axis=-2)
+    return (a * b.take(_NEXT, axis=-2) - a.take(_NEXT, axis=-2) * b).take(_NEXT, axis=-2)
 
 
 def skew(a: np.ndarray) -> np.ndarray:
