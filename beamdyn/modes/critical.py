@@ -56,6 +56,8 @@ _BENT = Words(
     Named("equilibrium_branches", "beamdyn branches"),
     " finds where its equilibrium turns back",
 )
+_LOST = "the beam that rotation bends has no stiffness against a further bend or twist"
+_KEPT = "the beam that rotation bends was followed so far, and stays stable"
 _FUNCTIONS = 5  # functions of a model of which only the loads are read
 
 
@@ -171,6 +173,9 @@ def critical_point(
     sought with finer and finer discretizations, because it may belong to a short bend at the tip; if these
     end without one, guaranteed bounds say up to which speed there is none.
 
+    Where rotation bends the beam in space from rest on, it is the speed at which the equilibrium that follows
+    from rest loses its stability: a deep section buckles sideways, or the branch turns back.
+
     Parameters
     ----------
     scene : Scene
@@ -204,6 +209,10 @@ def critical_point(
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
     if scene.physics.large_deflection and _is_loaded_across(scene):
+        if scene.bends_in_space:
+            return _of_bent_beam(
+                scene, discretization, affordable_target(scene, discretization, target), start
+            )
         return _argued(scene, Buckling(False, _BENT), start)
     # Large deflection does not change when a straight beam buckles.
     scene = scene.straightened
@@ -242,6 +251,25 @@ def critical_point(
         provenance=Provenance(__version__, *names, perf_counter() - start),
         scene=scene,
         model=found.model,
+    )
+
+
+def _of_bent_beam(
+    scene: Scene, discretization: DiscretizationChoice, target: float, start: float
+) -> CriticalPoint:
+    """The speed at which a beam that rotation bends from rest on loses its stability."""
+    models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
+    found, is_lost = critical_search.search_bent(models, target)
+    names = str(found.model.discretization), str(found.coarse.discretization)
+    return CriticalPoint(
+        speed=found.speed if is_lost else np.inf,
+        error=found.error,
+        none_below=found.speed,
+        reason=_LOST if is_lost else _KEPT,
+        warnings=tuple(warn_of_left_out(scene)),
+        provenance=Provenance(__version__, *names, perf_counter() - start),
+        scene=scene,
+        model=None,
     )
 
 

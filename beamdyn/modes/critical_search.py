@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beamdyn.accuracy.refinement import refine
+from beamdyn.accuracy.refinement import BASES_OF_FIELDS, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -17,6 +18,9 @@ from beamdyn.scene.scene import Scene
 _SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
 _NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)  # rounding error times the cube of an element's length over L
+_ROUNDING_OF_BENT = (
+    1e-10  # relative: the stiffness whose sign is sought is small beside those that add up to it
+)
 _TO_HALF = 4  # steps from a basis to one of about half its size
 
 
@@ -88,3 +92,28 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
     error = float(error) if resolved else np.inf
     return FoundSpeed(model, coarse, float(softening**-0.5), error, rounding)
+
+
+# Of a beam that rotation bends --------------------------------------------------------------------
+
+
+def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
+    """Refine the speed at which a beam that rotation bends in space loses its stability, and whether it does.
+
+    Where it does not, the speed is the largest that was tried.
+    """
+    found, is_lost = compare_bent(next(models))
+    while is_lost and found.error > max(target, 3 * found.rounding) and (finer := next(models, None)):
+        found, is_lost = compare_bent(finer)
+    return found, is_lost
+
+
+def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
+    """Compare the speed at which stability is lost with that of the model of which errors are estimated."""
+    solver, coarse = model.solver, model.compared.solver
+    assert isinstance(solver, DeflectedSolver) and isinstance(coarse, DeflectedSolver)
+    (squared, is_lost), (of_coarse, also) = (find_loss_of_stability(s.load) for s in (solver, coarse))
+    margin = (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor
+    error = margin * abs(of_coarse / squared - 1) / 2 + _ROUNDING_OF_BENT
+    error = error if is_lost and also else np.inf
+    return FoundSpeed(model, model.compared, float(np.sqrt(squared)), error, _ROUNDING_OF_BENT), is_lost

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import jv
 
+import beamdyn as bd
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS
 from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
 from benchmarks.cases.beams_in_space import (
@@ -22,6 +23,7 @@ from benchmarks.cases.beams_in_space import (
 )
 
 CLOSED = 1e-9
+WEAK = 1e-6  # stiffness of a deep section across, and in torsion [N m2]
 
 
 def test_pure_bending_closes_a_circle() -> None:
@@ -61,6 +63,33 @@ def test_lateral_buckling() -> None:
     exact = 2 * float(brentq(lambda x: jv(-0.25, x), 1.8, 2.2, xtol=1e-14))
     assert exact == pytest.approx(4.0126, abs=5e-5)
     assert lateral_buckling_load() == pytest.approx(exact, rel=CLOSED)
+
+
+def deep_blade(bending: float, radius: float) -> bd.Scene:
+    """A blade whose far carrier pushes it, evenly, in its stiff direction."""
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        1.0,
+        bending,
+        second_bending_stiffness=WEAK,
+        torsion_stiffness=0.7 * WEAK,
+        rotary_inertia=1e-9,
+        second_rotary_inertia=1e-9,
+    )
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    return bd.Scene(beam, bd.Mount(radius, np.pi / 2), physics=physics)
+
+
+def test_lateral_buckling_of_a_blade_that_its_carrier_pushes() -> None:
+    """Under an even load, w L^3 = 12.854 sqrt(EI GJ): Timoshenko and Gere, Theory of Elastic Stability, 6.4."""
+    exact = 6 * float(brentq(lambda x: jv(-1 / 6, x), 2.0, 2.3, xtol=1e-14))
+    assert exact == pytest.approx(12.85, abs=0.005)
+    radius = 1e8  # what the pull along the beam changes is of the order of L over it
+    found = bd.critical_point(deep_blade(100.0, radius))
+    assert found.speed**2 * radius / (np.sqrt(0.7) * WEAK) == pytest.approx(exact, rel=1e-7)
+    assert found.error < 1e-7
+    shallow = bd.critical_point(deep_blade(WEAK, 1.0))
+    assert shallow.speed == np.inf and shallow.none_below > 100 * np.sqrt(WEAK)
 
 
 def frequency_equation(load: float, frequency: float) -> float:

@@ -122,7 +122,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
         linear = _with_blocks_of(linear, discretization.functions)
         strains = [STRAINS.index(_strains_of_fields(scene)[name].name) for name in linear.blocks]
         model = replace(model, functions=_strains_by_forces(model, law, discretization.functions)[strains])
-        model = replace(model, functions=model.functions.reshape(linear.size, *law.shape[1:]))
+        model = replace(model, functions=model.functions.reshape(linear.size, *law.shape[1:]), slopes=None)
     K = elastic_stiffness(model.stations, model.functions, law)
     terms, none = [*terms_of_blocks(linear, "stiffness", K, 0)], np.zeros_like(K)
     undamped = replace(

@@ -10,6 +10,7 @@ from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.decks.elastodyn import named_file
 
 _ELASTODYN, _BEAMDYN = 1, 2  # CompElast; 3 is a simplified ElastoDyn
+_NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; tip in [beam] has a body there"
 
 
 def read_openfast_file(text: DataText) -> Blade:
@@ -20,8 +21,10 @@ def read_openfast_file(text: DataText) -> Blade:
     if model == _BEAMDYN and "bdbldfile1" in found:
         main = read_data(named_file(text, found["bdbldfile1"]))
         blade = beamdyn_blade.read_main_file(main, rotor.hub_radius)
-        kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed", "tip")}
-        return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), **kept)
+        kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed")}
+        mass = rotor.tip.get("mass", 0.0)  # ElastoDyn sets it to 0 where BeamDyn computes the blades
+        ignored = (*blade.ignored, *ignore("TipMass(1)", mass, "kg", _NO_TIP_MASS))
+        return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), ignored=ignored, **kept)
     reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
     ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *rotor.ignored)
     return replace(rotor, sources=(text.path, *rotor.sources), ignored=ignored)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
@@ -201,6 +201,39 @@ def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np
             raise NoEquilibrium(f"the branch turns back at {math.sqrt(max(turning.p, 0.0)):.6g} rad/s")
         before = after
     return np.array(found)
+
+
+def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
+    """Squared speed [rad2/s2] at which the equilibrium that follows from rest loses its stability.
+
+    Returns
+    -------
+    squared : float
+        Where there is none, the largest to which the equilibrium was followed.
+    is_lost : bool
+        Whether the stiffness is singular there: the branch turns back, or the beam buckles out of the shape
+        into which the rotation bends it.
+    """
+    from scipy.optimize import brentq  # here, because it takes as long to import as all the rest
+
+    before = start_curve(load, np.zeros(load.elastica.size), 0.0, 1.0)
+    with suppress(NotConverged):
+        for after in follow(load, before):
+            if after.p_rate < 0:
+                return find_turning_point(load, before, after).p, True
+            if count_negative(load, after.q, after.p):
+                least = partial(_least_stiffness, load, before, after)
+                return float(brentq(least, before.p, after.p, xtol=1e-14 * after.p)), True
+            before = after
+            if after.p > _FASTEST**2 * load.scale:
+                break
+    return before.p, False
+
+
+def _least_stiffness(load: SteadyLoad, before: Point, after: Point, squared: float) -> float:
+    """Lowest eigenvalue of the stiffness at a squared speed between two points of a branch."""
+    q = find_at(load, before, after, squared)
+    return float(np.linalg.eigvalsh(load.jacobian(q, squared))[0])
 
 
 def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
