@@ -60,7 +60,7 @@ class Effect:
         has = {
             TWIST: scene.beam.is_twisted,
             OFFSETS: scene.beam.has_offsets,
-            _IN_LINE: not scene.beam.has_offsets,
+            _IN_LINE: not (scene.beam.has_offsets or scene.beam.matrices is not None),
         }
         return not self.is_in(scene) and has.get(self, True)
 

@@ -220,12 +220,18 @@ class PhysicsChoice:
         """Whether what is left out, and what no model here has, is within the tolerance, as far as known."""
         return self.model_error + self.beyond_models <= self.tolerance
 
+    @property
+    def _plain(self) -> str:
+        """The beam without the effects included; a curved one bends and twists in space from the start."""
+        is_curved = self.physics.large_deflection and "large deflection" not in self.included
+        return "the curved beam in space" if is_curved else "the plain beam"
+
     def sentence(self) -> str:
         """One line: what was included, its size and cost, and what was not."""
         included = [_say_included(effect) for effect in self.effects if effect.included]
         several = len(included) > 1 and not math.isnan(self.time)
-        cost = f"; in all {self.time:.2g} times the time of the plain beam" if several else ""
-        return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or "the plain beam"}{cost}'
+        cost = f"; in all {self.time:.2g} times the time of {self._plain}" if several else ""
+        return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
 
     def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is."""

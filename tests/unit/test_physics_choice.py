@@ -337,6 +337,14 @@ def test_what_does_not_choose_takes_the_plain_beam_and_says_so() -> None:
     assert "that of the plain beam" in bounds.warnings[0]
 
 
+def test_a_curved_beam_is_no_plain_one() -> None:
+    strip = bd.Beam.rectangular(1.0, 0.02, 0.01, 200e9, 7850.0, sweep=np.polynomial.Polynomial([0.0, 0.3]))
+    scene = bd.Scene(strip, bd.Mount(0.2, np.pi), physics="auto")
+    modes = bd.natural_modes(scene, 5.0, 1, tolerance=0.1)
+    assert modes.physics_choice is not None
+    assert "curved beam in space" in modes.physics_choice.sentence()
+
+
 def test_limits_and_loads_choose_for_the_straight_beam() -> None:
     scene = bd.Scene(STOCKY, INWARD, physics="auto")
     for found in (bd.setting_angle_limits(scene, 100.0), bd.static_loads(scene, 100.0, at=[0.0])):

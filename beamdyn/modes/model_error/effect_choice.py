@@ -250,7 +250,8 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
 def warn_of_plain(scene: Scene) -> Iterator[Statement]:
     """Yield a warning if the physics was to be chosen by an analysis that knows the plain beam alone."""
     if scene.chooses_physics:
-        said = "physics = auto: nothing is added here, the answer is that of the plain beam"
+        plain = "curved beam in space" if plain_physics(scene).physics.large_deflection else "plain beam"
+        said = f"physics = auto: nothing is added here, the answer is that of the {plain}"
         yield Statement(said, kind=INPUT, quantity="physics")
 
 
