@@ -243,13 +243,20 @@ def _check_matrices(beam: Beam, physics: Physics) -> None:
         raise InvalidValue(f"physics.{name}", getattr(physics, name), bound, Words("give ", wanted))
 
 
+_SPRINGS = "root_stiffness", "second_root_stiffness"
+
+
 def _check_large_deflection(scene: Scene) -> None:
     """Refuse large deflection without an equilibrium at rest, and what is defined for small ones alone."""
     if not scene.physics.large_deflection:
         return
-    if scene.mount.root_stiffness == 0:
-        bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
-        raise InvalidValue("mount.root_stiffness", 0.0, bound, "give a soft one", "N m/rad")
+    for name, spring in zip(_SPRINGS[: scene.physics.planes], scene.mount.root_stiffnesses, strict=False):
+        if spring == 0:
+            bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
+            raise InvalidValue(f"mount.{name}", spring, bound, "give a soft one", "N m/rad")
+        if spring < math.inf and scene.beam.matrices is not None:
+            bound = "the root of a beam with matrices of its sections is clamped"
+            raise InvalidValue(f"mount.{name}", spring, bound, "leave it out", "N m/rad")
     if scene.beam.point_springs:
         bound = "with physics.large_deflection there are none: they would keep their direction"
         remedy = "leave large_deflection out where the deflection is small"
@@ -258,12 +265,6 @@ def _check_large_deflection(scene: Scene) -> None:
         bound = "with physics.large_deflection there is none: the tip also moves along the beam"
         remedy = "give damping.ratios, or leave large_deflection out"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
-    if scene.bends_in_space:
-        for name, spring in zip(("", "second_"), scene.mount.root_stiffnesses, strict=True):
-            if spring < math.inf:
-                bound = "with large deflection in space the root is clamped"
-                remedy = "leave it out, or model large deflection in one plane alone"
-                raise InvalidValue(f"mount.{name}root_stiffness", spring, bound, remedy, "N m/rad")
 
 
 # Springs at the root ------------------------------------------------------------------------------
@@ -274,7 +275,7 @@ _STIFFEST = 1e16  # spring over EI/L of the beam: its turn is then below the rou
 def _check_springs(mount: Mount, beam: Beam) -> None:
     """Refuse springs beside which the stiffness of the beam is lost to rounding, where they are modelled."""
     bending = [EI for EI in (beam.bending_stiffness, beam.second_bending_stiffness) if EI is not None]
-    for name, spring in zip(("root_stiffness", "second_root_stiffness"), mount.root_stiffnesses, strict=True):
+    for name, spring in zip(_SPRINGS, mount.root_stiffnesses, strict=True):
         modelled = name == "root_stiffness" or beam.second_bending_stiffness is not None
         if modelled and spring < math.inf and spring > 0:
             stiffest = _STIFFEST * max(map(mean, bending)) / beam.length

@@ -34,6 +34,7 @@ def uniform(
     fibres: float = 0.0,
     pretwist: float = 0.0,
     kinks: np.ndarray | None = None,
+    hinges: np.ndarray | None = None,
 ) -> BeamInSpace:
     """A beam of one section: its law (6, 6), and per length mass, centre of mass and inertia (3, 3)."""
     points = functions + 16
@@ -60,6 +61,7 @@ def uniform(
         np.full_like(xi, fibres),
         np.full_like(xi, pretwist),
         straight if kinks is None else kinks,
+        hinges,
     )
 
 

@@ -81,7 +81,7 @@ def deep_blade(bending: float, radius: float) -> bd.Scene:
 
 
 def test_lateral_buckling_of_a_blade_that_its_carrier_pushes() -> None:
-    """Under an even load, w L^3 = 12.854 sqrt(EI GJ): Timoshenko and Gere, Theory of Elastic Stability, 6.4."""
+    """Under an even load, w L^3 = 12.854 sqrt(EI GJ): Timoshenko and Gere, Theory of Elastic Stability."""
     exact = 6 * float(brentq(lambda x: jv(-1 / 6, x), 2.0, 2.3, xtol=1e-14))
     assert exact == pytest.approx(12.85, abs=0.005)
     radius = 1e8  # what the pull along the beam changes is of the order of L over it

@@ -35,15 +35,22 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.equations.beam_in_space.finite_rotations import cross, integrate_curvature, turn, turn_back
+from beamdyn.equations.beam_in_space.finite_rotations import (
+    cross,
+    integrate_curvature,
+    quaternion_about,
+    turn,
+    turn_back,
+)
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
+from beamdyn.equations.beam_in_space.turned_root import TurnedRoot
 
 STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
 
 
 @dataclass(frozen=True)
 class BeamInSpace(FieldsOnly):
-    """A beam, clamped or on a hinge, that bends, twists, shears and stretches by any amount.
+    """A beam, clamped or on hinges, that bends, twists, shears and stretches by any amount.
 
     The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
 
@@ -66,8 +73,8 @@ class BeamInSpace(FieldsOnly):
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each cell of the rule begins: those of a beam whose axis
         has kinks, or does not begin along e1.
-    hinge : ndarray, shape (n,), optional
-        Turn of the root about e3 per coordinate [rad]; None where the root is clamped.
+    hinges : ndarray, shape (n, 3), optional
+        Vector of the turn of the root per coordinate [rad]; None where the root is clamped.
     slopes : ndarray, shape (n, N + 1), optional
         Integrals of the curvature, with the turn of the root, as exact as they are known.
     """
@@ -81,7 +88,7 @@ class BeamInSpace(FieldsOnly):
     fibres: np.ndarray
     pretwist: np.ndarray
     kinks: np.ndarray
-    hinge: np.ndarray | None = None
+    hinges: np.ndarray | None = None
     slopes: np.ndarray | None = None
 
     @property
@@ -105,16 +112,9 @@ class BeamInSpace(FieldsOnly):
         if self.is_planar and self.slopes is not None:
             return self.slopes
         used, turned = self.functions.any(axis=(0, 2)), self.stations.to_sections(self.functions)
-        if self.hinge is not None:
-            turned[:, -1] += self.hinge[:, None]
+        if self.hinges is not None:
+            turned[:, 3:] += self.hinges[..., None]
         return turned[:, used].reshape(self.size, -1)
-
-    def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Turning rates (..., 3, N + 1) by rates (..., n) and curvatures' rates (..., 3, N) in space."""
-        turning = self.stations.to_sections(bending)
-        if self.hinge is not None:
-            turning[..., 2, :] += (rates @ self.hinge)[..., None]
-        return turning
 
     @cached_property
     def shears(self) -> bool:
@@ -133,7 +133,7 @@ class BeamInSpace(FieldsOnly):
             functions=np.tensordot(basis.T, self.functions, 1),
             stiffness=basis.T @ self.stiffness @ basis,
             damping=basis.T @ self.damping @ basis,
-            hinge=None if self.hinge is None else self.hinge @ basis,
+            hinges=None if self.hinges is None else basis.T @ self.hinges,
             slopes=None if self.slopes is None else basis.T @ self.slopes,
         )
 
@@ -199,8 +199,8 @@ class BentBeam(FieldsOnly):
         """Axes of the sections, in columns (..., 3, 3, N + 1)."""
         beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
-        turn_of_root = 0.0 if beam.hinge is None else self.q @ beam.hinge
-        return integrate_curvature(stations.quadrature.cells, curvature, beam.kinks, turn_of_root)
+        root = quaternion_about(0, 0.0) if self._root is None else self._root.quaternion
+        return integrate_curvature(stations.quadrature.cells, curvature, beam.kinks, root)
 
     @cached_property
     def _within(self) -> np.ndarray:
@@ -243,6 +243,24 @@ class BentBeam(FieldsOnly):
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
+    # Turns of the root --------------------------------------------------------------------------------
+
+    @cached_property
+    def _root(self) -> TurnedRoot | None:
+        """The root, where springs let it turn."""
+        return None if self.beam.hinges is None else TurnedRoot(self.beam.hinges, self.q)
+
+    def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
+        """Turning rates (..., 3, N + 1) by rates (..., n) and curvatures' rates (..., 3, N) in space."""
+        turning = self.beam.stations.to_sections(bending)
+        if self._root is not None:
+            turning += self._root.turning(rates)[..., None]
+        return turning
+
+    def turning_of_root(self, rates: np.ndarray) -> np.ndarray | float:
+        """Turning of the root (..., 3, 1) that accelerates at constant rates (..., n)."""
+        return 0.0 if self._root is None else self._root.acceleration(rates)[..., None]
+
     # Motions by the coordinates -----------------------------------------------------------------------
 
     @cached_property
@@ -260,7 +278,7 @@ class BentBeam(FieldsOnly):
     @cached_property
     def _turned(self) -> np.ndarray:
         """Rotations W (n, 3, N + 1) by the coordinates."""
-        return self.beam.turning_rate(np.eye(self.beam.size), self._turning)
+        return self.turning_rate(np.eye(self.beam.size), self._turning)
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
@@ -308,13 +326,13 @@ class BentBeam(FieldsOnly):
             stress[..., 3, :] += self._shortening * stress[..., 0, :]
         flat = stress.reshape(*m.shape[:-2], -1)
         work = flat @ functions[:, functions.shape[1] - flat.shape[-1] :].T
-        return work if beam.hinge is None else work + at_root[..., 2:] * beam.hinge
+        return work if self._root is None else work + self._root.work(at_root)
 
     def work_change(self, forces: StationForces) -> np.ndarray:
         """Derivative (n, n) of the virtual work of forces by the coordinates."""
         return self.under(forces).work_change
 
-    def change_by(self, n: np.ndarray, m: np.ndarray) -> np.ndarray:
+    def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
         """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
         beam, W = self.beam, self._turned[..., :-1]
         change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
@@ -323,6 +341,8 @@ class BentBeam(FieldsOnly):
         if beam.shortens:
             twist, along = beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
             change -= _product(twist * (beam.fibres * along), twist)
+        if self._root is not None:
+            change += self._root.work_change(at_root)
         return change
 
     def of_stations(self, matrices: np.ndarray) -> np.ndarray:
@@ -368,7 +388,7 @@ class BentInPlane(BentBeam):
         """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
         return np.pad(self._moved_rates, ((0, 0), (0, 1), (0, 0)))
 
-    def change_by(self, n: np.ndarray, m: np.ndarray) -> np.ndarray:
+    def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
         """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
         rates = self._moved_rates
         return self.beam.angles[:, :-1] @ (rates[:, 0] * n[1] - rates[:, 1] * n[0]).T
@@ -410,7 +430,7 @@ class ForcedBeam(FieldsOnly):
     @cached_property
     def work_change(self) -> np.ndarray:
         """Derivative (n, n) of the virtual work by the coordinates."""
-        return self.bent.change_by(*self.resultants[:2]) + self.bent.of_stations(self.forces.tangent)
+        return self.bent.change_by(*self.resultants) + self.bent.of_stations(self.forces.tangent)
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

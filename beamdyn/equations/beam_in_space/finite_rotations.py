@@ -69,7 +69,7 @@ def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
 
 
 def integrate_curvature(
-    cells: Cells, curvature: np.ndarray, kinks: np.ndarray, turn_of_root: np.ndarray | float = 0.0
+    cells: Cells, curvature: np.ndarray, kinks: np.ndarray, root: np.ndarray = _UNIT
 ) -> np.ndarray:
     """Rotations from the root to the Gauss points of cells and to the tip.
 
@@ -85,8 +85,8 @@ def integrate_curvature(
         Twist rate and curvatures in the turned axes, per x/L, at the points.
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each of the c cells begins.
-    turn_of_root : ndarray, shape (...), optional
-        Angle by which the root has turned about its third axis before [rad].
+    root : ndarray, shape (..., 4), optional
+        Unit quaternions by which the root has turned.
 
     Returns
     -------
@@ -101,13 +101,13 @@ def integrate_curvature(
     halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]  # half the turn
     rates = np.moveaxis(curvature.reshape(-1, 3, len(halves), cells.points) * halves[:, None], 1, -1)
     within, across = _collocate(rates, integrals_between_points(cells.points), gauss_rule(cells.points)[1])
-    root = np.broadcast_to(quaternion_about(2, turn_of_root), (*shape, 4)).reshape(-1, 4)
+    root = np.broadcast_to(root, (*shape, 4)).reshape(-1, 4)
     starts, turned = [root], product(kinks[:, None], within)
     for step in np.moveaxis(product(kinks, across), 1, 0):
         starts.append(product(starts[-1], step))
     turned = product(np.stack(starts[:-1], axis=1)[:, :, None], turned)
     every = np.concatenate([turned.reshape(len(rates), -1, 4), starts[-1][:, None]], axis=1)
-    return _matrices(every).reshape(*shape, 3, 3, -1)
+    return rotation_matrices(every).reshape(*shape, 3, 3, -1)
 
 
 def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -141,13 +141,19 @@ def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
     return turned
 
 
+def quaternions_by_vectors(vectors: np.ndarray) -> np.ndarray:
+    """Unit quaternions (..., 4) of turns by vectors (..., 3) [rad]."""
+    half = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True)) / 2
+    return np.concatenate([np.cos(half), vectors / 2 * np.sinc(half / np.pi)], axis=-1)
+
+
 def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Products of quaternions (..., 4), which are broadcast."""
     from_left = (y @ _PRODUCT.reshape(4, 16)).reshape(*y.shape, 4)
     return np.einsum("...bc,...b->...c", from_left, z)
 
 
-def _matrices(y: np.ndarray) -> np.ndarray:
+def rotation_matrices(y: np.ndarray) -> np.ndarray:
     """Rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are scaled to the length 1."""
     squares = (y[..., None] * y[..., None, :]).reshape(-1, 16)
     matrices = squares @ _TURNING / squares[:, ::5].sum(axis=1, keepdims=True)

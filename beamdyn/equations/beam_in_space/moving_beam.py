@@ -77,7 +77,7 @@ class MovingBeam(FieldsOnly):
     @cached_property
     def _turning(self) -> np.ndarray:
         """Turning rates (..., 3, N + 1) of the sections against the carrier."""
-        return self.bent.beam.turning_rate(self.rates, self._strain_rates[1])
+        return self.bent.turning_rate(self.rates, self._strain_rates[1])
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
@@ -94,7 +94,8 @@ class MovingBeam(FieldsOnly):
         bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
         straining, bending = bent.strain_rates(accelerations)
         w, strained = self._turning[..., :-1], self._strain_rates
-        turning_rate = bent.beam.turning_rate(accelerations, bending + cross(w, strained[1]))
+        turning_rate = bent.turning_rate(accelerations, bending + cross(w, strained[1]))
+        turning_rate = turning_rate + bent.turning_of_root(self.rates)
         tangent_rate = cross(turning_rate[..., :-1], bent.tangents) + straining
         tangent_rate += cross(w, self._tangent_rate + strained[0]) + bent.shortening_rate(self.rates)
         turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))

@@ -44,6 +44,7 @@ from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
 _KEPT = 4  # states of the beam that are kept
+_HINGES = "curvature", "second curvature"  # of the fields that turn the root
 _DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 
@@ -85,11 +86,15 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     stations, length = BeamStations(quadrature, beam.length, beam.lumps[0]), beam.length
     functions = np.zeros((linear.size, 6, len(quadrature.xi)))
     known, slopes = _strains_of_fields(scene), np.zeros((linear.size, stations.sections + 1))
+    hinges = np.zeros((linear.size, 3))
     for name, place in linear.blocks.items():
         strain = known[name]
         of_field = spaces.functions(strain.conditions)
         along = of_field.evaluate(quadrature.xi, strain.order)
         functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
+        if strain.name in _HINGES:
+            turn_of_root = of_field.evaluate(np.zeros(1), 1)[:, 0] / length
+            hinges[place, STRAINS.index(strain.name) - 3] = strain.sign * turn_of_root
         if strain.name == "curvature":
             slopes[place] = of_field.evaluate(np.concatenate([[0.0], quadrature.xi, [1.0]]), 1) / length
     if beam.matrices is None:
@@ -105,7 +110,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         linear.matrices[1].get("unity", nothing),
         *_fibres(beam, quadrature.xi),
         kinks,
-        slopes[:, 0] if np.isfinite(scene.mount.root_stiffness) else None,
+        None if np.isinf(scene.mount.root_stiffnesses).all() else hinges,
         slopes[:, 1:],
     )
     rotating = RotatingBeam(model, linear, axis_of_rotation(scene))
@@ -296,8 +301,8 @@ class RotatingBeam(FieldsOnly):
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
         matrix = (own.functions * np.sqrt(rule.weights)).reshape(self.size, -1)
-        if own.hinge is not None and other.beam.hinge is not None:
-            matrix, strains = np.c_[matrix, own.hinge], np.r_[strains.ravel(), q @ other.beam.hinge]
+        if own.hinges is not None and other.beam.hinges is not None:
+            matrix, strains = np.c_[matrix, own.hinges], np.r_[strains.ravel(), q @ other.beam.hinges]
         return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
