@@ -117,8 +117,8 @@ def attempt_elastica(
 
 
 def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
-    """Deflections of the tip at the ends of the steps [m]."""
-    return system.deflections(segment.state[:, 1 : system.size + 1])[:, 0]
+    """Deflections of the tip (k, planes) at the ends of the steps [m]: it may move across alone."""
+    return system.deflections(segment.state[:, 1 : system.size + 1])
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
@@ -127,7 +127,7 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
     change = np.zeros(n)
     for first, second in zip(coarse, fine, strict=True):
         difference = np.abs(first.state - second.state)[:, 1 : n + 1].max(axis=0)
-        change = np.maximum(change, difference * np.abs(system.equations.tip))
+        change = np.maximum(change, difference * np.abs(system.equations.tips).max(axis=0))
         tip = max(tip, float(np.abs(_tips(system, first) - _tips(system, second)).max()))
     modes = tip * change / max(change.sum(), 1e-300)
     longest = max(fine, key=lambda segment: segment.h)  # whose phase errors are those of a straight beam
