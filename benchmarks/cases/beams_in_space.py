@@ -10,11 +10,11 @@ from scipy.optimize import brentq
 
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, elastic_stiffness
 from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
-from beamdyn.equations.beam_in_space.loaded_beam import LoadedBeam, TipLoad
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
 from beamdyn.equations.discretization import FIXED, ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces
 from beamdyn.modes.modal.continuation import solve_at
+from benchmarks.cases.loaded_beam import LoadedBeam, TipLoad
 
 BENDING = ("twist rate", "second curvature", "curvature")
 E1, E2, E3 = np.eye(3)

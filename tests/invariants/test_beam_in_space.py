@@ -15,7 +15,6 @@ import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.beam_in_space.bent_beam import BeamInSpace, BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import skew
-from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 from beamdyn.equations.beam_in_space.station_forces import StationForces
@@ -27,6 +26,7 @@ from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.elastica_steps import propagate_elastica
 from benchmarks.cases.beams_in_space import bend, uniform
 from benchmarks.cases.elastica import harvester_at, published, scene_of
+from benchmarks.cases.loaded_beam import TipLoad
 from benchmarks.cases.two_planes import models, second_method_cases
 from benchmarks.cases.two_planes import scene_of as two_planes_scene
 
@@ -461,6 +461,17 @@ def test_energy_of_large_motion_at_constant_speed() -> None:
     energy = system.energy(np.linspace(0.0, 0.4, 9), q, v)
     assert np.abs(system.deflections(q)).max() > 0.3
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+
+
+def test_steps_follow_a_tip_that_moves_across_alone() -> None:
+    """A blade that is swept in the plane of rotation, whose direction of bending is out of it."""
+    swept = replace(SWEPT, twist=None, prebend=None)
+    motion, physics = bd.SpinUp(2.0, 2.0), bd.Physics(2, rotary_inertia=True, large_deflection=True)
+    scene = bd.Scene(swept, bd.Mount(0.1, np.pi, np.pi / 2), motion, physics=physics)
+    run = bd.simulate(scene, 0.4, modes=2, tolerance=1e-4, discretization=bd.Ritz(6))
+    largest = np.abs(run.tip_across).max()
+    assert np.abs(run.tip).max() < 1e-12 * largest and run.time_error < 1e-4 * largest
+    assert int(run.provenance.method.split(" steps")[0].split()[-1]) < 20
 
 
 def test_motion_in_a_plane_is_that_of_the_elastica() -> None:

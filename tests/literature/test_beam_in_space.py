@@ -9,7 +9,6 @@ from scipy.special import jv
 
 import beamdyn as bd
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS
-from beamdyn.equations.beam_in_space.loaded_beam import TipLoad
 from benchmarks.cases.beams_in_space import (
     BENDING,
     E1,
@@ -21,6 +20,7 @@ from benchmarks.cases.beams_in_space import (
     lateral_buckling_load,
     uniform,
 )
+from benchmarks.cases.loaded_beam import TipLoad
 
 CLOSED = 1e-9
 WEAK = 1e-6  # stiffness of a deep section across, and in torsion [N m2]

@@ -5,7 +5,7 @@ curvature f, its rotation R, and the rotation W that a change of f adds, follow 
 
     R' = R skew(f),   W' = R df,
 
-so that the root has no preferred order of its axes, and does not twist.
+so that the root turns to its direction by the shortest rotation, whichever axis is named first.
 """
 
 from __future__ import annotations
