@@ -78,7 +78,8 @@ class CriticalPoint(StatesModelError):
     none_below : float
         No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
         where not, inf if there is none.  With an error of 0, only the inertia of tilting sections can
-        buckle the beam past this bound, where linear theory has long ended.
+        buckle the beam past this bound, where linear theory has long ended; a beam that rotation bends in
+        space was followed up to this speed.
     reason : str
         Why there is a critical speed, or none, or why that is not known.
     warnings : tuple of str
@@ -263,7 +264,7 @@ def _of_bent_beam(
     names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed if is_lost else np.inf,
-        error=found.error,
+        error=found.error if is_lost else 0.0,
         none_below=found.speed,
         reason=_LOST if is_lost else _KEPT,
         warnings=tuple(warn_of_left_out(scene)),
