@@ -7,8 +7,12 @@ from typing import Any
 
 from beamdyn.common.edge.config import parse
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.screens.screens import Document, FoldedPart, Screen, Sweeps
+from beamdyn.common.edge.rendering import drawing, html, picture
+from beamdyn.common.edge.views import tables_of
+from beamdyn.common.results.pictures import figure_of
+from beamdyn.common.screens.screens import Backwards, Document, FoldedPart, Screen, Sweeps
 from brakes.answers.base import BrakeType
+from brakes.answers.finding import find_in_file
 from brakes.app.bases import base
 
 HEADINGS = {
@@ -76,6 +80,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
         lambda answer: answer.rows(),
         slider=brake.slider,
         sweeps=make_sweeps(brake),
+        backwards=_make_backwards(brake),
         more=(*(FoldedPart.of_drawings(*each) for each in brake.more.items()), *more),
         handles=lambda answer, place: answer.handles(place),
         drawings=lambda answer, place: answer.drawings(place),
@@ -98,3 +103,18 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
         return brake.sweep(tables, brake.name, [text], results, ("sweep", "results"))[0]
 
     return Sweeps(names, brake.example_sweep, brake.sweep_results, run)
+
+
+def _make_backwards(brake: BrakeType[Any]) -> Backwards:
+    """Make the questions backwards of a type of brake: any of its inputs for any of its outputs."""
+
+    def units(tables: Mapping[str, Any]) -> dict[str, str]:
+        return {output.name: output.unit for output in brake.outputs(brake.read(tables, brake.name))}
+
+    def find(tables: Mapping[str, Any], sought: str, so_that: str) -> str:
+        found = find_in_file(brake, tables, brake.name, sought, so_that)
+        drawn = picture(drawing(lambda: figure_of(found.plot)), found.message)
+        return html([*found.warnings, tables_of(found)]) + drawn
+
+    results = [*(name for _, name in brake.key_results), *brake.sweep_results.split(",")]
+    return Backwards(units, brake.example_sweep.partition("=")[0], results[0], find)

@@ -51,6 +51,18 @@ def sweep(
         return reason_of(error)
 
 
+def find(document: Document, screen: Screen, entries: form_entries.Entries, sought: str, so_that: str) -> str:
+    """The answer to a question backwards on these entries in HTML, or what is wrong with the question."""
+    work = _opened(document, entries)
+    assert screen.backwards is not None
+    try:
+        return screen.backwards.find(
+            form_entries.tables_of(work.needed(screen), work.inputs), sought, so_that
+        )
+    except (ValueError, ArithmeticError, NoAnswer) as error:
+        return f'<p class="mistake">{escape(reason_of(error))}</p>'
+
+
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
     """One of the parts of an answer that fold out, in HTML."""
     return screen.more[number].on_page(answer)

@@ -21,6 +21,7 @@ from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.computations import LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
+from beamdyn.common.screens.find_panel import FindPanel
 from beamdyn.common.screens.form import Form
 from beamdyn.common.screens.form_entries import Entries, options_of
 from beamdyn.common.screens.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
@@ -126,8 +127,10 @@ class ScreenView:
                     for i, part in enumerate(screen.more)
                 ]
         with ui.column().classes("after w-full gap-2"):
-            sweeps = screen.sweeps
-            self.sweep = None if sweeps is None else SweepPanel(self.work, screen, sweeps, self._solver)
+            sweeps, backwards, known = screen.sweeps, screen.backwards, (self.work, screen)
+            self.sweep = None if sweeps is None else SweepPanel(*known, sweeps, self._solver)
+            find = None if backwards is None else FindPanel(*known, backwards, self._solver)
+            self._asking = [panel for panel in (self.sweep, find) if panel is not None]
 
     # The form -----------------------------------------------------------------------------------------
 
@@ -242,8 +245,8 @@ class ScreenView:
         for more in self._made:
             more.close()
         self._way.cancel()
-        if self.sweep is not None:
-            self.sweep.close()
+        for panel in self._asking:
+            panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         """Show an answer; or say why there is none to the newest entries, and leave the last one, greyed."""
@@ -291,8 +294,8 @@ class ScreenView:
         state = "Computing. " if busy else "Refused. " if failed else ""
         now = f"{state}{words}" if stale else state.strip() or "Up to date."
         self._status.set_text("The drawing follows; the tables wait." if follows else now)
-        if self.sweep is not None:
-            self.sweep.state()
+        for panel in self._asking:
+            panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
         """Show the mistakes outside this form, and the warnings of the answer."""

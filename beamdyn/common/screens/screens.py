@@ -54,6 +54,26 @@ class Sweeps:
 
 
 @dataclass(frozen=True)
+class Backwards:
+    """The questions backwards that a screen offers: where an input has to be for a result to be as wanted.
+
+    Parameters
+    ----------
+    units : callable
+        ``units(tables)``: units of the results, by their names; it may raise `ConfigError`.
+    input, result : str
+        Path of the input and name of the result that are chosen at first.
+    find : callable
+        ``find(tables, sought, so_that)``: what is found, in HTML, for the texts of the command's options.
+    """
+
+    units: Callable[[Mapping[str, Any]], Mapping[str, str]]
+    input: str
+    result: str
+    find: Callable[[Mapping[str, Any], str, str], str]
+
+
+@dataclass(frozen=True)
 class FoldedPart:
     """A further drawing or table of a screen, which folds out below its numbers, and is made only then.
 
@@ -114,6 +134,8 @@ class Screen:
         The slider above the drawing.
     sweeps : Sweeps, optional
         Its sweeps.
+    backwards : Backwards, optional
+        Its questions backwards.
     drags : tuple of Drag
         Sliders in its form.
     presets : tuple of Preset
@@ -159,6 +181,7 @@ class Screen:
     rows: Callable[[Any], Iterable[Sequence[object]]]
     slider: Slider | None = None
     sweeps: Sweeps | None = None
+    backwards: Backwards | None = None
     drags: tuple[Drag, ...] = ()
     presets: tuple[Preset, ...] = ()
     more: tuple[FoldedPart, ...] = ()

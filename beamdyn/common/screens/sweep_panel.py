@@ -132,11 +132,7 @@ class SweepPanel:
         toggle(self._good, "greyed", stale)
 
     def _inputs(self) -> dict[str, Input]:
-        """The inputs that have a value, given or by default."""
-        entries, needs = self.work.entries, self.screen.needs
-        known = [i for i in self.work.inputs if table_of(i.path) in needs]
-        there = [i for i in known if entries.get(i.path) or i.default is not None]
-        return {entry.path: entry for entry in numbers(there)}
+        return inputs_with_value(self.work, self.screen)
 
     def _suggest(self) -> None:
         """Suggest values around the present one of the input that has been chosen."""
@@ -224,6 +220,13 @@ class SweepPanel:
         elif swept:
             made = self._solver.submit(page_tasks.sweep_file, self.work.document, self.screen, swept, kind)
             await download(made, f"sweep.{kind}")
+
+
+def inputs_with_value(work: OpenDocument, screen: Screen) -> dict[str, Input]:
+    """The inputs of a screen that are numbers and have a value, given or by default; by path."""
+    known = [i for i in work.inputs if table_of(i.path) in screen.needs]
+    there = [i for i in known if work.entries.get(i.path) or i.default is not None]
+    return {entry.path: entry for entry in numbers(there)}
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
