@@ -57,7 +57,7 @@ class FindPanel:
                     ui.spinner(size="sm").props('role="status" aria-label="searching"')
                     ui.button("Cancel", on_click=self.close).props("outline no-caps")
             self._late: Any = ui.label("An input has changed since: this answer is stale.").classes("status")
-            self._found: Any = ui.html("", sanitize=False).classes("w-full").props('role="alert"')
+            self._found: Any = ui.html("", sanitize=False).classes("w-full shown").props('role="alert"')
         self._tell()
 
     def _select(self, label: str, chosen: str) -> Any:
