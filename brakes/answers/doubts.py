@@ -14,6 +14,7 @@ from beamdyn.common.inputs.designs import part_at, with_parts
 from brakes.answers.tables import format_number
 
 Answer = TypeVar("Answer")
+_SAME = 1e-9  # relative difference of two results that is none
 PART = 0.1  # by which friction varies, as makers of linings give it
 
 
@@ -68,4 +69,6 @@ def hangs_on_friction(
     others = with_less_and_more(design, path, result)
     what, _, name = of.partition(": ")
     now, ends = change(value, 0.0, unit, none), ", ".join(change(each, value, unit, none) for each in others)
+    if others and all(abs(each - value) <= _SAME * abs(value) for each in others):
+        ends = "no change, as something else limits it"
     return f"{name} {now}; friction of {what} -+{100 * PART:.0f} %: {ends}."

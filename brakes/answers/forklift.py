@@ -78,6 +78,10 @@ _FORCES = (
 )
 
 
+_OF_TYRES = "stop.friction", "tyres on the road: Stopping distance"
+_OF_LININGS = "forces.lining_friction", "the linings, which limit it: Stopping distance"
+
+
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
     """Numbers of the answers to stages, and those of `pedal_outputs` with a stop or forces."""
     groups = {
@@ -206,22 +210,28 @@ class ForkliftAnswer(Answer):
     def _doubtful(self) -> list[ForkliftAnswer]:
         """Answers with less and more friction of the tyres, and of the linings."""
         paths = ("stop.friction", "forces.lining_friction")
-        made = (with_less_and_more(self.design, path, self._again) for path in paths)
+        made = (with_less_and_more(self._one_stop, path, self._again) for path in paths)
         return [each for pair in made for each in pair]
+
+    @property
+    def _one_stop(self) -> ForkliftInput:
+        """The design without the stops that follow each other, which take long."""
+        return self.design.model_copy(update={"heat": None})
 
     def _again(self, design: ForkliftInput) -> ForkliftAnswer:
         return solve_stages(design, self.stages)
 
     def _doubt(self) -> str:
-        """The stopping distance with less and more friction on the road."""
+        """The stopping distance with less and more friction of what limits it: tyres or linings."""
 
         def distance(design: ForkliftInput) -> float:
             found = solve_stages(design, ("vehicle",)).stop
             assert found is not None
             return float(found.distance) if np.all(found.stops) else np.nan
 
-        of = "tyres on the road: Stopping distance"
-        return hangs_on_friction(self.design, "stop.friction", of, distance, "m", "does not stop")
+        assert self.stop is not None
+        path, of = _OF_LININGS if self.stop.limited_by == "brake" else _OF_TYRES
+        return hangs_on_friction(self._one_stop, path, of, distance, "m", "does not stop")
 
     def rows(self) -> Iterable[Sequence[object]]:
         """Names, values and units of all numbers."""

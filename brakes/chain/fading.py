@@ -3,8 +3,9 @@
 Each front brake stops half the mass from the speed V, J = M r^2 / 2 and w = V / r about a wheel of radius r,
 while the slope drives on with L = M g sin(beta) r / 2. Its torque is the smaller of what it gives at the
 pedal's force and of what locks its wheel: the driver eases off before the wheels slide, so that all heat is
-the drums'. The force is there at once. Uphill the help of the slope is left out, as if the road were level:
-it gets no hotter.
+the drums'. While its force rises a wheel turns by more than at full force: by the angle that makes the heat of
+a stop with unfaded linings the energy of that stop. Uphill the help of the slope is left out, as if the road
+were level: it gets no hotter.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import kind
 from brakes.chain.braked import BrakedStop
-from brakes.chain.heat import BRAKES, Drums
+from brakes.chain.heat import BRAKES, Drums, heat_of_stop
 from brakes.common.heat import Duty, Fade, repeat_stops
+from brakes.vehicle import Stop
 
 _LEAST = 1e-12  # friction in place of none, at which no brake gives a torque
 
@@ -85,6 +87,7 @@ def fade_of_stops(
         heated_mass=drums.drum_mass,
         specific_heat=drums.specific_heat,
         load_torque=share * c.gravity * np.maximum(np.sin(c.slope), 0.0) * radius,
+        free_angle=_free_way(stop) / radius,
         **repeated,
     )
 
@@ -93,3 +96,9 @@ def fade_of_stops(
         return np.minimum(force * torque_per_force(np.maximum(mu, _LEAST)), braked.locking_torque)
 
     return repeat_stops(duty, friction, torque)
+
+
+def _free_way(stop: Stop) -> np.ndarray:
+    """Way before the full force, if that came at once, so that the stop is as long and as hot [m]."""
+    way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
+    return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

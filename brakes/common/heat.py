@@ -4,11 +4,13 @@ A stop turns kinetic energy, and the work of a load that drives on, into heat of
 of one temperature T and cooled between the stops only. With the torque M(T) at a constant actuating force,
 each turn dq heats by C dT = M dq: energy alone decides how hot a stop ends, and the angle is a quadrature,
 
-    T1 = T0 + (J w^2 / 2 + L q) / C,    q = C int dT / M(T) from T0 to T1.
+    T1 = T0 + (J w^2 / 2 + L (q + q0)) / C,    q = C int dT / M(T) from T0 to T1,
 
+with the angle q0 that it turns before the torque is there.
 Without a load nothing is iterated. With one, T1 is the fixed point of a function of T1 that increases:
 iterated from T0, it rises and is bounded by the least solution, the one that the stop reaches first. It is
-there if the torque stays above the load on the way: T1 - L q / C increases then, and bisection finds it.
+there if the torque stays above the load on the way: T1 - L q / C increases then, and is bracketed closer
+and closer.
 Where the lining fades to the load before, the brake never stops it. Between stops T - T_a falls by exp(-h t
 / C). Without a load each stop heats by the same J w^2 / (2 C): the temperatures of the stops follow an
 affine map, which contracts by exp(-h t / C) and so has one limit.
@@ -18,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -32,6 +34,7 @@ from beamdyn.common.results.result import Result
 
 _NODES = 20  # of the quadrature between two temperatures of the curve
 _FEWER = 12  # that estimate its error
+_PARTS, _MOST_AT_ONCE = 16, 1000  # parts of a bracket that are tried together, of so many cases; else halves
 _EPS = np.finfo(float).eps
 
 
@@ -57,6 +60,8 @@ class Duty:
         Its specific heat c [J/(kg K)]; by default that of cast iron, about 500.
     load_torque : float or ndarray
         Torque L that drives on, such as that of a slope or of a hanging load [N m].
+    free_angle : float or ndarray
+        Angle q0 that it turns in each stop before the brake's torque is there [rad].
     stops : float or ndarray
         Number of stops, a whole one.
     interval : float or ndarray
@@ -90,6 +95,10 @@ class Duty:
     specific_heat: Annotated[Numbers, Described("J/kg/K", "c", "specific heat of that mass", above=0)] = 500.0
     load_torque: Annotated[
         Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
+    ] = 0.0
+    free_angle: Annotated[
+        Numbers,
+        Described("rad", "q_0", "angle that it turns in each stop before the torque is there", least=0),
     ] = 0.0
     stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
@@ -137,8 +146,9 @@ class Duty:
 
     @property
     def rise_of_a_stop(self) -> Numbers:
-        """Temperature rise by the kinetic energy alone [K]."""
-        return self.inertia * np.square(self.speed) / 2 / self.capacity
+        """Temperature rise by the kinetic energy, and by the load before the torque is there [K]."""
+        energy = self.inertia * np.square(self.speed) / 2 + self.load_torque * self.free_angle
+        return energy / self.capacity
 
     @property
     def kept(self) -> Numbers:
@@ -283,6 +293,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
         return np.take_along_axis(each, count[None] - 1, axis=0)[0]
 
     heat, kept = duty.capacity * (ended - begun), np.asarray(duty.kept)
+    angle, rougher = angle + duty.free_angle, rougher + duty.free_angle
     with np.errstate(divide="ignore"):
         settled = np.where(np.asarray(duty.load_torque) > 0, np.nan, duty.rise_of_a_stop / (1 - kept))
     return Fade(
@@ -320,13 +331,22 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     # Without a curve `most` is where it ends, which rounding may put just past `high`.
     hot = np.isfinite(path.last) & ((low > high) | ~over(high))
     high = np.where(hot | over(low), low, high)
+    parts = _PARTS if start.size <= _MOST_AT_ONCE else 2
     while np.any(high - low > 2 * _EPS * high):
-        middle = (low + high) / 2
-        done = over(middle)
-        low, high = np.where(done, low, middle), np.where(done, middle, high)
+        grid = np.linspace(low, high, parts + 1)
+        grid[-1] = high  # whatever rounding makes of it
+        ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
+        first = ended.argmax(axis=0)[None]
+        low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
     faded = ~hot & (path.least(start, high) <= load)
     status = np.select([~np.isfinite(start), hot, faded], ["stops", "too hot", "never stops"], "stops")
     return np.where(status == "stops", high, np.nan), status
+
+
+@cache
+def _gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights of Gauss and Legendre."""
+    return np.polynomial.legendre.leggauss(nodes)
 
 
 class _Warming:
@@ -376,7 +396,7 @@ class _Warming:
         """Angle of a stop between two temperatures, C int dT / M [rad], knot by knot."""
         if self.knots is None:
             return self.duty.capacity * (end - start) / self.least(start)
-        x, weights = np.polynomial.legendre.leggauss(nodes)
+        x, weights = _gauss(nodes)
         bounds = [np.clip(at, start, end) for at, _ in self.knots]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2

@@ -22,7 +22,7 @@ class CurveQuantity(Quantity):
 
 
 _TABLES = {FrictionCurve: CurveQuantity}
-_OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "most_pv")
+_OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "free_angle", "most_pv")
 REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of a file that has the stop itself
 
 if TYPE_CHECKING:

@@ -266,12 +266,12 @@ def test_a_vehicle_that_does_not_hold_moves_as_its_free_body(braked, downhill):
     assert {"holds", "slips", "rolls"} <= seen
 
 
-def faded(slope=0.1, **repeated):
+def faded(slope=0.1, rise_time=0.0, **repeated):
     """A truck's stops that follow each other, with a brake whose torque is in proportion to friction."""
     truck = vehicle.Truck(
         5950.0, (1.049, 0.359), 3500.0, (-1.2, 0.45), front_wheel_radius=0.4, wheelbase=1.89
     )
-    conditions = vehicle.StopConditions(slope, 20 / 3.6, 0.7, reaction_time=0.0, rise_time=0.0)
+    conditions = vehicle.StopConditions(slope, 20 / 3.6, 0.7, reaction_time=0.0, rise_time=rise_time)
     line = chain.HydraulicLine(0.02222, 0.03175)
     braked = chain.brake_from_pedal(truck, conditions, chain.Pedal(5.0, 600.0), line, 0.728)
     drums = chain.Drums(18.0, 0.05)
@@ -309,7 +309,11 @@ def test_a_fading_stop_is_that_of_its_equation_of_motion():
     assert found.end == pytest.approx(end, rel=1e-9)
 
 
-def test_without_a_curve_repeated_stops_are_the_stop():
-    braked, found = faded(stops=2)
+@pytest.mark.parametrize("rise_time", [0.0, 0.3, 30.0])  # it stops while the force rises in the last one
+@pytest.mark.parametrize("slope", [0.0, 0.1])
+def test_without_a_curve_repeated_stops_are_the_stop(slope, rise_time):
+    braked, found = faded(slope, rise_time, stops=2)
     assert str(braked.stop.limited_by) == "brake"
     assert found.angle * 0.4 == pytest.approx(float(braked.stop.distance), rel=1e-12)
+    energy = float(chain.heat_of_stop(braked.stop).energy)
+    assert 2 * found.heat == pytest.approx(energy, rel=1e-12)  # differences of some hundred kelvins

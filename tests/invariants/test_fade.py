@@ -21,12 +21,13 @@ def drum_of(friction):
     return drum.brake_torque(drum.simplex(shoe), friction=friction, force=5000.0).torque
 
 
+@pytest.mark.parametrize("free", [0.0, 10.0])  # angle before the torque is there
 @pytest.mark.parametrize("torque_at", [torque_of_band, drum_of])
-def test_a_stop_is_that_of_its_differential_equation(torque_at):
+def test_a_stop_is_that_of_its_differential_equation(torque_at, free):
     """Motion and heat, integrated in time, know nothing of the quadrature over the temperature."""
     load = 300.0
-    duty = drum.Duty(60.0, 90.0, 8.0, load_torque=load, stops=2, interval=30.0, cooling=20.0,
-                     friction_curve=CURVE)  # fmt: skip
+    duty = drum.Duty(60.0, 90.0, 8.0, load_torque=load, free_angle=free, stops=2, interval=30.0,
+                     cooling=20.0, friction_curve=CURVE)  # fmt: skip
     found = drum.repeat_stops(duty, 0.4, torque_at)
 
     def rates(_, y):
@@ -37,7 +38,7 @@ def test_a_stop_is_that_of_its_differential_equation(torque_at):
         return y[1]
 
     standing.terminal = True
-    start = [0.0, 90.0, found.start[1]]
+    start = [free, np.sqrt(90.0**2 + 2 * load * free / 60.0), found.start[1]]
     run = solve_ivp(rates, (0, 1e5), start, "DOP853", events=standing, rtol=1e-10, atol=1e-9)
     angle, _, end = run.y[:, -1]
     assert found.angle[1] == pytest.approx(angle, rel=1e-8)  # that of the integration over a knot
