@@ -24,7 +24,7 @@ def _answer_tables(answer: Answer) -> Group:
 
 
 def _solution_tables(found: Solutions) -> Group:
-    """The answer in a sentence, and the pieces that show that there is no other."""
+    """The answer in a sentence, if there is one, and the pieces that show that there is no other."""
     heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
     columns = (f"{found.input} from", "to", found.output, "from", "to")
     ends = ([f"{each:.6g}" for each in (p.start, p.end, p.first, p.last)] for p in found.pieces)
@@ -32,8 +32,8 @@ def _solution_tables(found: Solutions) -> Group:
     gaps = ([f"{gap.start:.6g}", f"{gap.end:.6g}", "none", "-", "-"] for gap in found.gaps)
     title = f"Course of {heads[1]} over {heads[0]}, by {len(found.samples)} samples"
     rows = sorted((*courses, *gaps), key=lambda row: float(row[0]))
-    more = found.lacking if found.there else ()
-    return Group(found.message, table(title, columns, rows, (2,), 2), *more)
+    course = table(title, columns, rows, (2,), 2)
+    return Group(found.message, course, *found.lacking) if found.there else Group(course)
 
 
 def _solution_columns(found: Solutions) -> Columns:

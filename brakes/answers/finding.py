@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from time import perf_counter
 from typing import Any
 
@@ -13,7 +15,7 @@ from beamdyn._version import __version__
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import MOST_ONE_BY_ONE, Output, chosen
 from beamdyn.common.edge.inputs import Quantity, SlopeQuantity
-from beamdyn.common.edge.units import unit_as_written
+from beamdyn.common.edge.units import in_plain_characters, unit_as_written
 from beamdyn.common.edge.varied_inputs import Axis, find_input, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import part_at
@@ -27,6 +29,7 @@ from brakes.common.solutions import Solutions
 FIND, SO_THAT = "--find", "--so-that"
 _USUAL = {"m": "mm", "rad": "deg"}  # units that people see where the file has none
 _TIMES = 10.0  # from a part of the file's value to this multiple of it, if no bounds are given
+_ROUNDED = 1e-3  # most that a wanted value may be rounded by, over itself
 _TOGETHER, _ONE_BY_ONE = 129, 17  # samples at the start
 
 
@@ -60,7 +63,7 @@ def find_in_file(
         If input or result are not known, or their values are of another kind.
     """
     start, design = perf_counter(), brake.read(tables, source)
-    output, target = _wanted(brake.outputs(design), so_that)
+    output, target, rounding, wanted = _wanted(brake.outputs(design), so_that)
     axis = _axis(brake, design, tables, input)
     answers = _Designs(brake, SweepRequest(design, tables, (), "zip", None), axis, output)
     if axis.input.quantity.whole:
@@ -68,13 +71,14 @@ def find_in_file(
         found = find_whole(answers, target, _whole_numbers(brake, axis), answers.reason)
     else:
         how = "samples doubled until the pieces stay the same; roots by algorithm 748"
-        found = find(answers, target, np.unique(axis.given), answers.reason)
+        found = find(answers, target, np.unique(axis.given), answers.reason, rounding=rounding)
     return replace(
         found,
         input=axis.input.path,
         unit=axis.unit,
         output=output.name,
         output_unit=output.unit,
+        wanted="" if wanted == f"{found.target:.6g} {output.unit}".rstrip() else wanted,
         provenance=Provenance(__version__, brake.method, how, perf_counter() - start),
     )
 
@@ -116,18 +120,30 @@ def _in_si(quantity: Quantity, value: float, unit: str) -> float:
     return quantity.convert(f"{value!r} {unit}" if unit else value)
 
 
-def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float]:
-    """A result, and the value that it is to have [its unit]."""
+def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:
+    """A result, the value that it is to have and half of its last digit [its unit], and the value's text."""
     name, equals, amount = (part.strip() for part in text.partition("="))
     output, *more = chosen(outputs, name, SO_THAT)
     form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'
     if not equals or more:
         raise ValueError(f'{SO_THAT} = "{text}": {form}')
     try:
-        return output, _amount(amount, output.unit)
+        target, (number, unit) = _amount(amount, output.unit), _parts(amount)
+        half = Decimal(5).scaleb(min(int(number.as_tuple().exponent), 0) - 1)
+        rounding = abs(_amount(f"{number + half} {unit}".rstrip(), output.unit) - target)
+        shown = f"{float(number):.6g} {unit}".rstrip()
+        return output, target, min(rounding, _ROUNDED * abs(target)), shown
     except ValueError as error:
         said = error.advice(str) if isinstance(error, InvalidValue) else "give a plain number"
         raise ValueError(f'{SO_THAT} = "{text}": {said}; {form}') from None
+
+
+def _parts(text: str) -> tuple[Decimal, str]:
+    """Number and unit of a text that has been read as a quantity."""
+    text = in_plain_characters(text)
+    number = re.match(r"[-+.\deE]*[.\d]", text)
+    digits = "" if number is None else number[0]
+    return Decimal(digits), text[len(digits) :].strip()
 
 
 def _amount(text: str, unit: str) -> float:

@@ -148,8 +148,10 @@ class VehicleAnswer(Answer):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """A sentence if the lever's force is above what the standard allows."""
-        return () if self.lever is None else self.lever.warnings
+        """A sentence if the lever's force is above what is allowed, and if it rolls back uphill."""
+        ways = ((f"{axle} axle leading: ", way.slowing) for axle, way in self.ways.items())
+        stops = [words + said for words, stop in ways if stop is not None for said in stop.warnings]
+        return [*(() if self.lever is None else self.lever.warnings), *stops]
 
     def tables(self) -> list[RenderableType]:
         """Both ways, what cannot be had and why, and the lever."""

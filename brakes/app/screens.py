@@ -114,7 +114,7 @@ def _make_backwards(brake: BrakeType[Any]) -> Backwards:
     def find(tables: Mapping[str, Any], sought: str, so_that: str) -> str:
         found = find_in_file(brake, tables, brake.name, sought, so_that)
         drawn = picture(drawing(lambda: figure_of(found.plot)), found.message)
-        return html([*found.warnings, tables_of(found)]) + drawn
+        return html([*found.refusals, *found.warnings, tables_of(found)]) + drawn
 
     results = [*(name for _, name in brake.key_results), *brake.sweep_results.split(",")]
     return Backwards(units, brake.example_sweep.partition("=")[0], results[0], find)

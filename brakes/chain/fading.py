@@ -3,9 +3,9 @@
 Each front brake stops half the mass from the speed V, J = M r^2 / 2 and w = V / r about a wheel of radius r,
 while the slope drives on with L = M g sin(beta) r / 2. Its torque is the smaller of what it gives at the
 pedal's force and of what locks its wheel: the driver eases off before the wheels slide, so that all heat is
-the drums'. While its force rises a wheel turns by more than at full force: by the angle that makes the heat of
-a stop with unfaded linings the energy of that stop. Uphill the help of the slope is left out, as if the road
-were level: it gets no hotter.
+the drums'. While its force rises a wheel turns by more than at full force: by the angle that makes the heat
+of a stop with unfaded linings the energy of that stop. Uphill the help of the slope is left out, as if the
+road were level: it gets no hotter.
 """
 
 from __future__ import annotations

@@ -174,7 +174,7 @@ def run_command(
             raise ValueError(f"--{option} = {path}: it is of one design; leave {asked.many} out")
     if asked.many:
         made, warnings, none = _answer_many(brake, tables, file, asked)
-        said, more = warnings, ()
+        said, more = [*[none] * bool(none), *warnings], ()
     else:
         made = brake.answer(tables, file)
         warnings, none = made.warnings, "; ".join(made.refusals)
@@ -209,7 +209,7 @@ def _answer_many(
 
     if asked.finding.find and asked.finding.so_that:
         made = find_in_file(brake, tables, file, asked.finding.find, asked.finding.so_that)
-        return made, made.warnings, "" if made.there else made.message
+        return made, made.warnings, "".join(made.refusals)
     varying, spreading = asked.varying, asked.spreading
     with at_work("designs") as progress:
         run = varying.runner("brakes study", (__version__, np.__version__), progress)

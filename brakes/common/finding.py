@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import solve_possible
+from beamdyn.common.inputs.array_checks import not_negative, solve_possible
 from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
 from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
@@ -36,7 +36,14 @@ Answer = Callable[[np.ndarray], Any]
 Curve = tuple[np.ndarray, np.ndarray]  # inputs, and answers: both (n,)
 
 
-def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str] | None = None) -> Solutions:
+def find(
+    answer: Answer,
+    target: float,
+    samples: Any,
+    why: Callable[[float], str] | None = None,
+    *,
+    rounding: float = 0.0,
+) -> Solutions:
     """Find all inputs between two bounds at which an answer has a wanted value.
 
     Parameters
@@ -50,6 +57,8 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
         Inputs in ascending order, where the search begins: it ends at the first and at the last of them.
     why : callable, optional
         ``why(x)``: why there is no answer at an input, in a sentence.
+    rounding : float
+        By how much the wanted value may be rounded: a level answer as near to it is what is wanted.
 
     Returns
     -------
@@ -59,7 +68,7 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
     Raises
     ------
     ValueError
-        If the samples are not in ascending order, or fewer than two.
+        If the samples are not in ascending order, or fewer than two, or `rounding` is negative.
 
     References
     ----------
@@ -75,12 +84,14 @@ def find(answer: Answer, target: float, samples: Any, why: Callable[[float], str
     """
     function("answer", answer)
     target, x = real("target", target), ascending("samples", samples)
+    not_negative("rounding", rounding)
     if len(x) < 2:
         raise InvalidValue("samples", x, "give two inputs or more: the first and the last are the bounds")
     answers = _Answers(answer, why)
     (x, y), settled = _settle(answers, x)
     runs = [*_runs(answers, x, y)]
     pieces = [piece for run in runs for piece in _pieces(answers, run)]
+    target = _unrounded(pieces, target, rounding)
     ranges = _level(pieces, target)
     values, jumps = _solve(answers, pieces, ranges, target)
     return Solutions(
@@ -312,6 +323,13 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 
 
 # Solutions -----------------------------------------------------------------------------------------------
+
+
+def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float:
+    """The wanted value; or a level answer that it may have been rounded from, the nearest one."""
+    heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
+    nearest = min(heights, key=lambda height: abs(height - target), default=target)
+    return nearest if abs(nearest - target) <= rounding else target
 
 
 def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:

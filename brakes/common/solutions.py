@@ -89,6 +89,8 @@ class Solutions(Result):
         Whether the pieces stayed the same when the samples were last doubled.
     input, unit, output, output_unit : str
         Names of input and answer, and their units.
+    wanted : str
+        The wanted value as a person gave it, where that reads otherwise: in another unit, or rounded.
     provenance : Provenance, optional
         Version, method and time taken, of a question on a file.
 
@@ -115,17 +117,23 @@ class Solutions(Result):
     unit: str = ""
     output: str = "answer"
     output_unit: str = ""
+    wanted: str = ""
     provenance: Provenance | None = None
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
         yield f"{self.output} {number(self.target, self.output_unit)}"
-        yield self._where() if self.there else "none"
+        yield self._where() if self.there else self.message
 
     @property
     def there(self) -> bool:
         """Whether any input gives the wanted value."""
         return bool(self.values.size + self.ranges.size)
+
+    @property
+    def refusals(self) -> tuple[str, ...]:
+        """A sentence if no input gives the wanted value."""
+        return () if self.there else (self.message,)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -138,8 +146,15 @@ class Solutions(Result):
         """The solutions, or "none" with its reason, in a sentence."""
         low, high = self.samples[[0, -1]]
         if not self.there:
-            return f"none from {self._input(low)} to {self._input(high)}: {'; '.join(self._reasons())}"
-        return f"{self.output} = {self._output(self.target)} at {self._where()}"
+            which = f" gives {self.wanted}" if self.wanted else ""
+            return f"none from {self._input(low)} to {self._input(high)}{which}: {'; '.join(self._reasons())}"
+        return f"{self.output} = {self._target} at {self._where()}"
+
+    @property
+    def _target(self) -> str:
+        """The wanted value, as it was given and in the answer's unit."""
+        target = self._output(self.target)
+        return f"{self.wanted} ({target})" if self.wanted else target
 
     def _where(self) -> str:
         """The inputs that give the wanted value."""
@@ -171,7 +186,14 @@ class Solutions(Result):
         for words, nearest in (("at most", max(below, default=None)), ("at least", min(above, default=None))):
             if nearest is not None:
                 value, at = nearest
-                yield f"{self.output} is {words} {self._output(value)}, at {self.input} = {self._input(at)}"
+                yield f"{self.output} is {words} {self._output(value)}, at {self._places(value, at)}"
+
+    def _places(self, value: float, at: float) -> str:
+        """Where the answer has a value: at an input, or over the range in which it is level."""
+        for p in self.pieces:
+            if p.course == "is level" and step(p.first, value) == 0:
+                return f"any {self.input} from {self._input(p.start)} to {self._input(p.end)}"
+        return f"{self.input} = {self._input(at)}"
 
     def _input(self, value: float) -> str:
         return f"{value:.6g} {self.unit}".rstrip()
@@ -227,4 +249,4 @@ class WholeSolutions(Solutions):
         steps = f"{self._input(before)} ({self._output(first)}) to {self._input(now)} ({self._output(last)})"
         where = f"from {self.input} = {steps}"
         least = f"{self._input(now)} is the least that meets it"
-        return f"{self.output} passes {self._output(self.target)} {where}: {least}"
+        return f"{self.output} passes {self._target} {where}: {least}"

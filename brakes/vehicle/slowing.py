@@ -25,7 +25,7 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked, numbers, p
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
-from beamdyn.common.results.one_line import spanned
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
@@ -142,6 +142,20 @@ class Slowing(Result):
         """The result in one line; see `Result.headline`."""
         yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
         yield f"{self.status}" if np.ndim(self.status) == 0 else ""
+        yield warned(self.warnings)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence if it stands, uphill, before the brakes hold it."""
+        a = self.approach
+        since = np.asarray(self.time - a.reaction_time)
+        with np.errstate(divide="ignore", invalid="ignore"):  # where the force does not rise but is there
+            risen = np.where(since < a.rise_time, np.maximum(since, 0.0) / a.rise_time, since >= 0)
+        held = self.ratio * np.cos(self.road.slope) * risen
+        rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
+        many = f", in {np.sum(rolls)} of {rolls.size} cases" if rolls.ndim else ""
+        said = "it stands before its brakes hold it, and rolls back until they do: that is not counted"
+        return (f"{said}{many}",) if np.any(rolls) else ()
 
     @property
     def message(self) -> str:

@@ -109,6 +109,7 @@ def test_a_stop_on_a_slope_is_that_of_its_equation_of_motion(heading, reaction):
     assert found.distance == pytest.approx(run.y[0, -1], rel=1e-5)  # that of a step over the kinks
     assert found.time == pytest.approx(run.t[-1], rel=1e-5)
     assert (found.time < reaction) == (reaction > 1)
+    assert bool(found.warnings) == (pull + force(run.t[-1]) < 0)  # it rolls back until the brakes hold it
 
 
 @pytest.mark.parametrize("rise_time", [0.3, 4.0])

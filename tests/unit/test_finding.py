@@ -91,6 +91,23 @@ def test_a_level_answer_is_a_range_of_inputs(answer, target, alone, ranges):
     assert all(f"any input from {low:.6g} to {high:.6g}" in found.message for low, high in ranges)
 
 
+def test_a_level_answer_is_found_by_its_rounded_value_alone():
+    """A rising answer is not: it has the wanted value itself."""
+    found = brakes.find(lambda x: np.minimum(x, 2.3456), 2.35, SAMPLES, rounding=0.005)
+    assert found.target == pytest.approx(2.3456, rel=2e-12)  # level to 1e-12
+    assert not found.values.size
+    assert found.ranges.ravel() == pytest.approx([2.3456, 5.0], rel=2e-12)
+    assert not brakes.find(lambda x: np.minimum(x, 2.3456), 2.35, SAMPLES, rounding=0.004).there
+    assert brakes.find(lambda x: x, 2.35, SAMPLES, rounding=0.005).values == pytest.approx([2.35], rel=EXACT)
+    with pytest.raises(ValueError, match="rounding"):
+        brakes.find(lambda x: x, 2.35, SAMPLES, rounding=-1.0)
+
+
+def test_the_largest_of_a_level_answer_is_at_its_range():
+    found = brakes.find(lambda x: np.minimum(x, 2.0), 3.0, SAMPLES)
+    assert found.message == "none from 0.5 to 5: answer is at most 2, at any input from 2 to 5"
+
+
 @pytest.mark.parametrize(
     ("answer", "target", "values", "said"),
     [
@@ -149,6 +166,23 @@ def test_command_finds_a_diameter_for_a_torque(capsys):
     [
         (("vehicle", "lever.ratio", "largest_slope_front = 45 %"), 1, "at most 15.2447 deg"),
         (("vehicle", "lever.ratio", "largest_slope_front = 45 %"), 1, "a travel of 300 mm"),
+        (
+            ("vehicle", "lever.ratio", "largest_slope_front = 20 %"),
+            0,
+            "largest_slope_front = 20 % (11.3099 deg)",
+        ),
+        (("vehicle", "lever.ratio", "largest_slope_front = 10.0 deg"), 0, "largest_slope_front = 10 deg at"),
+        (
+            ("vehicle", "road.friction", "largest_slope_front = 14.606 deg"),
+            0,
+            "14.606 deg (14.6061 deg) at any road.friction from 0.261906 to 2",
+        ),
+        (("vehicle", "road.friction", "largest_slope_front = 14.605 deg"), 0, "at road.friction = 0.261"),
+        (
+            ("vehicle", "road.friction", "largest_slope_front = 15 deg"),
+            1,
+            "at most 14.6061 deg, at any road.",
+        ),
         (("band", "friction", "torque = 1 N m"), 1, "no answer from 0.330953 to 2: locked"),
         (("cone", "friction", "torque = 100 N m"), 1, "torque is 200 N m whatever brake.friction is"),
         (("plates", "plates.faces", "torque = 300 N m"), 0, "13 is the least that meets it"),
@@ -167,6 +201,7 @@ def test_what_cannot_be_had_is_one_sentence(question, code, said, capsys):
     found = run(capsys, name, f"examples/{name}.toml", "--find", sought, "--so-that", wanted)
     assert found[0] == code
     assert said in found[2 if code else 1]
+    assert said not in found[1 if code else 2]  # said once
 
 
 @pytest.mark.parametrize(
