@@ -231,6 +231,8 @@ class BrakeType(ABC, Generic[FileModel]):
         Further drawings, which fold out on its screen: ``more[title](answer)`` are rows of them.
     most_cases : int
         Largest number of designs of a sweep.
+    together : str
+        Which tables or keys of its file go together, in a sentence; "" if that is plain.
     key_results : tuple of (words, name)
         The outputs that stand first on its screen: how they are called there, and their names.
     """
@@ -247,6 +249,7 @@ class BrakeType(ABC, Generic[FileModel]):
     slider: Slider | None = None
     more: Mapping[str, Callable[[Any], Rows]] = MappingProxyType({})
     most_cases: int = MOST_ONE_BY_ONE
+    together: str = ""
     key_results: tuple[tuple[str, str], ...] = ()
 
     def headline(self, answer: Answer) -> Iterator[KeyResult]:

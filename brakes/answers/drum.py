@@ -18,6 +18,7 @@ from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.rubbing import RubbingAnswer, heat_outputs
 from brakes.answers.tables import list_outputs, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
+from brakes.config.load import LoadInput
 from brakes.drawings.drum import brake_figure, charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult, ShoeResult, brake_torque
@@ -113,6 +114,7 @@ class DrumType(ArrayBrakeType[DrumInput]):
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load", "heat")
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
+    together = f"[load]: {LoadInput.ONE}."
     example_sweep = "brake.friction=0.1:0.6:26"
     sweep_results = "torque,c_star,peak_pressure"
 

@@ -349,6 +349,11 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
         "of the shoes' reach"
     )
     model = ForkliftInput
+    together = (
+        "[truck] and [stop] are for the vehicle, [brake] for the kinematics, [forces] with [brake] or "
+        "[levers] for the forces; [pedal] with [line] goes with all of them, [drums] with these, [heat] "
+        "with [drums]."
+    )
     sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()

@@ -17,6 +17,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.rubbing import RubbingAnswer, heat_outputs
 from brakes.answers.tables import list_outputs, take_fields, take_from
+from brakes.config.load import LoadInput
 from brakes.config.machine import MachineInput, file_of
 from brakes.drawings.machine import charts_of, machine_figure
 from brakes.drawings.sketches import cylinder_sketch
@@ -135,6 +136,7 @@ class MachineType(ArrayBrakeType[MachineInput]):
     method = "pressure and friction of each lining integrated in closed form"
     error_from = "rounding of inputs and sums, over the margin to self-locking"
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
+    together = f"[load]: {LoadInput.ONE}."
     example_sweep = "brake.friction=0.1:0.25:16"
     sweep_results = "torque,c_star,peak_pressure"
 

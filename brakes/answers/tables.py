@@ -16,10 +16,17 @@ from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_r
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.results.meanings import meanings
+from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # rows of a sweep
 _ROUNDING = 1e-12  # relative difference of two answers that is none
-SCALES = {"mm": 1e-3, "deg": pi / 180, "kN": 1e3, "MPa": 1e6}  # sizes in SI of units that people see
+SCALES = {
+    "mm": 1e-3,
+    "deg": pi / 180,
+    "kN": 1e3,
+    "MPa": 1e6,
+    "MW/m2": 1e6,
+}  # sizes in SI of units that people see
 
 
 def take(name: str, words: str, unit: str = "") -> Output:
@@ -95,9 +102,8 @@ def _choices(entry: Input) -> list[str]:
 
 def _default(entry: Input) -> str:
     """Default of a key, as a file would give it."""
-    if entry.required:
-        return "required"
-    return "" if entry.default in (None, [], ()) else f"{entry.default} {entry.quantity.unit}".rstrip()
+    words = "required" if entry.required else default_words(entry)
+    return "" if words == NOT_GIVEN else words
 
 
 def sweep_table(sweep: InputSweep) -> Group:

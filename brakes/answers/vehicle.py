@@ -232,6 +232,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     method = "equilibrium of two axles in closed form"
     error_from = "rounding of inputs and sums"
     model = VehicleInput
+    together = "Give [truck] or [vehicle]; [lever], [cable] or [line], and [brakes] go together."
     sections = needs = ("truck", "vehicle", "road", "braking", "stop", "lever", "cable", "line", "brakes")
     example_sweep = "road.slope=1:35:35 deg"
     sweep_results = "holds_front,holds_rear,braking_force_front,braking_force_rear"

@@ -60,7 +60,7 @@ class Actuation(Result):
     output_force: Annotated[Numbers, Meaning("N", "force behind it, with the booster")]
     pressure: Annotated[Numbers, Meaning("Pa", "pressure of the line", "MPa")]
     actuator_force: Annotated[Numbers, Meaning("N", "force on each actuator")]
-    pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever", "mm")]
+    pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever, by the travels given", "mm")]
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""

@@ -101,7 +101,9 @@ class Heat(Result):
     drum_energy: Annotated[Numbers, Meaning("J", "... into the drums")]
     tyre_energy: Annotated[Numbers, Meaning("J", "... into the sliding tyres")]
     temperature_rise: Annotated[Numbers, Meaning("K", "each drum warms by, without cooling")]
-    lining_pv: Annotated[Numbers, Meaning("W/m2", "pressure times rubbing speed of the linings, at most")]
+    lining_pv: Annotated[
+        Numbers, Meaning("W/m2", "pressure times rubbing speed of the linings, at most", "MW/m2")
+    ]
 
     def headline(self) -> Iterator[str]:
         """The result in one line; see `Result.headline`."""
@@ -115,8 +117,8 @@ class Heat(Result):
         if most is None or not np.any(self.lining_pv > np.asarray(most)):
             return ()
         highest, least = float(np.nanmax(self.lining_pv)), float(np.min(most))
-        said = f"pressure times rubbing speed of the linings reaches {highest:.4g} W/m2"
-        return (f"{said}, above most_pv = {least:.4g} W/m2",)
+        said = f"pressure times rubbing speed of the linings reaches {highest / 1e6:.4g} MW/m2"
+        return (f"{said}, above most_pv = {least / 1e6:.4g} MW/m2",)
 
 
 def heat_of_stop(

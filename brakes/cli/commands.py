@@ -182,7 +182,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
     one_of("COMMAND", brake, [*STANDARD, *others])
     found = others.get(brake) or STANDARD[brake][1]()
     about = 'A quantity is text with a unit, "50 mm"; a number without a unit and true or false stand bare.'
-    show([*keys_tables(found.inputs({}), found.optional), about])
+    show([*keys_tables(found.inputs({}), found.optional), f"{found.together} {about}".lstrip()])
 
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))

@@ -207,8 +207,12 @@ class Fade(Result):
     first_friction: Annotated[Numbers, Meaning("", "friction at the start of the first stop")]
     last_friction: Annotated[Numbers, Meaning("", "friction at the end of the last stop")]
     energy: Annotated[Numbers, Meaning("J", "heat of the last stop")]
-    settled: Annotated[Numbers, Meaning("K", "above the surroundings after very many stops")]
-    pv: Annotated[Numbers, Meaning("W/m2", "largest pressure times rubbing speed, before the first stop")]
+    settled: Annotated[
+        Numbers, Meaning("K", "above the surroundings after very many stops, if no load drives on")
+    ]
+    pv: Annotated[
+        Numbers, Meaning("W/m2", "largest pressure times rubbing speed, before the first stop", "MW/m2")
+    ]
     error: Annotated[Numbers, Meaning("", "estimate of the relative error of the angles")]
 
     def headline(self) -> Iterator[str]:
@@ -231,8 +235,8 @@ class Fade(Result):
         if most is None or not np.any(self.pv > np.asarray(most)):
             return ()
         highest, least = float(np.nanmax(self.pv)), float(np.min(most))
-        said = f"pressure times rubbing speed of the lining reaches {highest:.4g} W/m2"
-        return (f"{said}, above most_pv = {least:.4g} W/m2",)
+        said = f"pressure times rubbing speed of the lining reaches {highest / 1e6:.4g} MW/m2"
+        return (f"{said}, above most_pv = {least / 1e6:.4g} MW/m2",)
 
 
 _WORDS = {

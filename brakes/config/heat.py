@@ -10,14 +10,21 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.common.heat import Duty, FrictionCurve
 
+_SUCH_AS = 'such as [["20 degC", 0.4], ["300 degC", 0.3]]'
+
 
 class CurveQuantity(Quantity):
     """Rows of a temperature and a friction."""
 
+    @property
+    def bounds(self) -> str:
+        """How rows are written."""
+        return _SUCH_AS
+
     def parse(self, given: object) -> Any:
         """Rows of temperatures [K] and frictions."""
         if not isinstance(given, list) or any(not isinstance(row, list) or len(row) != 2 for row in given):
-            raise InvalidInput("", given, 'give rows such as [["20 degC", 0.4], ["300 degC", 0.3]]')
+            raise InvalidInput("", given, f"give rows {_SUCH_AS}")
         return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)
 
 

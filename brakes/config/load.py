@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -25,27 +25,30 @@ class LoadInput(Section):
     """[load]: the actuating force, or the torque or pressure that the brake is to give: exactly one."""
 
     force: Annotated[
-        float | None, Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0)
+        float | None,
+        Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0),
     ] = None
     cylinder_bore: Annotated[
-        float | None, Quantity("m", "d", "bore of the cylinder, with line_pressure", above=0)
+        float | None,
+        Quantity("m", "d", "bore of the cylinder, with line_pressure in place of a force", above=0),
     ] = None
     line_pressure: Annotated[
         float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
     ] = None
-    torque: Annotated[float | None, Quantity("N m", "M", "torque that the brake is to give", above=0)] = None
-    peak_pressure: Annotated[
-        float | None, Quantity("Pa", "p_max", "largest pressure on any lining", above=0)
+    torque: Annotated[
+        float | None, Quantity("N m", "M", "torque that the brake is to give, in place of a force", above=0)
     ] = None
+    peak_pressure: Annotated[
+        float | None, Quantity("Pa", "p_max", "largest pressure on any lining, in place of a force", above=0)
+    ] = None
+
+    ONE: ClassVar[str] = "give one of force, torque, peak_pressure, or cylinder_bore with line_pressure"
 
     @model_validator(mode="after")
     def _one(self) -> LoadInput:
         given = [name for name, value in self if value is not None]
         if given not in (["force"], ["cylinder_bore", "line_pressure"], ["torque"], ["peak_pressure"]):
-            raise ValueError(
-                "give one of force, torque, peak_pressure, or cylinder_bore with line_pressure; "
-                f"got {' and '.join(given) or 'none'}"
-            )
+            raise ValueError(f"{self.ONE}; got {' and '.join(given) or 'none'}")
         return self
 
     @property

@@ -20,7 +20,7 @@ def test_every_key_is_listed_with_its_unit(name, capsys, monkeypatch):
         (first, *_) = [line.split() for line in out.splitlines() if line.split()[:1] == [entry.name]]
         assert first
         unit = {"rad": "deg"}.get(entry.quantity.unit, entry.quantity.unit)
-        assert not unit or f"[{unit}]" in out
+        assert not unit or f"[{unit}]" in out or f"[{unit} or %]" in out
     assert "required" in out
 
 
@@ -38,4 +38,26 @@ def test_tables_that_may_be_left_out_are_said(capsys):
     out = capsys.readouterr().out
     assert "[lever], which may be left out" in out
     assert "[road]\n" in out
-    assert "slope of the road [deg], at least 0, at most 45 " in out  # as files give it
+    assert "slope of the road [deg or %], at least 0, at most 45 " in out  # as files give it
+
+
+def test_which_tables_and_keys_go_together_is_said(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "400")
+    for name, said in (
+        (
+            "disc",
+            "[load]: give one of force, torque, peak_pressure, or cylinder_bore with line_pressure. A quant",
+        ),
+        ("forklift", "[forces] with [brake] or [levers] for the forces"),
+        ("vehicle", "[lever], [cable] or [line], and [brakes] go together."),
+    ):
+        main(["keys", name])
+        assert said in capsys.readouterr().out
+
+
+def test_defaults_are_as_a_file_would_give_them(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    main(["keys", "disc"])
+    rows = {line.split()[0]: line.rstrip() for line in capsys.readouterr().out.splitlines() if line.strip()}
+    assert rows["stops"].endswith(" 1")
+    assert 'such as [["20 degC", 0.4]' in rows["friction_curve"]

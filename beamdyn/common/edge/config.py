@@ -170,7 +170,8 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
         case "missing":
             known = describe(model)
             how = next(
-                (f"give the {i.help}" for i in known if i.path == path), "give as many values as stations"
+                (f"give the {i.help.removeprefix('the ')}" for i in known if i.path == path),
+                "give as many values as stations",
             )
             how = f"give a table [{path}]" if any(i.path.startswith(f"{path}.") for i in known) else how
             return str(MissingValue(place, None, how)), path

@@ -183,7 +183,7 @@ class Input:
         q = self.quantity
         shown = _SHOWN.get(q.unit, q.unit)
         bounds = q.bounds if shown == q.unit else q.bounds_as(lambda bound: q.in_unit(bound, shown))
-        unit, bounds = shown and f" [{shown}]", bounds and f", {bounds}"
+        unit, bounds = shown and f" [{' or '.join((shown, *q.further_units))}]", bounds and f", {bounds}"
         infinite = q.infinite and f"; inf is {q.infinite}"
         return f"{q.meaning}{unit}{bounds}{infinite}"
 
