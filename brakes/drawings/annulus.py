@@ -28,7 +28,7 @@ def draw_disc(result: MachineResult) -> Drawing:
     arrows.shapes += rotation(0.55 * float(disc.inner_radius), 0.4, -sense)
     if drag:
         arrows.add((0.0, r), np.array([sense * drag, 0.0]), "F", "friction")
-    title = f"Pads pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Pads pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     key = {"friction": "torque over effective radius"}
     return arrows.drawing(title, "A disc brake from the front: disc, pad and friction", key)
 
@@ -54,7 +54,7 @@ def draw_cone(result: MachineResult) -> Drawing:
 def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
     """A section with the force along its axis."""
     arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
-    title = f"Pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     return arrows.drawing(title, words, {"load": "actuating force P"})
 
 

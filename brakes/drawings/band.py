@@ -34,7 +34,7 @@ def draw_band(result: MachineResult) -> Drawing:
         way = (on - at) / np.hypot(*(on - at))
         arrows.add(at, forces[name] * way, "T_1" if name == "first" else "T_2", "tension")
     arrows.add(end, np.array([0.0, -float(result.force)]), "P", "load", ends_here=True)
-    title = f"Forces on the lever at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Forces on the lever at {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     key = {"load": "actuating force P", "tension": "tension of an end"}
     return arrows.drawing(title, "A band brake: drum, band and lever with the forces on the lever", key)
 

@@ -31,7 +31,7 @@ def draw_block(result: MachineResult) -> Drawing:
     if result.locked:
         title = f"Friction {float(result.friction):.3g}: the brake locks itself"
         return arrows.drawing(title, "A block brake that locks: drum, blocks and levers", {})
-    title = f"Forces on the levers at {force:.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Forces on the levers at {force:.5g} N; torque {float(result.torque):.5g} N m"
     key = {
         "load": "actuating force P",
         "normal": "pressure N",

@@ -69,7 +69,7 @@ def drawing_of(result: BrakeResult) -> Drawing:
     if result.locked:
         title = f"Friction {float(result.friction):.3g}: the brake locks itself"
         return arrows.drawing(title, "A drum brake that locks: its shoes, and a mark on each that locks", {})
-    title = f"Forces on the shoes at {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Forces on the shoes at {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     key = {"load": "actuating force P", "normal": "pressure N", "friction": "friction T", "reaction": "pin R"}
     return arrows.drawing(title, "A drum brake: its shoes with the forces on them", key)
 

@@ -38,7 +38,7 @@ def draw_sliding(result: MachineResult) -> Drawing:
         arrows.labels.append(Label("a shoe grips by itself", (0.0, 0.4 * r), "inside", priority=4))
         title = f"Friction {float(result.friction):.3g}: the brake locks itself"
         return arrows.drawing(title, "A brake with sliding shoes that locks", {})
-    title = f"Shoes pressed by {float(result.force):.4g} N; torque {float(result.torque):.5g} N m"
+    title = f"Shoes pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     words = {"load": "actuating force P", "normal": "pressure N, where it touches", "friction": "friction T"}
     key = words | {"reaction": "abutment A"}
     return arrows.drawing(title, "A drum brake with sliding shoes and the forces on them", key)

@@ -203,7 +203,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
         inner = _place_in(reason.field, key).removeprefix(path).lstrip(".")
         return said_of(reason, f"{place}.{inner}".lstrip("."), _found(given, inner)), key
     said = say(in_millimetres(reason) if isinstance(reason, InvalidValue) else reason)
-    return f"{place or 'model'}: {said}", path
+    return f"{place}: {said}" if place else said, path
 
 
 def _place_in(field: str, key: str) -> str:
