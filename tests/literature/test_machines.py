@@ -2,15 +2,16 @@
 
 The inputs are those of textbook problems: Shigley's band of 14 in and cone (16-19), Juvinall's differential
 band (figure 18.17). Opened with their printed solutions: the bands of two public pages (mechdiploma.com,
-transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), a question of byjus.com (plates). None was
-found that could be opened of a sliding shoe, nor with all its numbers of an annular pad: these are checked by
-quadrature in tests/invariants.
+transtutors.com), K. Kannan's lecture DTS 11.3, example 1 (block), a question of byjus.com (plates), and of
+annular pads Bhandari's example 12.12 as the Scilab textbook companion of FOSSEE solves it (repository
+FOSSEE/Scilab-TBC-Uploads, 764/CH12) and Ugural's example 13.6 (holooly.com). None was found that could be
+opened of a sliding shoe: it is checked by a second derivation, the quadrature of tests/invariants.
 """
 
 import numpy as np
 import pytest
 
-from brakes import machines
+from brakes import drum, machines
 from brakes.common.loads import wheel_cylinder_force
 
 INCH, LBF = 0.0254, 4.4482216152605
@@ -68,6 +69,28 @@ def test_annular_pads(law, pressure, force, radius, line):
     assert found.radius / INCH == pytest.approx(radius, rel=1e-7)
     if line:
         assert found.force / wheel_cylinder_force(1.5 * INCH, PSI) == pytest.approx(line, rel=3e-7)
+
+
+def test_angle_of_annular_pads_for_a_mean_pressure():
+    """Bhandari, Design of Machine Elements, example 12.12: 1500 N m at 2 MPa."""
+    disc = machines.Disc(0.1, 0.15, np.radians(77.543160), pressure_law="pressure")
+    found = machines.solve_brake(disc, friction=0.35, torque=1500.0)
+    assert found.peak_pressure == pytest.approx(2e6, rel=7e-9)  # half of the last digit of the angle
+
+
+def test_force_and_torque_of_annular_pads_at_their_largest_pressure():
+    """Ugural, example 13.6: two pads of 60 deg; its torque of 982 lb in is that of one of them."""
+    disc = machines.Disc(2.5 * INCH, 5 * INCH, np.radians(60))
+    found = machines.solve_brake(disc, friction=0.2, peak_pressure=200 * PSI)
+    assert found.force / LBF == pytest.approx(1309, abs=0.5)
+    assert found.torque / 2 / LBF / INCH == pytest.approx(982, abs=0.5)
+
+
+def test_temperature_of_a_drum_that_stops_a_flywheel():
+    """Bhandari, example 12.14, result12_14.txt of the companion, which says that the book's print is wrong."""
+    duty = drum.Duty(100 * 0.35**2, 500 * np.pi / 30, heated_mass=5.0, specific_heat=460.0)
+    found = drum.repeat_stops(duty, 0.3, lambda friction: 1000.0 * friction)
+    assert found.hottest == pytest.approx(7.300885, abs=5e-7)
 
 
 @pytest.mark.parametrize(("width", "pressure", "force"), [(0.06, 82.247, 0.948796), (None, 83.876, 0.9676)])
