@@ -87,7 +87,7 @@ def test_force_and_torque_of_annular_pads_at_their_largest_pressure():
 
 
 def test_temperature_of_a_drum_that_stops_a_flywheel():
-    """Bhandari, example 12.14, result12_14.txt of the companion, which says that the book's print is wrong."""
+    """Bhandari, example 12.14, as the companion solves it: it says that the book's print is wrong."""
     duty = drum.Duty(100 * 0.35**2, 500 * np.pi / 30, heated_mass=5.0, specific_heat=460.0)
     found = drum.repeat_stops(duty, 0.3, lambda friction: 1000.0 * friction)
     assert found.hottest == pytest.approx(7.300885, abs=5e-7)
