@@ -79,7 +79,7 @@ _FORCES = (
 
 
 _OF_TYRES = "stop.friction", "tyres on the road: Stopping distance"
-_OF_LININGS = "forces.lining_friction", "the linings, which limit it: Stopping distance"
+_OF_LININGS = "forces.lining_friction", "the linings, which limit it,: Stopping distance"
 
 
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:

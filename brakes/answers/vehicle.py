@@ -186,7 +186,8 @@ class VehicleAnswer(Answer):
             ways = BRAKE.solve(design).ways.values()
             return float(np.degrees(min(way.holding.largest_slope for way in ways)))
 
-        of = "tyres on the road: Largest slope both ways"
+        least = min((way.holding for way in self.ways.values()), key=lambda held: float(held.largest_slope))
+        of = f"tyres on the road: Largest slope both ways, past which it {least.limited_by},"
         return hangs_on_friction(self.design, "road.friction", of, largest, "deg", "none")
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
