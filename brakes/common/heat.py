@@ -98,7 +98,7 @@ class Duty:
     ] = 0.0
     free_angle: Annotated[
         Numbers,
-        Described("rad", "q_0", "angle that it turns in each stop before the torque is there", least=0),
+        Described("rad", "", "angle that it turns in each stop before the torque is there", least=0),
     ] = 0.0
     stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
