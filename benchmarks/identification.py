@@ -1,6 +1,6 @@
 """Numbers of scenes found from their frequencies: exact without noise, covered by intervals with noise.
 
-Run: python -m benchmarks.identification [--exact N] [--noisy N] [--first N] [--workers N]
+Run: python -m benchmarks.identification [--exact N] [--noisy N] [--first N] [--workers N] [--save FOLDER]
 
 Each scene has an unknown spring of 0.3 to 30 EI/L at the root, thickness and body at the tip; data are three
 modes at five speeds.  Seed k makes scene k.  Noise of 0.5 % has a normal distribution, whose size is given.
@@ -11,14 +11,16 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
 
 import numpy as np
 
 from benchmarks.cases.identified import identify, unknowns
+from benchmarks.resumable import Cases
 from benchmarks.rows import Row, show
 
 NOISE = 0.005
@@ -26,27 +28,43 @@ _FOUND = 1e-7  # largest relative error without noise
 _MOST = 40  # solves a number
 
 
-def outcome(seed: int, noise: float) -> tuple[float, list[bool], int]:
+@dataclass(frozen=True)
+class Answer:
     """Largest relative error of the numbers of a scene, whether each is in its interval, and solves."""
+
+    number: int
+    error: float
+    inside: tuple[bool, ...]
+    solves: int
+
+
+def outcome(seed: int, noise: float) -> list[Answer]:
+    """What is found of the scene of a seed."""
     true = unknowns(seed)
     found, values = identify(true, noise, seed), np.array([*true.values()])
     error = np.abs(found.value / values - 1)
     inside = (found.low <= values) & (values <= found.high)
-    return float(np.where(np.isnan(error), np.inf, error).max()), inside.tolist(), found.solves
+    largest = float(np.where(np.isnan(error), np.inf, error).max())
+    return [Answer(seed, largest, tuple(inside.tolist()), found.solves)]
 
 
-def _rows(seeds: range, noise: float, workers: int) -> Iterator[Row]:
-    with ProcessPoolExecutor(workers) as pool:
-        errors, inside, solves = zip(*pool.map(partial(outcome, noise=noise), seeds), strict=True)
+def _rows(seeds: range, noise: float, workers: int, folder: Path | None) -> Iterator[Row]:
+    cases = Cases(partial(outcome, noise=noise), Answer)
+    if folder:
+        answers = cases.resume(folder / f"identification_{noise:g}.jsonl", seeds, workers)
+    else:
+        answers = cases.measure_all(seeds, workers)
     what = f"{len(seeds)} scenes, noise {100 * noise:g} %"
     if noise:
-        each = np.array(inside)
+        each = np.array([answer.inside for answer in answers])
         shares = ", ".join(f"{100 * share:.1f}" for share in each.mean(axis=0))
         yield f"{what}: 95 % intervals cover", f"{100 * each.mean():.2f} % ({shares})", "93 to 97 %"
     else:
-        missed = sum(error > _FOUND for error in errors)
-        yield f"{what}: largest relative error", f"{max(errors):.1e} ({missed} missed)", f"{_FOUND:g}"
-    yield f"{what}: most solves a number", f"{max(solves) / 3:.1f}", f"{_MOST}"
+        errors = np.array([answer.error for answer in answers])
+        found = f"{errors.max():.1e} ({(errors > _FOUND).sum()} missed)"
+        yield f"{what}: largest relative error", found, f"{_FOUND:g}"
+    most = max(answer.solves for answer in answers) / 3
+    yield f"{what}: most solves a number", f"{most:.1f}", f"{_MOST}"
 
 
 def main(arguments: Sequence[str] | None = None) -> list[Row]:
@@ -56,11 +74,12 @@ def main(arguments: Sequence[str] | None = None) -> list[Row]:
     parser.add_argument("--noisy", type=int, default=2000, help="scenes with noise")
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--save", type=Path, help="folder of answers, to which a run adds what it lacks")
     given = parser.parse_args(arguments)
     counts = (given.exact, 0.0), (given.noisy, NOISE)
     seeds = [(range(given.first, given.first + count), noise) for count, noise in counts if count]
     title = "Numbers of a scene from its frequencies"
-    return show(title, *(partial(_rows, *each, given.workers) for each in seeds))
+    return show(title, *(partial(_rows, *each, given.workers, given.save) for each in seeds))
 
 
 if __name__ == "__main__":
