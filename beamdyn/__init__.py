@@ -88,7 +88,12 @@ if TYPE_CHECKING:
     from beamdyn.modes.modes import Modes, natural_modes
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
-    from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredResponse
+    from beamdyn.scene.measured_curves import (
+        MeasuredHistory,
+        MeasuredLoads,
+        MeasuredPeaks,
+        MeasuredResponse,
+    )
     from beamdyn.scene.measured_frequencies import MeasuredFrequencies
     from beamdyn.scene.motion import (
         Line,

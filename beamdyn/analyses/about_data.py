@@ -34,7 +34,8 @@ Data = Annotated[
     Parameter(
         name="DATA.csv",
         help='Measured values, by the heads of their columns: "speed [rpm], frequency 1 [Hz]", '
-        '"time [s], tip [mm]", "position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
+        '"time [s], tip [mm]", "speed [rpm], from [s], to [s], largest tip [mm]", '
+        '"position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
         '"position [mm], shape at 62.1 Hz"; lists of ANSYS, output of FAST, universal files.',
     ),
 ]
@@ -45,7 +46,10 @@ Measured = Annotated[
 AtSpeeds = Annotated[
     Any,
     AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
-    Parameter(help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest.'),
+    Parameter(
+        help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest, of loads '
+        "and responses the final speed of the scene's motion."
+    ),
 ]
 ColumnsOfFile = Annotated[
     tuple[str, ...],

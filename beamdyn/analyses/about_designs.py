@@ -13,7 +13,7 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
 from beamdyn.analyses.results.cautions import warnings_of
-from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_speed, parse_window
+from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed, parse_window
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
@@ -84,12 +84,12 @@ def sensitivities(
     check_used(what, _OPTIONS, speed=speed, modes=modes, order=order, tolerance=tolerance)
     named, count = inputs or None, 3 if modes is None else modes
     if what == "frequencies":
-        at = final_speed(scene) if speed is None else parse_speed("--speed", speed, scene)
+        at = scene.final_speed if speed is None else parse_speed("--speed", speed, scene)
         result = bd.frequency_sensitivities(scene, at, count, named, discretization, tolerance)
     elif what == "critical_speed":
         result = bd.critical_speed_sensitivities(scene, named, discretization, tolerance)
     else:
-        top = final_speed(scene)
+        top = scene.final_speed
         top = top if speed is None else parse_positive("--speed", speed, "rad/s", scene)
         result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
     each = zip(result.answers, np.isfinite(result.value), strict=True)
@@ -200,7 +200,7 @@ def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) 
     needed = "speed" in KINDS[what].options and not varied
     if speed is not None:
         return parse_speed("--speed", speed, scene)
-    return final_speed(scene) if needed else None
+    return scene.final_speed if needed else None
 
 
 def inputs_of(scene: Scene) -> list[Input]:

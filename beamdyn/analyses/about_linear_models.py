@@ -13,7 +13,7 @@ from cyclopts import Parameter
 import beamdyn as bd
 from beamdyn.analyses.analysis import AsText, analysis
 from beamdyn.analyses.options import AtFinalSpeed, Count, CountOrAuto, Discretization, Named, Text
-from beamdyn.analyses.values import final_speed, in_unit_of, parse_positive, parse_quantity, parse_speed
+from beamdyn.analyses.values import in_unit_of, parse_positive, parse_quantity, parse_speed
 from beamdyn.common.edge.csv_columns import read_csv
 from beamdyn.common.edge.data_text import read_data
 from beamdyn.common.edge.inputs import Quantity
@@ -116,7 +116,7 @@ class RandomInput:
     def speed_of(self, scene: Scene) -> float:
         """The speed that is given [rad/s], that of a wheel which rolls at the velocity, or the scene's."""
         if self.velocity is None:
-            return final_speed(scene) if self.speed is None else parse_speed("--speed", self.speed, scene)
+            return scene.final_speed if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
             raise ValueError("--speed, --velocity: give one of the two")
         if not isinstance(scene.motion, RollingWheel):

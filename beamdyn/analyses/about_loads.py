@@ -28,7 +28,7 @@ from beamdyn.analyses.options import (
     positive,
 )
 from beamdyn.analyses.results import of_loads
-from beamdyn.analyses.values import final_speed, parse_quantity, parse_speeds, parse_window
+from beamdyn.analyses.values import parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.outputs import write_table
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
@@ -198,7 +198,7 @@ def loads(
     elif speeds is not None:
         result = bd.steady_loads(bd.steady_response(scene, speeds, **basis), **where)
     else:
-        at_speed = final_speed(scene) if speed is None else speed
+        at_speed = scene.final_speed if speed is None else speed
         result = bd.static_loads(scene, at_speed, angle=angle or 0.0, discretization=discretization, **where)
     ends = {} if span is None else dict(zip(("start", "end"), span, strict=True))
     draw = partial(result.plot, quantity=quantity or "moment", **ends)

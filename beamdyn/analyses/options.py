@@ -19,6 +19,11 @@ def none_given(_: Scene) -> None:
     """The value of an option that is left out."""
 
 
+def final_speed(scene: Scene) -> float:
+    """The value of a speed that is left out [rad/s]."""
+    return scene.final_speed
+
+
 def positive(unit: str, **more: Any) -> AsText:
     """A number above zero with its unit."""
     return AsText(lambda option, text, _: values.parse_positive(option, text, unit), **more)
@@ -31,11 +36,11 @@ _AT_SPEED = (
 )
 AtSpeed = Annotated[
     float,
-    AsText(values.parse_speed, absent=values.final_speed),
+    AsText(values.parse_speed, absent=final_speed),
     Parameter(help=f"{_AT_SPEED}, or 0 without one."),
 ]
 AtFinalSpeed = Annotated[
-    float, AsText(values.parse_speed, absent=values.final_speed), Parameter(help=f"{_AT_SPEED}.")
+    float, AsText(values.parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}.")
 ]
 Speed = Annotated[float | None, AsText(values.parse_speed, absent=none_given)]
 PositiveSpeed = Annotated[float, positive("rad/s")]

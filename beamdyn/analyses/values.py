@@ -6,7 +6,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -188,9 +187,3 @@ def check_moves(scene: Scene, path: Path) -> None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
         raise ConfigError(str(path), [sentence], ["motion"])
-
-
-def final_speed(scene: Scene) -> float:
-    """The final speed of the scene's motion [rad/s], or 0."""
-    final = 0.0 if scene.motion is None else scene.motion.final_speed
-    return final if isfinite(final) else 0.0

@@ -1,4 +1,4 @@
-"""Files of histories, loads along the span, frequency responses and mode shapes, as tables with units."""
+"""Files of histories, peaks, loads along the span, responses and mode shapes, as tables with units."""
 
 from __future__ import annotations
 
@@ -17,11 +17,18 @@ from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.files.program_tables import head_line
 from beamdyn.linear.inputs_outputs import as_excitation, as_observation
-from beamdyn.scene.measured_curves import MeasuredCurves, MeasuredHistory, MeasuredLoads, MeasuredResponse
+from beamdyn.scene.measured_curves import (
+    MeasuredCurves,
+    MeasuredHistory,
+    MeasuredLoads,
+    MeasuredPeaks,
+    MeasuredResponse,
+)
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
 _SPREAD = "uncertainty"
-_SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *\w+)\s*(?=[,;\t]|$)", re.IGNORECASE)
+_SPEED = {"speed": Quantity("rad/s")}
+_SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *[\w/]+)\s*(?=[,;\t]|$)", re.IGNORECASE)
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
 _MOST = 40  # shapes in a file
@@ -30,12 +37,24 @@ _REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
 Half = Callable[[str], float]
 
 
+class Frequency(Quantity):
+    """A frequency, which papers give as an angular one, too."""
+
+    def convert(self, given: object) -> float:
+        """The frequency [Hz]."""
+        if isinstance(given, str) and given.rstrip().endswith("rad/s"):
+            return quantity(given, "rad/s") / (2 * math.pi)
+        return super().convert(given)
+
+
 def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequencies] | None:
     """What reads a table, by its heads; None of a table of frequencies."""
     line = text.lines[head_line(text) - 1].lower()
     heads = {plain_name(re.sub(r"[\[(].*", "", cell)) for cell in re.split(r"[,;\t]", line)}
     if "time" in heads:
         return read_history
+    if heads & set(map(plain_name, MeasuredPeaks.units)):
+        return read_peaks
     if heads & {"position", "x"}:
         return read_shapes if "shape" in line else read_loads
     return read_response if "frequency" in heads and re.search(r" by ", line) else None
@@ -46,29 +65,71 @@ def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHis
     if speed is not None:
         raise InvalidValue("speeds", speed, "histories are compared with the scene's motion", "leave it out")
     table, columns = _read(text, MeasuredHistory)
-    times = table.named()["time"].values
-    if later := next((k for k in range(1, len(times)) if times[k] <= times[k - 1]), 0):
-        said = f"time = {times[later]:g} s follows {times[later - 1]:g} s; expected times that ascend"
-        raise text.refusal(table.lines[later], said)
-    return MeasuredHistory(times, **_values(table, columns, half))
+    _check_ascending(table, "time", "s")
+    return MeasuredHistory(table.named()["time"].values, **_values(table, columns, half))
+
+
+def read_peaks(text: DataText, half: Half, speed: float | None) -> MeasuredPeaks:
+    """Read peaks over speed: "speed [rad/s], from [s], to [s], largest tip [mm]"."""
+    if speed is not None:
+        raise InvalidValue("speeds", speed, "the file has speeds of its own", "leave it out")
+    table, columns = _read(text, MeasuredPeaks, 1, "from", "to")
+    _check_ascending(table, "speed", "rad/s")
+    window = [_only(table, name, "the window") for name in ("from", "to")]
+    if window[0] >= window[1]:
+        raise text.refusal(table.lines[0], "expected a window that ends after it begins, found from >= to")
+    return MeasuredPeaks(table.named()["speed"].values, window=window, **_values(table, columns, half))
+
+
+def _check_ascending(table: CsvTable, name: str, unit: str) -> None:
+    """Refuse a value [unit] that does not follow a smaller one, at its line."""
+    values = table.named()[name].values
+    if later := next((k for k in range(1, len(values)) if values[k] <= values[k - 1]), 0):
+        found = f"{name} = {values[later]:g} {unit} follows {values[later - 1]:g} {unit}"
+        raise table.text.refusal(table.lines[later], f"{found}; expected values that ascend")
+
+
+def _only(table: CsvTable, name: str, what: str) -> float:
+    """The one value of a column [SI]."""
+    values = table.named()[name].values
+    if other := next((k for k, value in enumerate(values) if value != values[0]), 0):
+        raise table.text.refusal(
+            table.lines[other], f"expected {what} in all lines alike, found another {name}"
+        )
+    return values[0]
+
+
+def _speed(table: CsvTable, given: float | None) -> float | None:
+    """The speed of the file [rad/s], or that given with it; None if there is none."""
+    if "speed" not in table.named():
+        return given
+    if given is not None:
+        raise InvalidValue("speeds", given, "the file has a speed of its own", "leave it out")
+    return _only(table, "speed", "one speed")
 
 
 def read_loads(text: DataText, half: Half, speed: float | None) -> MeasuredLoads:
     """Read loads along the span: a column of positions, and at least one of "moment", "shear" and so on."""
     table, columns = _read(text, MeasuredLoads)
     check_places(table, "position")
-    return MeasuredLoads(
-        table.named()["position"].values, speed=speed or 0.0, **_values(table, columns, half)
-    )
+    at = _speed(table, speed)
+    return MeasuredLoads(table.named()["position"].values, speed=at, **_values(table, columns, half))
 
 
-def _read(text: DataText, kind: type[MeasuredHistory | MeasuredLoads]) -> tuple[CsvTable, list[CsvColumn]]:
-    """The table, and its columns of values."""
+def _read(
+    text: DataText,
+    kind: type[MeasuredHistory | MeasuredLoads | MeasuredPeaks],
+    least_rows: int = 2,
+    *times: str,
+) -> tuple[CsvTable, list[CsvColumn]]:
+    """The table, and its columns of values; `times` names columns of further times."""
     along, unit = kind.along
-    known = {along: Quantity(unit, least=0.0)} | {name: Quantity(unit) for name, unit in kind.units.items()}
+    known = {along: Quantity(unit, least=0.0)} | {name: Quantity("s", least=0.0) for name in times}
+    known |= _SPEED if kind is MeasuredLoads else {}
+    known |= {name: Quantity(unit) for name, unit in kind.units.items()}
     known |= {f"{name} {_SPREAD}": Quantity(unit, above=0.0) for name, unit in kind.units.items()}
     names = {plain_name(name): name for name in known} | ({"x": along} if along == "position" else {})
-    table = read_csv(text, known, names)
+    table = read_csv(text, known, names, least_rows=least_rows)
     columns = [column for column in table.columns if column.name in kind.units]
     if not columns:
         others = [column.head for column in table.columns if not column.name]
@@ -96,7 +157,7 @@ def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, 
 
 def _size(column: CsvColumn) -> float:
     """The unit of a column in SI."""
-    si = (MeasuredHistory.units | MeasuredLoads.units)[column.name]
+    si = (MeasuredHistory.units | MeasuredPeaks.units | MeasuredLoads.units)[column.name]
     return quantity(f"1 {column.unit}", si) if si else 1.0
 
 
@@ -105,7 +166,7 @@ def _size(column: CsvColumn) -> float:
 
 def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredResponse:
     """Read a frequency response: "frequency [Hz], tip by tip force [mm/N], phase [deg]"."""
-    known = {"frequency": Quantity("Hz", least=0.0), "phase": Quantity("rad")}
+    known = {"frequency": Frequency("Hz", least=0.0), "phase": Quantity("rad")} | _SPEED
     table = read_csv(text, known, {name: name for name in known})
     others = [column for column in table.columns if not column.name]
     if len(others) != 1:
@@ -113,16 +174,26 @@ def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredRe
         raise text.refusal(table.head_line, said)
     (column,), named = others, table.named()
     size, output, input = _response_head(table, column)
+    _check_response(table, column)
     return MeasuredResponse(
         named["frequency"].values,
         size * np.array(column.values),
         named["phase"].values if "phase" in named else None,
         output,
         input,
-        speed or 0.0,
+        _speed(table, speed),
         rounding=size * np.array([*map(half, column.written)]),
         source=text.path.name,
     )
+
+
+def _check_response(table: CsvTable, column: CsvColumn) -> None:
+    """Refuse frequencies that do not ascend, and amplitudes below 0, at their lines."""
+    _check_ascending(table, "frequency", "Hz")
+    if (below := next((k for k, value in enumerate(column.values) if value < 0), None)) is not None:
+        found = f"{column.head} = {column.values[below]:g}"
+        said = f"{found}: an amplitude is 0 or more; put its sign into the phase"
+        raise table.text.refusal(table.lines[below], said)
 
 
 def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]:
@@ -169,23 +240,27 @@ def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFreq
     other = next((o for o in _OTHER_SHAPE.findall(heads) if not re.fullmatch(r"shape \d+", o)), "")
     if other or not given:
         raise text.refusal(line, f"expected heads such as 'shape at 62.1 Hz', found '{other or heads}'")
-    known = {"position": Quantity("m", least=0.0)} | {f"shape {k}": Quantity() for k in range(1, _MOST + 1)}
+    known = (
+        {"position": Quantity("m", least=0.0)}
+        | _SPEED
+        | {f"shape {k}": Quantity() for k in range(1, _MOST + 1)}
+    )
     names = {plain_name(name): name for name in known} | {"x": "position"}
     laid = replace(text, lines=(*text.lines[: line - 1], heads, *text.lines[line:]))
     table = read_csv(laid, known, names)
     check_places(table, "position")
     try:
-        frequency = [Quantity("Hz", above=0.0).parse(each) for each in given]
+        frequency = [Frequency("Hz", above=0.0).parse(each) for each in given]
     except InvalidInput as error:
         raise text.refusal(line, f"shape at {error.value}: {error.bound}") from None
-    written = [each.split()[0].rstrip("HzkM") for each in given]
+    written = [re.sub(r"[^\d.]*$", "", each.split()[0]) for each in given]
     halves = [half(cell) * f / float(cell) for cell, f in zip(written, frequency, strict=True)]
     named = table.named()
     shapes = [named[f"shape {k}"].values for k in range(1, len(given) + 1)]
     labels = [f"shape {k}" for k in range(1, len(given) + 1)]
     return MeasuredFrequencies(
         [frequency],
-        [speed or 0.0],
+        [_speed(table, speed) or 0.0],
         rounding=[halves],
         labels=labels,
         positions=named["position"].values,

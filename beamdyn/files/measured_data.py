@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
@@ -12,10 +11,9 @@ import numpy as np
 from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
 from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
 from beamdyn.common.edge.inputs import Quantity
-from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import InvalidValue, real_array
 from beamdyn.common.results.files import as_path
-from beamdyn.files.measured_curve_files import reader_of
+from beamdyn.files.measured_curve_files import Frequency, reader_of
 from beamdyn.files.program_tables import UNIVERSAL, as_table, universal_table
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
@@ -28,17 +26,7 @@ _KNOWN = {
 }
 
 
-class _Frequency(Quantity):
-    """A frequency, which papers give as an angular one, too."""
-
-    def convert(self, given: object) -> float:
-        """The frequency [Hz]."""
-        if isinstance(given, str) and given.rstrip().endswith("rad/s"):
-            return quantity(given, "rad/s") / (2 * math.pi)
-        return super().convert(given)
-
-
-_FREQUENCY = _SPREAD = _Frequency("Hz", above=0.0)
+_FREQUENCY = _SPREAD = Frequency("Hz", above=0.0)
 _STEMS = ("frequency", "f", "mode", "flap", "edge", "lag", "chord", "bending", "torsion")
 _SET_LIST = re.compile(r"\s*SET\s+TIME/FREQ\s+LOAD STEP\s+SUBSTEP\s+CUMULATIVE", re.IGNORECASE)
 _SET = re.compile(r"\s*(\d+)\s+(\S+)\s+(\d+)\s+(\d+)\s+(\d+)\s*")
@@ -53,8 +41,9 @@ def read_measurements(
 
     A CSV file has a line of heads with units, which tell what it holds: natural frequencies over speed
     ("speed [rpm], frequency 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"), histories ("time [s], tip [mm]"),
-    loads along the span ("position [m], moment [N m]"), a frequency response ("frequency [Hz], tip by tip
-    force [mm/N], phase [deg]") or mode shapes ("position [mm], shape at 62.1 Hz").  Lists of modes and of
+    peaks over speed ("speed [rad/s], from [s], to [s], largest tip [mm]"), loads along the span ("position
+    [m], moment [N m]"), a frequency response ("frequency [Hz], tip by tip force [mm/N], phase [deg]") or mode
+    shapes ("position [mm], shape at 62.1 Hz").  Lists of modes and of
     variables of ANSYS (SET,LIST and PRVAR), output of FAST and universal files (dataset 58, by pyuff) are
     read as they stand.
 
@@ -64,14 +53,15 @@ def read_measurements(
         The file.
     speeds : sequence of float, optional
         Speeds [rad/s] of the rows where a file of frequencies has none; the one speed of loads, shapes or a
-        response.  A single row is at rest if they are not given.
+        response.  If they are not given, a single row and shapes are at rest, loads and a response at the
+        final speed of the scene's motion.
     columns : mapping of str to str, optional
         Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the
         file has none: {"tip by tip force [mm/N]": "UY_2"}.
 
     Returns
     -------
-    MeasuredFrequencies, MeasuredHistory, MeasuredLoads or MeasuredResponse
+    MeasuredFrequencies, MeasuredHistory, MeasuredPeaks, MeasuredLoads or MeasuredResponse
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Histories, loads along the span and frequency responses that were measured or computed elsewhere."""
+"""Histories, peaks, loads along the span and responses that were measured or computed elsewhere."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from beamdyn.scene.measured_frequencies import set_doubts, table_of
 
 @dataclass(frozen=True)
 class MeasuredCurves(ReadOnlyArrays):
-    """Base of measured values over time, position or frequency.
+    """Base of measured values over time, speed, position or frequency.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class MeasuredCurves(ReadOnlyArrays):
 
     @property
     def x(self) -> np.ndarray:
-        """Times [s], positions [m] or frequencies [Hz], shape (n,)."""
+        """Times [s], speeds [rad/s], positions [m] or frequencies [Hz], shape (n,)."""
         return getattr(self, self.along[0])
 
     @property
@@ -39,8 +39,13 @@ class MeasuredCurves(ReadOnlyArrays):
     @property
     def allowance(self) -> np.ndarray:
         """Allowance of each value: half of its last digit and twice its uncertainty, shape (n, C)."""
-        rounding, spread = (np.asarray(getattr(self, name)) for name in ("rounding", "uncertainty"))
-        return (rounding + 2 * np.nan_to_num(spread)).reshape(self.columns.shape)
+        spread = np.asarray(getattr(self, "uncertainty"))  # noqa: B009  (of subclasses)
+        return self.half_digits + 2 * np.nan_to_num(spread).reshape(self.columns.shape)
+
+    @property
+    def half_digits(self) -> np.ndarray:
+        """Half of the last digit of each value, shape (n, C)."""
+        return np.asarray(getattr(self, "rounding")).reshape(self.columns.shape)  # noqa: B009
 
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
         """Keep values, names and their doubts, checked."""
@@ -118,6 +123,58 @@ class MeasuredHistory(MeasuredCurves):
 
 
 @dataclass(frozen=True)
+class MeasuredPeaks(MeasuredCurves):
+    """Largest deflections of the tip in a time window over speed, from a laboratory or another program.
+
+    Parameters
+    ----------
+    speed : array-like, shape (n,)
+        Final speeds of the scene's motion [rad/s], ascending.
+    value : array-like, shape (n,) or (n, 1)
+        Largest |tip deflection| in the window [m].
+    window : array-like, shape (2,)
+        Beginning and end of the window [s], counted from the beginning of the motion.
+    names : sequence of str, shape (1,)
+        What the column is: "largest tip".
+    uncertainty : float or array-like, broadcast to (n, 1)
+        Standard uncertainties [m]; nan where they are not known.
+    rounding : float or array-like, broadcast to (n, 1)
+        Half a unit of the last digit that was written down [m].
+    source : str
+        Where the values come from, such as the name of a file.
+
+    Raises
+    ------
+    ValueError
+        If speeds do not ascend, the window does not end after it begins, or values do not fit.
+
+    Examples
+    --------
+    >>> bd.MeasuredPeaks([55.0], [1.94e-3], window=(20.0, 30.0)).value.shape
+    (1, 1)
+    """
+
+    speed: Any
+    value: Any
+    window: Any
+    names: Sequence[str] = ("largest tip",)
+    uncertainty: Any = np.nan
+    rounding: Any = 0.0
+    source: str = ""
+
+    along: ClassVar[tuple[str, str]] = ("speed", "rad/s")
+    units: ClassVar[dict[str, str]] = {"largest tip": "m"}
+
+    def __post_init__(self) -> None:
+        window = checks.ascending("window", self.window)
+        if len(window) != 2:
+            raise InvalidValue("window", self.window, "it has a beginning and an end", "give two times", "s")
+        checks.set_fields(self, speed=checks.ascending("speed", self.speed), window=window)
+        self._check_columns(self.value, self.names, self.units)
+        super().__post_init__()
+
+
+@dataclass(frozen=True)
 class MeasuredLoads(MeasuredCurves):
     """Moments and forces along the span in equilibrium at a speed, from a laboratory or another program.
 
@@ -129,8 +186,8 @@ class MeasuredLoads(MeasuredCurves):
         The loads [N m or N], a column a name, with the signs of `SpanLoads`.
     names : sequence of str, shape (C,)
         What the columns are: "moment", "moment across", "shear", "shear across" or "axial".
-    speed : float
-        Speed [rad/s].
+    speed : float, optional
+        Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n, C)
         Standard uncertainties [unit of the value]; nan where they are not known.
     rounding : float or array-like, broadcast to (n, C)
@@ -152,7 +209,7 @@ class MeasuredLoads(MeasuredCurves):
     position: Any
     value: Any
     names: Sequence[str] = ("moment",)
-    speed: float = 0.0
+    speed: float | None = None
     uncertainty: Any = np.nan
     rounding: Any = 0.0
     source: str = ""
@@ -173,7 +230,7 @@ class MeasuredLoads(MeasuredCurves):
         checks.refuse(
             np.diff(position, prepend=0.0) < 0, "position", position, "m", "positions ascend from 0"
         )
-        checks.set_fields(self, position=position, speed=checks.real("speed", self.speed, "rad/s"))
+        checks.set_fields(self, position=position, speed=_speed(self.speed))
         self._check_columns(self.value, self.names, self.units)
         super().__post_init__()
 
@@ -192,8 +249,8 @@ class MeasuredResponse(MeasuredCurves):
         Phase by which the output leads the input [rad]; without it magnitudes alone are compared.
     output, input : str
         What was observed and what drove the beam, in the words of `frequency_response`.
-    speed : float
-        Speed [rad/s].
+    speed : float, optional
+        Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n,)
         Standard uncertainties of the amplitude [SI]; nan where they are not known.
     rounding : float or array-like, broadcast to (n,)
@@ -217,7 +274,7 @@ class MeasuredResponse(MeasuredCurves):
     phase: Any = None
     output: str = "tip"
     input: str = "bending"
-    speed: float = 0.0
+    speed: float | None = None
     uncertainty: Any = np.nan
     rounding: Any = 0.0
     source: str = ""
@@ -239,7 +296,7 @@ class MeasuredResponse(MeasuredCurves):
         )
         for name in ("output", "input", "source"):
             checks.kind(name, getattr(self, name), str)
-        checks.set_fields(self, **given, speed=checks.real("speed", self.speed, "rad/s"))
+        checks.set_fields(self, **given, speed=_speed(self.speed))
         set_doubts(self, size, "")
         super().__post_init__()
 
@@ -253,3 +310,8 @@ class MeasuredResponse(MeasuredCurves):
         """The response, shape (n, 1): complex where the phase is known."""
         turned = self.magnitude if self.phase is None else self.magnitude * np.exp(1j * self.phase)
         return turned[:, None]
+
+
+def _speed(given: float | None) -> float | None:
+    """The one speed of the data [rad/s], checked; None if it is the scene's own."""
+    return None if given is None else checks.real("speed", given, "rad/s")

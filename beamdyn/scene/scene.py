@@ -154,6 +154,12 @@ class Scene(OneLine):
         return f"{type(self.motion).__name__}{known}"
 
     @property
+    def final_speed(self) -> float:
+        """Final speed of the motion [rad/s]; 0 without a motion, or of one that does not settle."""
+        final = 0.0 if self.motion is None else self.motion.final_speed
+        return final if math.isfinite(final) else 0.0
+
+    @property
     def is_damped(self) -> bool:
         """Whether anything damps the vibration."""
         return bool(self.damping_ratio) or self.damping.damps

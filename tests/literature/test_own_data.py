@@ -11,7 +11,7 @@ import pytest
 import beamdyn as bd
 from beamdyn import published
 from beamdyn.published import load
-from beamdyn.reproduce.inward_beam import first_frequencies
+from beamdyn.reproduce.inward_beam import first_frequencies, largest_deflections
 from beamdyn.reproduce.printed_tables import cases, entries_of_case
 from beamdyn.studies.beside_data.compare import beside
 from beamdyn.studies.beside_data.computed_curves import computed_history
@@ -28,6 +28,17 @@ def test_tables_of_the_inward_beam_have_the_verdicts_of_reproduce():
         for value, verdict in zip(found.measured.tolist(), found.verdict, strict=True):
             agreeing = {each.agrees for each in known if each.published == value}
             assert agreeing == {verdict == "agrees"}, (source, value)
+
+
+def test_the_peak_of_the_inward_beam_has_the_verdicts_of_reproduce():
+    scene = bd.load_scene(EXAMPLES / "rolling_harvester.toml")
+    rows = [each for each in largest_deflections() if each.what == "5 modes, Ritz"]
+    for name, source in (("", "RecurDyn"), ("_proposed", "paper")):
+        found = bd.compare(scene, bd.read_measurements(EXAMPLES / f"lee_yoo_table_3{name}.csv"))
+        (known,) = (each for each in rows if source in each.source)
+        np.testing.assert_allclose(1e3 * found.peak, known.published, rtol=1e-12)  # the same digits
+        assert found.agrees == known.agrees
+        assert found.agrees == bool(found.in_digits.all())
 
 
 @pytest.mark.parametrize(("paper", "scene"), [("bir_2009", "bir"), ("bir_2010", "bir_tip")])

@@ -41,6 +41,44 @@ def test_a_delay_is_found_and_taken_out():
     assert "behind taken out" in found.sentences()[0]
 
 
+def test_a_sign_that_is_turned_is_named_and_its_delay_is_not_half_a_period():
+    late = 1.7e-3
+    data = bd.MeasuredHistory(T, -RUN.deflection(T - late), rounding=1e-9)
+    found = bd.compare(MOVING, data)
+    assert found.is_turned.all()
+    np.testing.assert_allclose(found.delay, late, rtol=1e-3)
+    assert "its sign is turned: with the other one" in found.sentences()[0]
+    loads = bd.MeasuredLoads([0.0, 0.025], [0.3729, 0.1742], ["axial"], 50.0, rounding=5e-5)
+    assert "its sign is turned" in bd.compare(PLAIN, loads).sentences()[0]
+    assert not bd.compare(PLAIN, replace(loads, value=-loads.value)).is_turned.any()
+
+
+def test_data_without_a_speed_are_compared_at_that_of_the_scene_which_is_said():
+    loads = bd.MeasuredLoads([0.0, 0.025], [-0.4512, -0.2108], ["axial"], rounding=5e-5)
+    found = bd.compare(MOVING, loads)
+    assert found.speed == 55.0
+    assert "the final speed of the scene" in found.warnings[0]
+    assert "axial at 55 rad/s" in found.sentences()[0]
+    given = bd.compare(MOVING, replace(loads, speed=55.0))
+    assert len(given.warnings) == len(found.warnings) - 1
+    np.testing.assert_array_equal(given.computed, found.computed)
+
+
+def test_digits_that_agree_are_no_deviation():
+    exact = bd.compare(PLAIN, bd.MeasuredLoads([0.0], [1.0], ["axial"], 50.0)).computed
+    near = bd.compare(PLAIN, bd.MeasuredLoads([0.0], exact.round(3), ["axial"], 50.0, rounding=5e-4))
+    assert "agree to the digits of the data" in near.sentences()[0]
+    off = bd.compare(PLAIN, bd.MeasuredLoads([0.0], exact.round(3), ["axial"], 50.0, uncertainty=5e-3))
+    assert off.agrees
+    assert "low" in off.sentences()[0] or "high" in off.sentences()[0]
+
+
+def test_a_value_beside_none_is_no_infinite_deviation():
+    found = bd.compare(PLAIN, bd.MeasuredLoads([0.0, 0.02], [1.0, 0.5], ["moment"], 50.0))
+    assert "beside none in the model" in found.sentences()[0]
+    assert "inf" not in " ".join(found.sentences())
+
+
 def test_moment_and_strain_at_the_root_have_one_clock():
     loads = bd.transient_loads(RUN, at=[0.0], t=T)
     values = np.c_[RUN.root_strain(T), loads.moment[:, 0, 0]]

@@ -73,6 +73,17 @@ def test_what_no_number_explains_is_said():
     assert "No number alone explains it" in found.sentences()[-1]
 
 
+def test_a_shape_of_another_mode_is_said_to_be_like_that():
+    x = np.linspace(0.005, 0.05, 6)
+    shapes = bd.natural_modes(SCENE, 0.0, 3).shape(x)
+    found = bd.compare(
+        SCENE, bd.MeasuredFrequencies([65.2, 408.8, 1145.0], positions=x, shapes=shapes[[1, 0, 2]])
+    )
+    assert found.mode.tolist() == [0, 0, 3]
+    assert found.resembles[2] == ""
+    assert "most like that of mode 2, 408.8 Hz (likeness 1.00): columns may be" in " ".join(found.sentences())
+
+
 def test_modes_without_a_value_and_values_without_a_mode_are_named():
     data = bd.MeasuredFrequencies([65.23, 656.6, 1144.6], labels=["bending 1", "torsion 1", "bending 3"])
     found = bd.compare(SCENE, data)
@@ -80,7 +91,7 @@ def test_modes_without_a_value_and_values_without_a_mode_are_named():
     assert found.verdict[1] == "no mode"
     said = " ".join(found.sentences())
     assert "mode 2 of the scene, 408.8 Hz at 0 rad/s" in said
-    assert "torsion 1, 656.6 Hz at 0 rad/s: the model has no such mode" in said
+    assert "torsion 1, 656.6 Hz at 0 rad/s: the model has no such mode near it" in said
     twisting = replace(SCENE, physics=bd.Physics(torsion=True))
     assert bd.compare(twisting, replace(data, uncertainty=np.full((1, 3), 50.0))).mode.tolist() == [1, 3, 4]
 

@@ -102,6 +102,41 @@ def test_units_of_responses_are_those_of_output_and_input(read, unit):
     assert data.phase is None
 
 
+def test_a_response_over_angular_frequency_at_the_speed_in_its_file(read):
+    data = read("speed [rpm], frequency [rad/s], tip by bending [mm/(m/s2)]\n30, 10, 2.0\n30, 20, 3.0\n")
+    np.testing.assert_allclose(
+        data.frequency, np.array([10.0, 20.0]) / (2 * np.pi), rtol=1e-15
+    )  # one product
+    np.testing.assert_allclose(data.speed, np.pi, rtol=1e-15)  # one product
+    assert read("frequency [Hz], tip by bending [mm/(m/s2)]\n10, 2.0\n20, 3.0\n").speed is None
+
+
+def test_peaks_over_speed_have_one_window(read):
+    text = "speed [rad/s], from [s], to [s], largest tip [mm]\n40, 1, 2, 0.5\n55, 1, 2, 1.96\n"
+    data = read(text)
+    assert isinstance(data, bd.MeasuredPeaks)
+    np.testing.assert_array_equal(data.window, [1.0, 2.0])
+    np.testing.assert_allclose(data.value[:, 0], [0.5e-3, 1.96e-3], rtol=1e-15)  # one product
+    for wrong, said in (
+        (("55, 1", "55, 0"), "line 3: expected the window"),
+        (("40, 1, 2", "40, 2, 2"), "line 2"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            read(text.replace(*wrong))
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("10, 1\n10, 2\n", "line 3: frequency = 10 Hz follows"),
+        ("10, 1\n20, -2\n", "line 3: .* into the phase"),
+    ],
+)
+def test_a_response_that_cannot_be_is_refused_at_its_line(read, rows, said):
+    with pytest.raises(ValueError, match=said):
+        read(f"frequency [Hz], tip by bending [mm/(m/s2)]\n{rows}")
+
+
 def test_shapes_are_read_with_their_frequencies_and_paired(read):
     data = read(SHAPES)
     np.testing.assert_allclose(data.frequency, [[62.1, 389.0]], rtol=1e-15)  # one product

@@ -285,6 +285,11 @@ CALLS = {
         {"time": [0.0, 0.1, 0.2], "value": [0.0, 1.0, 0.0], "names": ["tip"], "uncertainty": 0.1}
         | {"rounding": 0.05, "source": "a.csv"},
     ),
+    "MeasuredPeaks": (
+        bd.MeasuredPeaks,
+        {"speed": [1.0, 2.0, 3.0], "value": [0.0, 1.0, 0.0], "window": [1.0, 2.0], "names": ["largest tip"]}
+        | {"uncertainty": 0.1, "rounding": 0.05, "source": "a.csv"},
+    ),
     "MeasuredLoads": (
         bd.MeasuredLoads,
         {"position": [0.0, 0.1, 0.2], "value": [0.0, 1.0, 0.0], "names": ["moment"], "speed": 5.0}
@@ -324,6 +329,7 @@ CALLS = {
     "read_deck": (bd.read_deck, {"path": "examples/blade_stations.csv", "length": 40.0, "hub_radius": 1.25}),
 }
 SWITCHES = ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection")
+CURVES = "MeasuredHistory", "MeasuredPeaks", "MeasuredLoads", "MeasuredResponse"
 # What of the wrong values is right after all.
 ALLOWED = {
     **{f"Physics.{name}": {"truth", "numpy's truth"} for name in SWITCHES},
@@ -344,8 +350,8 @@ ALLOWED = {
     "read_measurements.path": {"text"},
     "read_measurements.columns": {"dictionary"},
     "MeasuredFrequencies.source": {"text"},
-    **{f"{name}.source": {"text"} for name in ("MeasuredHistory", "MeasuredLoads", "MeasuredResponse")},
-    **{f"{name}.uncertainty": {"nan"} for name in ("MeasuredHistory", "MeasuredLoads", "MeasuredResponse")},
+    **{f"{name}.source": {"text"} for name in CURVES},
+    **{f"{name}.uncertainty": {"nan"} for name in CURVES},
     **{f"MeasuredResponse.{name}": {"text"} for name in ("output", "input")},
     "MeasuredFrequencies.labels": {"empty", "empty array"},
     "MeasuredFrequencies.uncertainty": {"nan"},

@@ -35,7 +35,7 @@ def comparison_columns(result: FrequencyComparison) -> Columns:
         Column("measured", result.measured, "Hz", words="value"),
         Column("computed", computed, "Hz", error=result.error, beyond=result.model_error),
         Column("mode", result.mode, cells=[str(k) if k else "-" for k in result.mode.tolist()]),
-        Column("deviation", result.deviation, cells=_percents(result.deviation, "+")),
+        Column("deviation", result.deviation, cells=_deviations(result.deviation, result.in_digits)),
         Column("allowance", result.allowance, "Hz", words=None),
         Column("allowance", (), cells=said[0], words="data may be off"),
         Column("error", result.error, "Hz", words=None),
@@ -49,7 +49,12 @@ def comparison_columns(result: FrequencyComparison) -> Columns:
 
 
 def _percents(values: np.ndarray, sign: str = "") -> list[str]:
-    return ["-" if np.isnan(value) else percent(float(value), sign) for value in values]
+    return [percent(float(value), sign) if np.isfinite(value) else "-" for value in values]
+
+
+def _deviations(values: np.ndarray, in_digits: np.ndarray) -> list[str]:
+    """Deviations in percent, but of a value that agrees in all digits that it has."""
+    return ["in its digits" if k else cell for k, cell in zip(in_digits, _percents(values, "+"), strict=True)]
 
 
 def comparison_tables(result: FrequencyComparison) -> Group:
@@ -87,14 +92,14 @@ def curve_columns(result: CurveComparison) -> Columns:
 
     shift = {"time": ("behind [s]", f"{result.delay:.4g}"), "frequency": ("phase ahead [deg]", "")}
     head, late = shift.get(result.along, ("", ""))
-    phases = [late or f"{np.degrees(value):.3g}" for value in result.phase]
+    phases = [late or (f"{np.degrees(value):.3g}" if np.isfinite(value) else "-") for value in result.phase]
     at = result.places, np.arange(len(units))
     own = result.allowance[at] / np.where(result.peak == 0, np.inf, result.peak)
     return Columns(
         Column("name", result.name, words="curve"),
         Column("peak", (), cells=sizes(result.peak), words="largest measured"),
         Column("computed", (), cells=sizes(result.computed_peak), words="computed"),
-        Column("deviation", (), cells=_percents(result.deviation, "+")),
+        Column("deviation", (), cells=_deviations(result.deviation, result.in_digits)),
         Column("rms", (), cells=_percents(result.rms), words="whole differs by"),
         Column("phase", (), cells=phases, words=head or None),
         Column("allowance", (), cells=_percents(own), words="data may be off"),
@@ -107,7 +112,7 @@ def curve_columns(result: CurveComparison) -> Columns:
 
 def curve_csv(result: CurveComparison) -> Columns:
     """A row a time, position or frequency: each curve as measured and computed, and what may be off."""
-    units = {"time": "s", "position": "m", "frequency": "Hz"}
+    units = {"time": "s", "speed": "rad/s", "position": "m", "frequency": "Hz"}
     columns = [Column(result.along, result.x, units[result.along])]
     for k, (name, unit) in enumerate(zip(result.name, result.unit, strict=True)):
         for what in ("measured", "computed"):

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
-from typing import overload
 
 import numpy as np
 
@@ -14,15 +13,22 @@ from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import Speeds, unannounced
+from beamdyn.common.results.statements import INPUT, Speeds, Statement, unannounced
 from beamdyn.common.words import Words
 from beamdyn.modes.modes import Modes, natural_modes
-from beamdyn.scene.measured_curves import MeasuredCurves, MeasuredHistory, MeasuredLoads, MeasuredResponse
+from beamdyn.scene.measured_curves import (
+    MeasuredCurves,
+    MeasuredHistory,
+    MeasuredLoads,
+    MeasuredPeaks,
+    MeasuredResponse,
+)
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.beside_data.computed_curves import (
     computed_history,
     computed_loads,
+    computed_peaks,
     computed_response,
 )
 from beamdyn.studies.beside_data.curve_comparison import CurveComparison
@@ -34,22 +40,14 @@ _ROUNDING = 1e-9  # of the length, by which a position may lie beyond the tip
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
 
 
-@overload
-def compare(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison: ...
-
-
-@overload
-def compare(scene: Scene, data: MeasuredCurves) -> CurveComparison: ...
-
-
 def compare(
     scene: Scene, data: MeasuredFrequencies | MeasuredCurves
 ) -> FrequencyComparison | CurveComparison:
     """Compare measured values with those of a scene, and find what would explain deviations of frequencies.
 
     Histories are compared with the scene's motion from rest, aligned in time within half a period of the
-    first mode at rest; loads with those in equilibrium, and responses at their frequencies, both at a steady
-    speed.
+    first mode at rest; peaks with those of runs to each speed; loads with those in equilibrium, and responses
+    at their frequencies, both at a steady speed.
 
     Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
     where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
@@ -59,8 +57,8 @@ def compare(
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is used for histories alone.
-    data : MeasuredFrequencies, MeasuredHistory, MeasuredLoads or MeasuredResponse
+        The scene; its motion is used for histories and peaks, and its final speed where data have none.
+    data : MeasuredFrequencies, MeasuredHistory, MeasuredPeaks, MeasuredLoads or MeasuredResponse
         The measured values.
 
     Returns
@@ -110,6 +108,7 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
         data.speeds[at],
         data.frequency[at, column],
         *joined,
+        resembles=tuple(said for row in rows for said in row.resembling()),
         unmeasured=tuple(said for row in rows for said in row.unmeasured()),
         explanations=(),
         warnings=tuple(warnings),
@@ -127,12 +126,14 @@ def _beside_curves(scene: Scene, data: MeasuredCurves) -> CurveComparison:
     match data:
         case MeasuredHistory():
             found = computed_history(scene, data)
+        case MeasuredPeaks():
+            found = computed_peaks(scene, data)
         case MeasuredLoads():
             found = computed_loads(scene, data)
         case MeasuredResponse():
             found = computed_response(scene, data)
         case _:
-            raise TypeError(f"data = {data!r}: give a MeasuredHistory, MeasuredLoads or MeasuredResponse")
+            raise TypeError(f"data = {data!r}: give one of the kinds that `compare` names")
     made = found.result.provenance
     return CurveComparison(
         tuple(data.names),
@@ -142,15 +143,24 @@ def _beside_curves(scene: Scene, data: MeasuredCurves) -> CurveComparison:
         data.columns,
         found.value,
         data.allowance,
+        data.half_digits,
         np.broadcast_to(found.error, found.value.shape),
-        np.full(len(data.names), float(found.result.left_out_effects.total_of_known)),
+        np.full(len(data.names), found.result.left_out_effects.total_of_known),
+        found.speed,
         found.delay,
         np.full(len(data.names), found.phase),
-        tuple(found.result.warnings),
+        (*_assumed(data, found.speed), *found.result.warnings),
         Provenance(__version__, made.method, made.compared_with, perf_counter() - start),
         scene,
         data.source,
     )
+
+
+def _assumed(data: MeasuredCurves, speed: float) -> Iterator[Statement]:
+    """Yield at which speed data are compared that have none."""
+    if getattr(data, "speed", 0.0) is None:
+        said = "the data have no speed: compared at ", Speeds(speed), ", the final speed of the scene"
+        yield Statement(*said, kind=INPUT)
 
 
 def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
@@ -164,7 +174,7 @@ def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
         raise InvalidValue("positions", float(data.positions[beyond][0]), bound, "measure from the root", "m")
 
 
-_PARTS = "computed", "mode", "allowance", "error", "model_error", "likeness"
+_PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "likeness"
 
 
 @dataclass(frozen=True)
@@ -213,6 +223,10 @@ class _MeasuredRow:
         return self.data.allowance[self.row][self._known]
 
     @property
+    def rounding(self) -> np.ndarray:
+        return self.data.rounding[self.row][self._known]
+
+    @property
     def error(self) -> np.ndarray:
         return self._of_modes(self.modes.error * self.modes.frequency)
 
@@ -227,6 +241,17 @@ class _MeasuredRow:
             return none
         found = self._of_shapes[self._known]
         return np.where(self._place == NO_MODE, np.nan, found[np.arange(len(found)), self._place])
+
+    def resembling(self) -> Iterator[str]:
+        """Yield for each value without a mode which mode its shape is most like; empty for all others."""
+        known = np.flatnonzero(self._known)
+        for column, place in zip(known.tolist(), self._place.tolist(), strict=True):
+            shapes = self._of_shapes if place == NO_MODE and self.data.shapes is not None else None
+            yield "" if shapes is None else self._most_alike(shapes[column])
+
+    def _most_alike(self, likeness: np.ndarray) -> str:
+        k = int(likeness.argmax())
+        return f"mode {k + 1}, {number(self.modes.frequency[k], 'Hz')} (likeness {likeness[k]:.2f})"
 
     def unmeasured(self) -> Iterator[str]:
         """Yield modes below the highest that is paired which have no measured value."""

@@ -1,4 +1,4 @@
-"""Curves of a scene at the times, positions or frequencies of measured ones."""
+"""Curves of a scene at the times, speeds, positions or frequencies of measured ones."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ from beamdyn.linear.frequency_response import FrequencyResponse, frequency_respo
 from beamdyn.loads.static_loads import StaticLoads, static_loads
 from beamdyn.loads.transient_loads import transient_loads
 from beamdyn.modes.modes import natural_modes
-from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredResponse
+from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredPeaks, MeasuredResponse
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient, simulate
+from beamdyn.transient.sweep import Sweep, sweep
 
 _DELAYS = 33  # delays tried between the limits
 _COMPARED = 4000  # times at which histories are aligned; at most twice as many
 _SHARP = 1e-9  # accuracy of a delay over the period
+_TURNED = 0.25  # share of the squares that are left with other signs, up to which signs count as turned
 _LOADS = {
     "moment": ("moment", 0),
     "moment across": ("moment", 1),
@@ -36,12 +38,16 @@ _LOADS = {
 
 @dataclass(frozen=True)
 class ComputedCurves:
-    """Curves of a scene: values (n, C) and errors that broadcast to them, and the result they are from."""
+    """Curves of a scene: values (n, C) and errors that broadcast to them, and the result they are from.
+
+    `speed` is the one [rad/s] at which they were computed, nan of curves over time and speed.
+    """
 
     value: np.ndarray
     error: np.ndarray
     unit: tuple[str, ...]
-    result: StaticLoads | FrequencyResponse | Transient
+    result: StaticLoads | FrequencyResponse | Transient | Sweep
+    speed: float = np.nan
     delay: float = 0.0
     phase: float = np.nan
 
@@ -51,15 +57,21 @@ class ComputedCurves:
 
 def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
     """Loads at the positions of measured ones, in equilibrium at their speed."""
+    speed = _speed(scene, data)
     with unannounced():
-        found = static_loads(scene, data.speed, data.position)
+        found = static_loads(scene, speed, data.position)
     places = [_LOADS[name] for name in data.names]
     for name, (quantity, k) in zip(data.names, places, strict=True):
         _check_modelled(name, k < found.values(quantity).shape[2])
     value, error = (
         np.array([of(quantity)[0, :, k] for quantity, k in places]).T for of in (found.values, found.error_of)
     )
-    return ComputedCurves(value, error, tuple(data.units[name] for name in data.names), found)
+    return ComputedCurves(value, error, tuple(data.units[name] for name in data.names), found, speed)
+
+
+def _speed(scene: Scene, data: MeasuredLoads | MeasuredResponse) -> float:
+    """The speed of the data [rad/s], or else of the scene."""
+    return scene.final_speed if data.speed is None else data.speed
 
 
 def _check_modelled(name: str, modelled: bool) -> None:
@@ -71,8 +83,9 @@ def _check_modelled(name: str, modelled: bool) -> None:
 
 def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
     """Response at the frequencies of a measured one."""
+    speed = _speed(scene, data)
     with unannounced():
-        found = frequency_response(scene, data.speed, data.frequency, data.input, data.output)
+        found = frequency_response(scene, speed, data.frequency, data.input, data.output)
     value = found.response
     if value.shape[1] != 1:
         bound = "a turning beam answers it at two frequencies"
@@ -85,10 +98,17 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
     else:
         largest = int(data.magnitude.argmax())
         phase = float(np.angle(data.columns[largest, 0] * value[largest, 0].conj()))
-    return ComputedCurves(value, found.error, (found.unit,), found, phase=phase)
+    return ComputedCurves(value, found.error, (found.unit,), found, speed, phase=phase)
 
 
-# Histories ----------------------------------------------------------------------------------------
+# Histories, and their peaks ------------------------------------------------------------------------
+
+
+def computed_peaks(scene: Scene, data: MeasuredPeaks) -> ComputedCurves:
+    """Largest deflections in the window of measured ones, each of a run from rest to its speed."""
+    with unannounced():
+        found = sweep(scene, data.speed, (data.window[0], data.window[1]))
+    return ComputedCurves(found.peaks[:, None], found.peak_error[:, None], ("m",), found)
 
 
 def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
@@ -110,7 +130,7 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
         value = at(data.time - delay)
     phase = -2 * np.pi * _main_frequency(data) * delay
     units = tuple(data.units[name] for name in data.names)
-    return ComputedCurves(value, np.broadcast_to(error, value.shape), units, run, delay, phase)
+    return ComputedCurves(value, np.broadcast_to(error, value.shape), units, run, delay=delay, phase=phase)
 
 
 def _period(scene: Scene, data: MeasuredHistory) -> float:
@@ -156,19 +176,36 @@ def _delay(
     limits: tuple[float, float],
     period: float,
 ) -> float:
-    """Delay [s] between two limits by which the curves come nearest to the measured ones."""
+    """Delay [s] between two limits by which the curves come nearest to the measured ones.
+
+    Where they come far nearer with the other sign, it is the delay of that.
+    """
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]
     sizes = np.abs(data.value).max(axis=0)
     sizes[sizes == 0] = 1.0
 
-    def misfit(delay: float) -> float:
-        return float((((values - at(t - delay)) / sizes) ** 2).sum())
+    def squares(delay: float) -> np.ndarray:
+        """Sums of squares, with the signs as they are and with the others, (2, C)."""
+        curves = at(t - delay)
+        return np.array([(((values - sign * curves) / sizes) ** 2).sum(axis=0) for sign in (1, -1)])
 
+    def misfit(delay: float) -> float:
+        return float(squares(delay)[0].sum())
+
+    def misfit_of_any_sign(delay: float) -> float:
+        return float(squares(delay).min(axis=0).sum())
+
+    as_is, turned = (_least(each, limits, _SHARP * period) for each in (misfit, misfit_of_any_sign))
+    return turned if misfit_of_any_sign(turned) < _TURNED * misfit(as_is) else as_is
+
+
+def _least(misfit: Callable[[float], float], limits: tuple[float, float], accuracy: float) -> float:
+    """The delay [s] between two limits with the least misfit."""
     tried = np.linspace(*limits, _DELAYS)
     best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
     between = max(best - step, tried[0]), min(best + step, tried[-1])
-    options = {"xatol": _SHARP * period}
+    options = {"xatol": accuracy}
     return float(minimize_scalar(misfit, bounds=between, method="bounded", options=options).x)  # pyright: ignore
 
 

@@ -1,4 +1,4 @@
-"""Measured histories, loads and frequency responses beside computed ones, and a verdict on each."""
+"""Measured histories, peaks, loads and frequency responses beside computed ones, and a verdict on each."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import COLOURS, new_axes
 from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words, amount
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, OUTSIDE
@@ -23,12 +24,13 @@ if TYPE_CHECKING:
 UNKNOWN = "not known"  # verdict where the numerical error is not
 _DIGITS = 5  # of values in sentences
 _FEW = 100  # values up to which they are drawn as points
+_TURNED = 0.5  # share of the difference that the other sign leaves, up to which the sign counts as turned
 _WIDE = 0.8  # width of lines through more values than a picture has dots
 
 
 @dataclass(frozen=True)
 class CurveComparison(Result):
-    """Measured curves over time, position or frequency beside those of a scene.
+    """Measured curves over time, speed, position or frequency beside those of a scene.
 
     Parameters
     ----------
@@ -37,18 +39,22 @@ class CurveComparison(Result):
     unit : tuple of str, shape (C,)
         Unit of each curve.
     along : str
-        Over what they are given: "time", "position" or "frequency".
+        Over what they are given: "time", "speed", "position" or "frequency".
     x : ndarray, shape (n,)
-        Times [s], positions [m] or frequencies [Hz].
+        Times [s], speeds [rad/s], positions [m] or frequencies [Hz].
     measured, computed : ndarray, shape (n, C)
         The values [unit of the curve].  Computed histories are shifted to times later by `delay`: at x they
         have the values of x - delay.  Responses are complex where the phase was measured.
     allowance : ndarray, shape (n, C)
         By how much measured values may be off [same unit]: half of the last digit, and twice the uncertainty.
+    rounding : ndarray, shape (n, C)
+        Half of the last digit of the measured values alone [same unit].
     error : ndarray, shape (n, C)
         Estimated numerical errors of the computed values [same unit].
     model_error : ndarray, shape (C,)
         What the effects that the model leaves out would change, over the largest value, as far as known.
+    speed : float
+        Speed at which loads and responses were computed [rad/s]; nan of other curves.
     delay : float
         Time by which measured histories lag behind the computed ones [s]; 0 of other curves.
     phase : ndarray, shape (C,)
@@ -76,8 +82,10 @@ class CurveComparison(Result):
     measured: np.ndarray
     computed: np.ndarray
     allowance: np.ndarray
+    rounding: np.ndarray
     error: np.ndarray
     model_error: np.ndarray
+    speed: float
     delay: float
     phase: np.ndarray
     warnings: tuple[str, ...]
@@ -85,7 +93,7 @@ class CurveComparison(Result):
     scene: Scene = field(repr=False)
     source: str = field(default="", repr=False)
 
-    field_units: ClassVar[dict[str, str]] = {"s": "delay", "rad": "phase"}
+    field_units: ClassVar[dict[str, str]] = {"rad/s": "speed", "s": "delay", "rad": "phase"}
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one line; see `Result.headline`."""
@@ -111,13 +119,30 @@ class CurveComparison(Result):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured less largest computed value over the computed one, shape (C,)."""
+        """Largest measured less largest computed value over the latter, shape (C,); inf where that is 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property
     def rms(self) -> np.ndarray:
         """Root mean square of the difference over that of the computed curve, shape (C,)."""
         return _over(_rms(self.measured - self.computed), _rms(self.computed))
+
+    @property
+    def is_turned(self) -> np.ndarray:
+        """Whether each curve comes far nearer to the computed one with the other sign, shape (C,)."""
+        return self.rms_turned < _TURNED * self.rms
+
+    @property
+    def rms_turned(self) -> np.ndarray:
+        """`rms` if the measured curve had the other sign, shape (C,)."""
+        return _over(_rms(self.measured + self.computed), _rms(self.computed))
+
+    @property
+    def in_digits(self) -> np.ndarray:
+        """Whether largest value and whole differ by no more than the last digits of the data, shape (C,)."""
+        half = self.rounding[self.places, np.arange(len(self.name))]
+        within = _rms(self.measured - self.computed) <= _rms(self.rounding)
+        return within & (np.abs(self.peak - self.computed_peak) <= half)
 
     @property
     def verdict(self) -> tuple[str, ...]:
@@ -153,20 +178,36 @@ class CurveComparison(Result):
 
     def _say(self, k: int) -> Words:
         """The sentence on one curve."""
-        deviation, at = float(self.deviation[k]), float(self.x[self.places[k]])
-        side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'}" if deviation else "the same"
-        where = amount(at) if self.along == "position" else number(at, "s" if self.along == "time" else "Hz")
-        return Words(
-            f"{self.name[k]}: the largest, ",
-            say(self.peak[k], self.unit[k]),
-            " at ",
-            where,
-            f", is {side} of ",
-            say(self.computed_peak[k], self.unit[k]),
-            f", and the whole differs by {percent(float(self.rms[k]))} (root mean square)",
-            self._shifted(k),
-            f": {self._reason(k)}.",
-        )
+        at_speed = (" at ", Speeds(self.speed)) if np.isfinite(self.speed) else ()
+        largest = say(self.peak[k], self.unit[k]), " at ", self._where(float(self.x[self.places[k]]))
+        start = self.name[k], *at_speed, ": the largest, ", *largest
+        if self.in_digits[k]:
+            return Words(*start, ", and the whole agree to the digits of the data", self._shifted(k), ".")
+        rms = float(self.rms[k])
+        whole = f", and the whole differs by {percent(rms)} (root mean square)" if np.isfinite(rms) else ""
+        more = self._shifted(k), self._signed(k), f": {self._reason(k)}."
+        return Words(*start, ", is ", *self._beside(k), whole, *more)
+
+    def _beside(self, k: int) -> tuple[str, ...]:
+        """How the largest value is beside the computed one, in words."""
+        deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
+        if np.isinf(deviation):
+            return ("beside none in the model",)
+        side = "low" if deviation < 0 else "high"
+        return f"{percent(abs(deviation))} {side} of " if deviation else "the same as ", computed
+
+    def _where(self, at: float) -> str:
+        """A time, speed, position or frequency in words."""
+        if self.along == "position":
+            return amount(at)
+        return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
+
+    def _signed(self, k: int) -> str:
+        """That the sign of the curve is another one, in words; empty if it is not."""
+        if not self.is_turned[k]:
+            return ""
+        left = percent(float(self.rms_turned[k]))
+        return f"; its sign is turned: with the other one the whole differs by {left}"
 
     def _shifted(self, k: int) -> str:
         """What the phase is, in words; empty if there is nothing to say."""
@@ -202,7 +243,8 @@ class CurveComparison(Result):
         else:
             ax = new_axes() if ax is None else ax
             places = [ax]
-        x = self.display_units.length_unit("m") if self.along == "position" else None
+        units = self.display_units
+        x = {"position": units.length_unit("m"), "speed": units.speed_unit()}.get(self.along)
         label = f"{self.along} [{x.name if x else {'time': 's'}.get(self.along, 'Hz')}]"
         for place, (name, measured, computed) in zip(places, curves, strict=True):
             set_up_axes(place, label if place is places[-1] else "", name)

@@ -44,6 +44,8 @@ class FrequencyComparison(Result):
         Number of the computed mode at its speed, from 1; 0 where there is none.
     allowance : ndarray, shape (N,)
         By how much the measured value may be off [Hz]: half of its last digit, and twice its uncertainty.
+    rounding : ndarray, shape (N,)
+        Half of the last digit of the measured value alone [Hz].
     error : ndarray, shape (N,)
         Estimated numerical error of the computed frequency [Hz].
     model_error : ndarray, shape (N,)
@@ -51,6 +53,8 @@ class FrequencyComparison(Result):
         is known.
     likeness : ndarray, shape (N,)
         Modal assurance criterion of measured and computed shape; nan where no shapes were measured.
+    resembles : tuple of str, shape (N,)
+        Of a measured shape without a mode, the mode whose shape is most like it; empty for all others.
     unmeasured : tuple of str
         Modes of the scene between the measured ones that have no measured value.
     explanations : tuple of OneNumberFit
@@ -74,9 +78,11 @@ class FrequencyComparison(Result):
     computed: np.ndarray
     mode: np.ndarray
     allowance: np.ndarray
+    rounding: np.ndarray
     error: np.ndarray
     model_error: np.ndarray
     likeness: np.ndarray
+    resembles: tuple[str, ...]
     unmeasured: tuple[str, ...]
     explanations: tuple[OneNumberFit, ...]
     warnings: tuple[str, ...]
@@ -86,7 +92,7 @@ class FrequencyComparison(Result):
 
     field_units: ClassVar[dict[str, str]] = {
         "rad/s": "speed",
-        "Hz": "measured computed allowance error model_error",
+        "Hz": "measured computed allowance rounding error model_error",
     }
 
     def headline(self) -> Iterator[str]:
@@ -109,6 +115,11 @@ class FrequencyComparison(Result):
         return tuple(np.select(each, [ALONE, AGREES, LEFT_OUT], OUTSIDE).tolist())
 
     @property
+    def in_digits(self) -> np.ndarray:
+        """Whether each value differs by no more than half of its last digit, shape (N,)."""
+        return np.abs(self.measured - self.computed) <= self.rounding
+
+    @property
     def agrees(self) -> bool:
         """Whether all values agree within their own uncertainty, half of their last digit and our error."""
         return set(self.verdict) == {AGREES}
@@ -124,7 +135,9 @@ class FrequencyComparison(Result):
 
     def _sentences(self) -> Iterator[str]:
         off, verdicts = np.nan_to_num(np.abs(self.deviation)), np.array(self.verdict)
-        if self.agrees:
+        if self.in_digits.all():
+            yield "All agree to the digits of the data."
+        elif self.agrees:
             yield f"All agree: {self._say(int(off.argmax()), 'which is the largest deviation')}."
         for verdict, words in _WORDS.items():
             if (verdicts == verdict).any():
@@ -146,9 +159,14 @@ class FrequencyComparison(Result):
         """One value without a mode in words, with what may have it."""
         setting = Setting("physics", torsion=True)
         twists = TORSION in self.label[k].lower()
-        advice = ["; with ", setting, " it may have one."] if twists else ["."]
+        advice = ["; with ", setting, " it may have one"] if twists else []
+        if self.resembles[k]:
+            advice = [f"; its shape is most like that of {self.resembles[k]}: columns may be exchanged"]
         start = f"{self.label[k]}, {self.measured[k]:.{_DIGITS}g} Hz at "
-        return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice)
+        said = "near it" if self.resembles[k] else ""
+        return Words(
+            start, Speeds(self.speed[k]), f": the model has no such mode {said}".rstrip(), *advice, "."
+        )
 
     def _say(self, k: int, words: str) -> Words:
         """One deviation in words."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
-from math import isfinite, pi
+from math import pi
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -146,7 +146,7 @@ def tradeoff(
     if t_end is not None and scene.motion is None:
         bound = "the scene has no motion, so there is no transient"
         raise InvalidValue("t_end", t_end, bound, "add one, or leave it out")
-    speed = _default_speed(scene) if speed is None else real("speed", speed, "rad/s")
+    speed = scene.final_speed if speed is None else real("speed", speed, "rad/s")
     check_speeds(speed, "speed")
     end = np.nan if scene.motion is None else _end(scene) if t_end is None else positive("t_end", t_end, "s")
     tasks = list(_list_diagrams(scene, speed, modes, end, budget))
@@ -172,11 +172,6 @@ def _check_budget(budget: float) -> float:
     if not LEAST_BUDGET <= budget <= LARGEST_BUDGET:
         raise ValueError(f"budget = {budget:g} s: give {LEAST_BUDGET:g} to {LARGEST_BUDGET:g} s, such as 60")
     return budget
-
-
-def _default_speed(scene: Scene) -> float:
-    final = 0.0 if scene.motion is None else scene.motion.final_speed
-    return final if isfinite(final) else 0.0
 
 
 def _end(scene: Scene) -> float:
