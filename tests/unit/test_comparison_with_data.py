@@ -91,7 +91,7 @@ def test_modes_without_a_value_and_values_without_a_mode_are_named():
     assert found.verdict[1] == "no mode"
     said = " ".join(found.sentences())
     assert "mode 2 of the scene, 408.8 Hz at 0 rad/s" in said
-    assert "torsion 1, 656.6 Hz at 0 rad/s: the model has no such mode near it" in said
+    assert "torsion 1, 656.6 Hz at 0 rad/s: the model has no such mode" in said
     twisting = replace(SCENE, physics=bd.Physics(torsion=True))
     assert bd.compare(twisting, replace(data, uncertainty=np.full((1, 3), 50.0))).mode.tolist() == [1, 3, 4]
 

@@ -163,10 +163,7 @@ class FrequencyComparison(Result):
         if self.resembles[k]:
             advice = [f"; its shape is most like that of {self.resembles[k]}: columns may be exchanged"]
         start = f"{self.label[k]}, {self.measured[k]:.{_DIGITS}g} Hz at "
-        said = "near it" if self.resembles[k] else ""
-        return Words(
-            start, Speeds(self.speed[k]), f": the model has no such mode {said}".rstrip(), *advice, "."
-        )
+        return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice, ".")
 
     def _say(self, k: int, words: str) -> Words:
         """One deviation in words."""
