@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +16,7 @@ from beamdyn.analyses.options import Text, none_given
 from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, parse_speeds
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.varied_inputs import find_input, numbers
+from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_data import half_unit
 from beamdyn.files.scene_inputs import SceneInput
@@ -41,7 +42,10 @@ Data = Annotated[
 ]
 Measured = Annotated[
     str | None,
-    Parameter(help='Measured frequencies at one speed in place of a file, e.g. "62.1, 389, 1090 Hz".'),
+    Parameter(
+        help='Measured frequencies at one speed in place of a file, e.g. "62.1, 389, 1090 Hz".',
+        allow_leading_hyphen=True,
+    ),
 ]
 AtSpeeds = Annotated[
     Any,
@@ -63,7 +67,10 @@ ColumnsOfFile = Annotated[
 ]
 Uncertainty = Annotated[
     str | None,
-    Parameter(help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".'),
+    Parameter(
+        help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".',
+        allow_leading_hyphen=True,
+    ),
 ]
 
 
@@ -85,9 +92,9 @@ def compare(
 ) -> FrequencyComparison | CurveComparison:
     """Measured values beside those of the scene: what agrees, and what explains the rest."""
     given = _data(data, measured, speeds, uncertainty, columns)
-    if isinstance(given, MeasuredCurves):
-        return bd.compare(scene, given)
-    return bd.compare(in_unit_of(scene, f"0 {given.speed_unit}"), given)
+    unit = "" if isinstance(given, MeasuredCurves) else given.speed_unit
+    with of_file({each.name: f"{data}: {each.name}" for each in fields(given)} if data else {}):
+        return bd.compare(in_unit_of(scene, f"0 {unit}"), given)
 
 
 @analysis(

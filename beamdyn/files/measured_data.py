@@ -109,7 +109,7 @@ def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
 def _one_speed(speeds: np.ndarray | None) -> float | None:
     """The one speed of loads, shapes or a response [rad/s]."""
     if speeds is not None and len(speeds) != 1:
-        raise InvalidValue("speeds", speeds, "such data are at one speed", "give one")
+        raise InvalidValue("speeds", speeds.tolist(), "such data are at one speed", "give one")
     return None if speeds is None else float(speeds[0])
 
 

@@ -134,7 +134,7 @@ def test_a_phase_that_is_off_is_told_where_the_response_is_largest():
         ),
         (PLAIN, bd.MeasuredHistory([0.1, 0.2], [0.0, 1.0]), "a transient needs a motion"),
         (MOVING, bd.MeasuredHistory([0.1, 0.2], [0.0, 1.0], ["tip across"]), "physics.planes = 2"),
-        (PLAIN, bd.MeasuredLoads([0.0, 0.06], [1.0, 1.0]), r"at = 0.06 m: stations lie"),
+        (PLAIN, bd.MeasuredLoads([0.0, 0.06], [1.0, 1.0]), r"position = 0.06 m: the beam reaches"),
         (PLAIN, bd.MeasuredLoads([0.0], [1.0], ["shear across"]), "physics.planes = 2"),
         (DAMPED, bd.MeasuredResponse([50.0], [1.0], input="n2", speed=50.0), "at two frequencies"),
     ],
@@ -160,6 +160,13 @@ def test_the_command_writes_all_forms_and_takes_names_and_doubts(tmp_path, capsy
     assert 'a column "tip uncertainty [mm]"' in " ".join(capsys.readouterr().err.split())
     assert main(["identify", *command[1:3], "--free", "length"]) == 2
     assert "identify takes natural frequencies" in " ".join(capsys.readouterr().err.split())
+
+
+def test_the_command_names_the_file_whose_data_cannot_be_compared(tmp_path, capsys):
+    file = tmp_path / "loads.csv"
+    file.write_text("x [mm], axial [N]\n0, -0.37\n60, -0.22\n")
+    assert main(["compare", "examples/tyre_harvester.toml", str(file)]) == 2
+    assert "loads.csv: position = 0.06 m: the beam reaches" in " ".join(capsys.readouterr().err.split())
 
 
 @pytest.mark.parametrize("text", ["tip", "= x", ";"])

@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import InvalidValue, kind
+from beamdyn.common.inputs.checks import kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, Speeds, Statement, unannounced
@@ -26,6 +26,7 @@ from beamdyn.scene.measured_curves import (
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.beside_data.computed_curves import (
+    check_positions,
     computed_history,
     computed_loads,
     computed_peaks,
@@ -36,7 +37,6 @@ from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyC
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.beside_data.single_numbers import explain
 
-_ROUNDING = 1e-9  # of the length, by which a position may lie beyond the tip
 _MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
 
 
@@ -97,7 +97,8 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
     start = perf_counter()
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
-    _check_positions(scene, data)
+    if data.positions is not None:
+        check_positions(scene, "positions", data.positions)
     rows = [_MeasuredRow.of(scene, data, k) for k in range(len(data.speeds))]
     at, column = np.nonzero(np.isfinite(data.frequency))
     joined = (np.concatenate([getattr(row, name) for row in rows]) for name in _PARTS)
@@ -161,17 +162,6 @@ def _assumed(data: MeasuredCurves, speed: float) -> Iterator[Statement]:
     if getattr(data, "speed", 0.0) is None:
         said = "the data have no speed: compared at ", Speeds(speed), ", the final speed of the scene"
         yield Statement(*said, kind=INPUT)
-
-
-def _check_positions(scene: Scene, data: MeasuredFrequencies) -> None:
-    """Refuse shapes at points that the beam does not have."""
-    if data.positions is None:
-        return
-    length = scene.beam.length
-    beyond = (data.positions < 0) | (data.positions > length * (1 + _ROUNDING))
-    if beyond.any():
-        bound = f"positions of shapes run from 0 to the length of the beam, {length:g} m"
-        raise InvalidValue("positions", float(data.positions[beyond][0]), bound, "measure from the root", "m")
 
 
 _PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "likeness"

@@ -25,6 +25,7 @@ from beamdyn.transient.sweep import Sweep, sweep
 
 _DELAYS = 33  # delays tried between the limits
 _COMPARED = 4000  # times at which histories are aligned; at most twice as many
+_ROUNDING = 1e-9  # of the length, by which a position may lie beyond the tip
 _SHARP = 1e-9  # accuracy of a delay over the period
 _TURNED = 0.25  # share of the squares that are left with other signs, up to which signs count as turned
 _LOADS = {
@@ -58,8 +59,9 @@ class ComputedCurves:
 def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
     """Loads at the positions of measured ones, in equilibrium at their speed."""
     speed = _speed(scene, data)
+    check_positions(scene, "position", data.position)
     with unannounced():
-        found = static_loads(scene, speed, data.position)
+        found = static_loads(scene, speed, np.minimum(data.position, scene.beam.length))
     places = [_LOADS[name] for name in data.names]
     for name, (quantity, k) in zip(data.names, places, strict=True):
         _check_modelled(name, k < found.values(quantity).shape[2])
@@ -67,6 +69,15 @@ def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
         np.array([of(quantity)[0, :, k] for quantity, k in places]).T for of in (found.values, found.error_of)
     )
     return ComputedCurves(value, error, tuple(data.units[name] for name in data.names), found, speed)
+
+
+def check_positions(scene: Scene, name: str, positions: np.ndarray) -> None:
+    """Refuse data at points that the beam does not have."""
+    length = scene.beam.length
+    beyond = (positions < 0) | (positions > length * (1 + _ROUNDING))
+    if beyond.any():
+        bound = f"the beam reaches from 0 to its length, {length:g} m"
+        raise InvalidValue(name, float(positions[beyond][0]), bound, "measure from the root", "m")
 
 
 def _speed(scene: Scene, data: MeasuredLoads | MeasuredResponse) -> float:
