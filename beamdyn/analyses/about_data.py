@@ -14,11 +14,12 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import READ_SECOND, WRITTEN, Answer, AsText, analysis
 from beamdyn.analyses.options import Text, none_given
 from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, parse_speeds
+from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.varied_inputs import find_input, numbers
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.files import write_text
-from beamdyn.files.measured_data import half_unit
+from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.scene.measured_curves import MeasuredCurves
@@ -93,7 +94,8 @@ def compare(
     """Measured values beside those of the scene: what agrees, and what explains the rest."""
     given = _data(data, measured, speeds, uncertainty, columns)
     unit = "" if isinstance(given, MeasuredCurves) else given.speed_unit
-    with of_file({each.name: f"{data}: {each.name}" for each in fields(given)} if data else {}):
+    source = data.path if isinstance(data, DataText) else data
+    with of_file({each.name: f"{source}: {each.name}" for each in fields(given)} if source else {}):
         return bd.compare(in_unit_of(scene, f"0 {unit}"), given)
 
 
@@ -160,7 +162,7 @@ def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
 
 
 def _data(
-    file: Path | None,
+    file: Path | DataText | None,
     measured: str | None,
     speeds: np.ndarray | None,
     uncertainty: str | None,
@@ -172,9 +174,12 @@ def _data(
     if file is None and columns:
         raise ValueError(f'--columns = "{"; ".join(columns)}": it is of a file; leave it out')
     named = _columns("; ".join(columns)) if columns else None
-    data = (
-        bd.read_measurements(file, speeds, named) if file is not None else _in_words(measured or "", speeds)
-    )
+    if isinstance(file, DataText):
+        data = measurements_of(file, speeds, named)
+    elif file is not None:
+        data = bd.read_measurements(file, speeds, named)
+    else:
+        data = _in_words(measured or "", speeds)
     return data if uncertainty is None else _with_uncertainty(data, uncertainty)
 
 

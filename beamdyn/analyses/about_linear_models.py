@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -267,13 +267,16 @@ def response(
 
 @analysis(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
-    about_scene="The scene, damped; with a rolling wheel for a road.",
+    screen="Random road",
+    opens_with=("--road", "C", "--velocity", "90 km/h", "--damping-ratio", "0.01"),
+    about_scene="The scene, with a rolling wheel for a road.",
 )
 def random(
     scene: Scene,
     *,
     random_input: RandomInput = NO_RANDOM_INPUT,
     output: Output,
+    damping_ratio: float | None = None,
     modes: CountOrAuto = "auto",
     discretization: Discretization = "ritz",
 ) -> RandomResponse:
@@ -281,11 +284,15 @@ def random(
 
     Parameters
     ----------
+    damping_ratio
+        Damping ratio of all modes of a scene that has no damping, such as 0.01: undamped, it has no answer.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-9 of the root mean square.
     """
     asked = random_input
     shown, speed = asked.shown(scene), asked.speed_of(scene)
+    if damping_ratio is not None and not scene.is_damped:
+        shown = replace(shown, damping_ratio=damping_ratio)
     return bd.random_response(
         shown, speed, asked.density, asked.drive, output, modes=modes, discretization=discretization
     )

@@ -10,15 +10,16 @@ from functools import partial
 from inspect import Parameter
 from itertools import islice, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import Field, create_model
 
-from beamdyn.analyses.analysis import Analysis, Answer, meanings_in
+from beamdyn.analyses.analysis import READ_SECOND, Analysis, Answer, meanings_in
 from beamdyn.analyses.results.cautions import noted, warnings_of
 from beamdyn.app.scene_form import ASIDE, read_aside, read_scene
 from beamdyn.app.scene_screen import scene_screen
-from beamdyn.common.edge.inputs import Section, parts_of
+from beamdyn.common.edge.data_text import DataText
+from beamdyn.common.edge.inputs import Lines, Section, parts_of
 from beamdyn.common.edge.outputs import Files
 from beamdyn.common.edge.views import picture_of
 from beamdyn.common.edge.wording import of_file
@@ -38,7 +39,6 @@ _OF_COMMANDS = (
     "workers",
     "samples",
     "seed",
-    "columns",
 )  # options that a form does without
 _BETWEEN = ";"  # texts of an option that may be given several times
 
@@ -104,6 +104,9 @@ def _section(analysis: Analysis) -> type[Section]:
             of_group = {each.name: each.default for each in dataclass_fields(group)}
             options = [(each, hints[each], of_group[each], meanings.get(each, "")) for each in of_group]
         else:
+            if READ_SECOND in getattr(option.annotation, "__metadata__", ()):
+                fields[name] = Annotated[str, Lines(meaning=f"{analysis.meaning(name)} Paste it here.")], ""
+                continue
             default = ... if option.default is Parameter.empty else option.default
             options = [(name, option.annotation, default, analysis.meaning(name))]
         for each, annotation, default, meaning in options:
@@ -139,6 +142,9 @@ def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
             hints = get_type_hints(group, include_extras=True)
             own = {each: _listed(hints[each], given[each]) for each in hints if each in given}
             values[name] = group(**own)
+        elif READ_SECOND in getattr(option.annotation, "__metadata__", ()):
+            lines = tuple(given[name].splitlines())
+            values[name] = DataText(Path(name), lines) if lines else None
         elif name in given:
             values[name] = _listed(option.annotation, given[name])
     return values

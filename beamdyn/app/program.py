@@ -7,6 +7,7 @@ from importlib.resources import files
 from beamdyn.analyses import analyses
 from beamdyn.analyses.about_campbell import campbell
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
+from beamdyn.app.deck_screen import DECK
 from beamdyn.app.frequency_screen import FREQUENCIES
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.rotor_screen import ROTOR
@@ -46,4 +47,4 @@ SCENE = Document(
     }
     | {analysis.function.__name__: "Options" for analysis in SHOWN},
 )
-BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE,))
+BEAMDYN = Program("beamdyn", "Rotating beam", (SCENE, DECK))

@@ -80,7 +80,15 @@ def read_measurements(
     """
     file = as_path("path", path, "a file")
     universal = file.suffix.lower() in UNIVERSAL and file.exists()
-    text = universal_table(file) if universal else read_data(file)
+    return measurements_of(universal_table(file) if universal else read_data(file), speeds, columns)
+
+
+def measurements_of(
+    text: DataText,
+    speeds: Sequence[float] | np.ndarray | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> MeasuredFrequencies | MeasuredCurves:
+    """Read measured values from the text of a file; arguments as of `read_measurements`."""
     given = None if speeds is None else real_array("speeds", speeds)
     head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
     if not head:

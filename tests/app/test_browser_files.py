@@ -29,7 +29,7 @@ def from_menu(page, entry):
 
 def give(page, file):
     """Choose a file in the dialog that opens one."""
-    from_menu(page, "Open a TOML file")
+    from_menu(page, "Open a file")
     page.locator("input[type=file]").set_input_files(file)
 
 

@@ -139,6 +139,19 @@ class WholeNumber(Quantity):
         return int(super().parse(given))
 
 
+@dataclass(frozen=True)
+class Lines(Quantity):
+    """A text of several lines, such as that of a file."""
+
+    unit: str = ""
+
+    def parse(self, given: object) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Take a text."""
+        if not isinstance(given, str):
+            raise InvalidInput("", given, "give a text")
+        return given
+
+
 _SHOWN = {"rad": "deg"}  # units that people read, by that in SI
 
 

@@ -28,11 +28,11 @@ class FileDialog:
     def __init__(self, opened: Callable[[str, str], object]) -> None:
         self._opened = opened
         with ui.dialog() as self._dialog, ui.card():
-            ui.label("Open a TOML file, as the commands read it")
+            ui.label("Open a file, as the commands read it")
             self._upload: Any = ui.upload(
-                label="TOML file", on_upload=self._uploaded, auto_upload=True, max_file_size=_LARGEST,
+                label="file", on_upload=self._uploaded, auto_upload=True, max_file_size=_LARGEST,
                 max_files=1, on_rejected=lambda: self._said.set_text(_TOO_LARGE),
-            ).props('accept=".toml" aria-label="TOML file"')  # fmt: skip
+            ).props('aria-label="file"')  # fmt: skip
             self._said: Any = ui.label().classes("mistake").props('role="alert"')
             self._said.style("white-space: pre-line")
             ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
@@ -58,7 +58,7 @@ class FileDialog:
         try:
             text = content.decode("utf-8-sig")
         except UnicodeDecodeError:
-            return self._said.set_text(f"{name}: it is not text in UTF-8; give a TOML file")
+            return self._said.set_text(f"{name}: it is not text in UTF-8; give a text file")
         self._opened(text, name)
 
 

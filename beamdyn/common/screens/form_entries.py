@@ -15,7 +15,7 @@ from typing import Any, get_args, get_origin
 from beamdyn.common.drawing.text_width import symbol_html
 from beamdyn.common.edge.config import ConfigError, path_of, said_of
 from beamdyn.common.edge.file_words import say
-from beamdyn.common.edge.inputs import Input, Quantity, parts_of
+from beamdyn.common.edge.inputs import Input, Lines, Quantity, parts_of
 from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 
@@ -68,7 +68,9 @@ def _is_list_of(kind: type, value: Any) -> bool:
 
 
 def has_rows(entry: Input) -> bool:
-    """Whether an input is a list of tables or of rows, which takes several lines."""
+    """Whether an input is a list of tables or of rows, or a text, which takes several lines."""
+    if isinstance(entry.quantity, Lines):
+        return True
     parts = (part for kind in parts_of(entry.kind) if get_origin(kind) is list for part in get_args(kind))
     return any(part is dict or get_origin(part) is list for part in parts)
 

@@ -67,7 +67,7 @@ class Page:
         self._recalled = False  # until then nothing is stored: it would replace what is to be restored
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
         files = {
-            "Open a TOML file": lambda: self._file.ask(),
+            "Open a file": lambda: self._file.ask(),
             "Save as TOML": self.save,
             "Report as HTML": self.report,
             "Link to this design": self.link,

@@ -221,6 +221,8 @@ class Document:
         Screens, each of which may use results of those before it.
     aside : mapping
         Initial entries that are not part of the file, such as options of a command.
+    read : callable
+        ``read(text, name)``: the tables of a file; raises `ConfigError`.
     in_fields : callable
         ``in_fields(tables)``: tables of a file with each value at the path of its input on the form.
     headings : mapping
@@ -236,6 +238,7 @@ class Document:
     check: Callable[[str, str], Any]
     screens: tuple[Screen, ...]
     aside: Mapping[str, str] = field(default_factory=dict)
+    read: Callable[[str, str], dict[str, Any]] = parse
     in_fields: Callable[[dict[str, Any]], dict[str, Any]] = lambda tables: tables
     headings: Mapping[str, str] = field(default_factory=dict)
     idle: Callable[[Mapping[str, str]], Iterable[str]] = lambda _: ()
@@ -256,7 +259,7 @@ class Document:
             If the parser of the commands does not accept it.
         """
         self.check(text, source)
-        tables = self.in_fields(parse(text, source))
+        tables = self.in_fields(self.read(text, source))
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     def accepts(self, text: str) -> bool:

@@ -174,14 +174,26 @@ def read_deck(
     >>> deck.scene.mount.radius  # m
     1.25
     """
-    given = {"length": length, "hub_radius": hub_radius}
-    given |= {"length": None if length is None else size("length", length, "m")}
-    given |= {"hub_radius": None if hub_radius is None else not_negative("hub_radius", hub_radius, "m")}
-    blade = _read(read_data(path), given)
+    return read_deck_text(read_data(path), length, hub_radius)
+
+
+def read_deck_text(text: DataText, length: float | None = None, hub_radius: float | None = None) -> Deck:
+    """Read a blade from the text of a file; arguments as of `read_deck`."""
+    given = {
+        "length": None if length is None else size("length", length, "m"),
+        "hub_radius": None if hub_radius is None else not_negative("hub_radius", hub_radius, "m"),
+    }
+    blade = _read(text, given)
     tables = tables_of(blade)
     sources = tuple(str(source) for source in blade.sources)
     scene = scene_from_dict(tables, sources[0])
     return Deck(blade.kind, blade.title, sources, scene, blade.ignored, tables, blade)
+
+
+def is_deck(text: DataText) -> bool:
+    """Whether a text is one of the files that are read."""
+    known = any(len(named_values(text, names)) == len(names) for _, names, _, _ in _READERS)
+    return known or csv_table.is_csv(text)
 
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:

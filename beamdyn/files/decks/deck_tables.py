@@ -28,7 +28,7 @@ def deck_tables(deck: Deck) -> list[RenderableType]:
 
 def audit_tables(audit: DeckAudit, title: str = "Audit of a blade") -> list[RenderableType]:
     """Mass and moments, steep steps, and mode shapes of a deck beside ours."""
-    parts: list[RenderableType] = [table(title, ("", "", ""), _audit_rows(audit), (0, 2))]
+    parts: list[RenderableType] = [table(title, ("", "", ""), audit_rows(audit), (0, 2))]
     if audit.steps:
         heads = ("steep steps between stations", "x/L", "to x/L", "factor")
         steps = [(s.name, f"{s.start:g}", f"{s.end:g}", f"{s.factor:.4g}") for s in audit.steps]
@@ -38,7 +38,8 @@ def audit_tables(audit: DeckAudit, title: str = "Audit of a blade") -> list[Rend
     return parts
 
 
-def _audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
+def audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and unit of mass, moments and stiffness of a blade."""
     yield "stations", f"{audit.stations}", "ascending from 0 to 1"
     yield "mass", f"{audit.mass:.8g}", "kg, linear between stations, without tip body"
     yield "centre of mass", f"{audit.centre:.8g}", "m from the root"

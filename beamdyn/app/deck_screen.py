@@ -1,0 +1,133 @@
+"""The screen of blades of other programs: a file of one, what is in it, and the scene that it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from beamdyn.common.edge.config import ConfigError, parse, validated
+from beamdyn.common.edge.data_text import DataText
+from beamdyn.common.edge.inputs import Lines, Quantity, Section, describe
+from beamdyn.common.edge.wording import of_file
+from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
+from beamdyn.common.results.one_line import number
+from beamdyn.common.results.pictures import COLOURS, figure_of
+from beamdyn.common.screens.screen_parts import KeyResult
+from beamdyn.common.screens.screens import Document, FoldedPart, Screen
+from beamdyn.files.decks.deck import Deck, is_deck, read_deck_text
+from beamdyn.files.decks.deck_tables import audit_rows, deck_tables
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SOURCE = Path("file")  # what messages call the text
+_DRAWN = {
+    "mass_per_length": "mass [kg/m]",
+    "bending_stiffness": "EI flap [N m2]",
+    "second_bending_stiffness": "EI edge [N m2]",
+}
+
+
+class DeckInput(Section):
+    """[deck]: the text of a blade's file, and what that does not say."""
+
+    text: Annotated[
+        str,
+        Lines(
+            meaning="text of a file of ElastoDyn, FAST 7, BeamDyn or BModes, or a table with units in its "
+            "heads; File opens it, or paste it here"
+        ),
+    ]
+    length: Annotated[
+        float | None, Quantity("m", symbol="L", meaning="length, where the file lacks it", above=0)
+    ] = None
+    hub_radius: Annotated[
+        float | None,
+        Quantity("m", symbol="r", meaning="root from axis, where the file lacks it", least=0),
+    ] = None
+
+
+class _DeckFile(Section):
+    deck: DeckInput
+
+
+def solve(tables: Mapping[str, Any]) -> Deck:
+    """The deck of a text."""
+    given = validated(_DeckFile, {"deck": tables.get("deck", {})}, "deck").deck
+    with of_file({name: f"deck.{name}" for name in ("length", "hub_radius")}):
+        return read_deck_text(_lines(given.text), given.length, given.hub_radius)
+
+
+def _lines(text: str) -> DataText:
+    return DataText(_SOURCE, tuple(text.splitlines()))
+
+
+def _tables_of_file(text: str, source: str) -> dict[str, Any]:
+    """The tables of the form for a file: a deck, or what this screen has saved."""
+    if is_deck(_lines(text)):
+        return {"deck": {"text": text}}
+    return parse(text, source)
+
+
+def _check(text: str, source: str) -> None:
+    if not _tables_of_file(text, source).get("deck"):
+        raise ConfigError(source, ["expected a table [deck], or a file of another program"])
+
+
+def draw(deck: Deck, _: float = 0.0) -> Figure:
+    """Mass and stiffness along the blade."""
+    blade, drawn = deck.blade, [name for name in _DRAWN if name in deck.blade.columns]
+    x = blade.stations * blade.length
+
+    def plot(ax: Axes | None = None) -> Axes:
+        ax, places = panels(len(drawn), ax, columns=1)
+        for k, (place, name) in enumerate(zip(places, drawn, strict=True)):
+            set_up_axes(place, "from the root [m]" if place is places[-1] else "", _DRAWN[name])
+            place.plot(x, blade.columns[name], color=COLOURS[k], marker=".", linewidth=1.8)
+            if np.min(blade.columns[name]) > 0:
+                place.set_yscale("log")
+        return ax
+
+    return figure_of(plot, (8.0, 2.4 * len(drawn)))
+
+
+def headline(deck: Deck) -> Iterator[KeyResult]:
+    """Kind, length and mass."""
+    yield KeyResult("file", deck.kind)
+    yield KeyResult("length", number(deck.scene.beam.length, "m"))
+    yield KeyResult("mass", number(deck.audit.mass, "kg"))
+
+
+def _scene(deck: Deck) -> str:
+    return f"<pre>{escape(deck.scene_text())}</pre>"
+
+
+DECK_SCREEN = Screen(
+    "Deck",
+    "A blade of another program: what its file says, what is odd in it, and the scene that it makes.",
+    ("deck",),
+    ("deck",),
+    solve,
+    tables=deck_tables,
+    draw=draw,
+    notes=lambda deck: [str(said) for said in deck.audit.warnings],
+    rows=lambda deck: (("what", "value", "unit"), *audit_rows(deck.audit)),
+    headline=headline,
+    picture=lambda deck, _: draw(deck),
+    more=(FoldedPart("The scene as a file for the other screens and the commands", _scene, _scene),),
+)
+DECK = Document(
+    "deck",
+    (files("beamdyn.app") / "deck.toml").read_text(encoding="utf-8"),
+    lambda _: describe(DeckInput, "deck."),
+    _check,
+    (DECK_SCREEN,),
+    read=_tables_of_file,
+    headings={"deck": "File of a blade"},
+)
