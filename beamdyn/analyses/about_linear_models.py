@@ -268,7 +268,7 @@ def response(
 @analysis(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
     screen="Random road",
-    opens_with=("--road", "C", "--velocity", "90 km/h", "--damping-ratio", "0.01"),
+    opens_with=("--road", "A", "--velocity", "90 km/h", "--damping-ratio", "0.03"),
     about_scene="The scene, with a rolling wheel for a road.",
 )
 def random(

@@ -82,19 +82,28 @@ def _check(text: str, source: str) -> None:
 
 def draw(deck: Deck, _: float = 0.0) -> Figure:
     """Mass and stiffness along the blade."""
-    blade, drawn = deck.blade, [name for name in _DRAWN if name in deck.blade.columns]
-    x = blade.stations * blade.length
+    x, drawn = _along(deck)
 
     def plot(ax: Axes | None = None) -> Axes:
         ax, places = panels(len(drawn), ax, columns=1)
-        for k, (place, name) in enumerate(zip(places, drawn, strict=True)):
-            set_up_axes(place, "from the root [m]" if place is places[-1] else "", _DRAWN[name])
-            place.plot(x, blade.columns[name], color=COLOURS[k], marker=".", linewidth=1.8)
-            if np.min(blade.columns[name]) > 0:
+        for k, (place, (name, values)) in enumerate(zip(places, drawn.items(), strict=True)):
+            set_up_axes(place, "from the root [m]" if place is places[-1] else "", name)
+            place.plot(x, values, color=COLOURS[k], marker=".", linewidth=1.8)
+            if np.min(values) > 0:
                 place.set_yscale("log")
         return ax
 
     return figure_of(plot, (8.0, 2.4 * len(drawn)))
+
+
+def _along(deck: Deck) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Stations [m] of a blade, and what is drawn over them, by its name with unit."""
+    blade, matrices = deck.blade, deck.blade.matrices
+    if matrices is None:
+        columns = {words: blade.columns[name] for name, words in _DRAWN.items() if name in blade.columns}
+        return blade.stations * blade.length, columns
+    diagonals = matrices.mass[:, 0, 0], matrices.stiffness[:, 5, 5], matrices.stiffness[:, 4, 4]
+    return matrices.stations * blade.length, dict(zip(_DRAWN.values(), diagonals, strict=True))
 
 
 def headline(deck: Deck) -> Iterator[KeyResult]:

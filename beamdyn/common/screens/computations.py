@@ -28,12 +28,16 @@ class LatestComputation:
     fail : callable
         Called with the error if `settle` raises one: the result cannot be shown.
     tell : callable
-        Called when `slow` or `busy` has changed.
+        Called when `slow` or `busy` has changed, and each second of what takes long.
 
     Attributes
     ----------
     slow : bool
         Whether a computation has taken so long that the page should say so.
+    waited : float
+        How long the one under way has taken [s].
+    usual : float
+        How long the last one that took long has taken in all [s]; 0 if none has.
     """
 
     def __init__(
@@ -42,7 +46,7 @@ class LatestComputation:
         fail: Callable[[Exception], object],
         tell: Callable[[], object] = lambda: None,
     ) -> None:
-        self.slow = False
+        self.slow, self.waited, self.usual = False, 0.0, 0.0
         self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
@@ -92,6 +96,21 @@ class LatestComputation:
             _LOG.exception("what has been computed cannot be shown")
             self._fail(error)
 
+    @property
+    def words(self) -> str:
+        """How long it has taken, and will if it is as the last time; empty within the first second."""
+        if self.waited < 1:
+            return ""
+        left = self.usual - self.waited
+        return f"{self.waited:.0f} s" + (f", about {left:.0f} s left" if left >= 1 else "")
+
+    def _count(self, waited: float) -> None:
+        """Tell that it takes long, and each second how long."""
+        tells = not self.slow or int(waited) > int(self.waited)
+        self.slow, self.waited = True, waited
+        if tells:
+            self._tell()
+
     async def _follow(self, future: asyncio.Future[Any]) -> None:
         """Show what is under way when it is done, and so with what was wanted meanwhile.
 
@@ -99,15 +118,15 @@ class LatestComputation:
         """
         try:
             while True:
-                start = monotonic()
+                start, self.waited = monotonic(), 0.0
                 await asyncio.wait([future], timeout=SOON)
                 while not future.done():
-                    if not self.slow:
-                        self.slow = True
-                        self._tell()
-                    if self._wanted is not None and monotonic() - start > _PATIENCE:
+                    self._count(monotonic() - start)
+                    if self._wanted is not None and self.waited > _PATIENCE:
                         future.cancel()
                     await asyncio.wait([future], timeout=SOON)
+                if self.slow and not future.cancelled():
+                    self.usual = monotonic() - start
                 if self._wanted is None:
                     break
                 done, future = future, self._next()
@@ -115,7 +134,7 @@ class LatestComputation:
                 if not done.cancelled():
                     self._settle(done, False)
         finally:
-            self._task, self.slow = None, False
+            self._task, self.slow, self.waited = None, False, 0.0
         self._settle(future, True)
 
 

@@ -97,6 +97,7 @@ class ScreenView:
                 self._busy: Any = ui.row().classes("items-center gap-2")
                 with self._busy:
                     ui.spinner(size="sm").props('aria-hidden="true"')
+                    self._time: Any = ui.label().classes("status")
                     ui.button("Cancel", on_click=self._way.cancel).props("dense outline no-caps size=sm")
             self._said: Any = ui.column().classes("said gap-1 w-full").props('role="alert"')
 
@@ -290,6 +291,7 @@ class ScreenView:
         toggle(self._good, "greyed", stale and (slow or failed or not busy))
         toggle(self._good, "refused", stale and failed)
         self._busy.set_visibility(slow)
+        self._time.set_text(self._way.words)
         words = _STALE if self._answered else "No result yet."
         state = "Computing. " if busy else "Refused. " if failed else ""
         now = f"{state}{words}" if stale else state.strip() or "Up to date."
