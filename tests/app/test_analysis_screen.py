@@ -12,11 +12,12 @@ from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
+from beamdyn.app.deck_screen import DECK
 from beamdyn.app.program import SCENE, SHOWN
 from beamdyn.app.scene_form import ASIDE, inputs_of
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.screens.form_entries import tables_of
+from beamdyn.common.screens.form_entries import tables_of, toml_of
 
 ROOT = Path(__file__).parents[2]
 SCENE_FILE = str(ROOT / "examples" / "tyre_harvester.toml")
@@ -80,13 +81,43 @@ def test_the_screen_has_a_form_of_the_options_and_shows_the_result(new_screen):
 
 
 @pytest.mark.parametrize("name", ["compare", "identify"])
-def test_screens_on_own_data_take_it_as_text_and_no_files(name):
+def test_screens_on_own_data_take_it_as_text_and_write_no_files(name):
     screen, described = analysis_screen(analyses((name,))[name]), analyses((name,))[name]
     given = {**SCENE.base_entries, **first_entries(described)}
-    assert not any(f"{name}.{option}" in given for option in ("data", "columns", "write", "file"))
+    assert not any(f"{name}.{option}" in given for option in ("write", "file"))
+    assert given[f"{name}.data"] == ""
     answer = solve(screen, given)
     assert len([*screen.rows(answer)]) > 1
     assert screen.draw(answer, 0.0).axes
+
+
+def test_data_are_pasted_with_their_heads_and_refused_at_their_line():
+    screen = next(each for each in SCENE.screens if each.name == "Compare")
+    text = "position [mm], axial [N]\n0, -0.4512\n20, -0.2494\n"
+    given = SCENE.base_entries | {"compare.measured": "", "compare.data": text}
+    assert solve(screen, given).result.along == "position"
+    with pytest.raises(ValueError, match="data: line 3"):
+        solve(screen, given | {"compare.data": text.replace("20", "x")})
+    with pytest.raises(InvalidValue, match=r"data: position = 0\.06 m"):
+        solve(screen, given | {"compare.data": text.replace("20", "60")})
+    assert next(e for e in inputs_of(given) if e.path == "compare.data").quantity.meaning.endswith("here.")
+
+
+def test_a_deck_is_pasted_or_opened_and_makes_a_scene():
+    given = DECK.base_entries
+    (screen,) = DECK.screens
+    found = screen.solve(tables_of(given, DECK.inputs(given)))
+    expected = bd.read_deck(ROOT / "examples" / "blade_stations.csv", 40.0, 1.25)
+    assert found.scene == expected.scene
+    assert len([*screen.rows(found)]) > 5 and screen.draw(found, 0.0).axes
+    assert "stations" in screen.more[0].on_page(found)
+    text = (ROOT / "examples" / "blade_stations.csv").read_text()
+    assert DECK.opened(text, "blade.csv")["deck.text"] == text
+    assert DECK.accepts(text) and not DECK.accepts(SCENE.base) and not SCENE.accepts(text)
+    saved = toml_of(tables_of(given, DECK.inputs(given)))
+    assert DECK.opened(saved, "deck.toml") == {**given, "deck.text": given["deck.text"].strip()}
+    with pytest.raises(ValueError, match="does not say the length"):
+        screen.solve(tables_of(given | {"deck.length": ""}, DECK.inputs(given)))
 
 
 @pytest.mark.parametrize("described", SHOWN, ids=lambda each: each.screen)

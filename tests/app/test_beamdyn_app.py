@@ -148,7 +148,7 @@ def test_hostile_text_changes_nothing():
 def test_page_marks_a_mistake_and_slider_writes_the_field(simulate, fields):
     async def body(client):
         page = fields(await client())
-        assert page.tabs() == [screen.name for screen in SCENE.screens]
+        assert page.tabs() == [screen.name for document in BEAMDYN.documents for screen in document.screens]
         page.enter("mount.radius", "wide")
         assert "not a number with a unit" in page.field("mount.radius").error
         page.enter("mount.radius", "0.2 m")
