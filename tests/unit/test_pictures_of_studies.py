@@ -40,7 +40,9 @@ def test_speeds_without_an_answer_are_hatched_and_say_why():
 def test_where_all_have_an_answer_nothing_is_hatched():
     for vary in ({"speed": [0.0, 100.0]}, {"speed": [0.0, 50.0], "mount.radius": [0.2, 0.21]}):
         _, ax = drawn(bd.study(SCENE, vary, modes=1))
-        assert not any(patch.get_hatch() for patch in ax.patches)
+        assert not any(
+            getattr(each, "hatches", [each.get_hatch()])[0] for each in (*ax.patches, *ax.collections)
+        )
 
 
 def test_lines_of_equal_value_are_where_the_answer_has_that_value():
@@ -115,3 +117,20 @@ def test_five_inputs_keep_the_words_within_the_picture():
     for _, (x0, y0, x1, y1) in drawn_texts(figure):
         assert whole.x0 <= x0 <= x1 <= whole.x1 and whole.y0 <= y0 <= y1 <= whole.y1
     assert any("mount.radius = 100 mm" in text for text in texts(figure))
+
+
+def test_the_edge_of_what_is_hatched_parts_designs_and_has_no_steps():
+    x, y = np.linspace(0.0, 1.0, 15), np.linspace(0.0, 1.0, 17)
+    X, Y = np.meshgrid(x, y, indexing="ij")
+    z = np.where(Y < 0.2 + 0.6 * X, X + Y, np.nan)
+    why = np.where(np.isfinite(z), "", "buckles")
+    inputs = [MapInput("a", "m", x), MapInput("b", "m", y)]
+    ax = plot_maps(inputs, [MapAnswer("sum", z, why)])
+    (hatched,) = (each for each in ax.collections if getattr(each, "hatches", [None])[0])
+    (region,) = hatched.get_paths()
+    inside = region.contains_points(np.c_[X.ravel(), Y.ravel()], radius=1e-9)
+    within = (X > 0) & (X < 1) & (Y > 0) & (Y < 1)  # no rounding on the frame
+    np.testing.assert_array_equal(inside.reshape(X.shape)[within], np.isnan(z)[within])
+    edge = region.vertices[(region.vertices > 0.1).all(axis=1) & (region.vertices < 0.9).all(axis=1)]
+    slope = np.diff(edge[:, 1]) / np.diff(edge[:, 0])
+    assert (np.abs(slope / 0.6 - 1) < 0.6).all()  # a step has slopes of 0 and infinity

@@ -24,6 +24,7 @@ _DECADES = 1.5  # decades of values from which on lines of equal value ascend by
 _LOGARITHMIC = 10.0  # largest over smallest value of an input at equal ratios, from which on its axis is so
 _DIGITS = 4
 _FEW = 40  # values of an input whose points are marked on a curve
+_SMOOTHED, _APART = 1.0, 0.02  # places over which an edge is smoothed; its least distance from one
 _SAME = 1e-9  # relative difference of values that rounding makes: no lines are drawn between them
 _RARE = 0.04  # share of the values, smallest and largest, that lines of equal value are not chosen by
 _LETTERS = 10.0  # of a title in an inch
@@ -218,7 +219,10 @@ def _draw_map(
     labels = PlacedLabels(ax)
     ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     _mark_present(ax, labels, *(each.present for each in inputs))
-    _name_regions(ax, labels, x, y, z, why)
+    lacking = ~np.isfinite(z)
+    if lacking.any():
+        _hatch(ax, x, y, lacking)
+        _name_regions(ax, labels, x, y, lacking, why)
     for name, other in meets.items():
         _draw_meeting(ax, labels, x, y, z - other[sort].T, name)
     _draw_levels(ax, labels, x, y, z)
@@ -239,10 +243,18 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     levels = levels_of(known)
     pale = colors.ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
     bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
-    ax.contourf(x, y, z, bounds, cmap=pale, zorder=1)
+    ax.contourf(x, y, _extended(z), bounds, cmap=pale, zorder=1)  # up to the edge of what is hatched
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
     for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
         _label_path(labels, f"{level:.{_DIGITS}g}", paths, color="0.1")
+
+
+def _extended(z: np.ndarray) -> np.ndarray:
+    """Values with those of the nearest place where there is none."""
+    from scipy.ndimage import distance_transform_edt
+
+    nearest = distance_transform_edt(~np.isfinite(z), return_distances=False, return_indices=True)
+    return z[tuple(nearest)]  # pyright: ignore[reportArgumentType, reportCallIssue]  (of indices alone)
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
@@ -277,17 +289,24 @@ def _draw_meeting(
         _label_path(labels, name, drawn.allsegs[0], color=_MEETS)
 
 
+def _hatch(ax: Axes, x: np.ndarray, y: np.ndarray, lacking: np.ndarray) -> None:
+    """Hatch where there is no answer, up to a smooth line between the places with and without one."""
+    from scipy.ndimage import gaussian_filter
+
+    share = gaussian_filter(lacking.astype(float), _SMOOTHED)
+    side = np.where(lacking, np.maximum(share, 0.5 + _APART), np.minimum(share, 0.5 - _APART))
+    drawn = ax.contourf(
+        x, y, side, [0.5, 2.0], colors=_HATCHED["facecolor"], hatches=[_HATCHED["hatch"]], zorder=1.5
+    )
+    drawn.set(edgecolor=_HATCHED["edgecolor"], linewidth=0)
+
+
 def _name_regions(
-    ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z: np.ndarray, why: np.ndarray
+    ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
 ) -> None:
-    """Hatch the ground, and name each region without an answer in its middle."""
-    from matplotlib.patches import Rectangle
+    """Name each region without an answer in its middle."""
     from scipy.ndimage import distance_transform_edt
 
-    lacking = ~np.isfinite(z)
-    if not lacking.any():
-        return
-    ax.add_patch(Rectangle((0, 0), 1, 1, transform=ax.transAxes, zorder=0.5, **_HATCHED))
     for name in np.unique(why[lacking]).tolist():
         region = lacking & (why == name)
         depth = np.asarray(distance_transform_edt(np.pad(region, 1)))[1:-1, 1:-1]
