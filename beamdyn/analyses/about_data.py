@@ -133,7 +133,8 @@ def identify(
     """
     given = _data(data, measured, speeds, uncertainty)
     if isinstance(given, MeasuredCurves):
-        raise ValueError(f"{given.source}: identify takes natural frequencies; this file is for compare")
+        source = data.path if isinstance(data, DataText) else data
+        raise ValueError(f"{source}: identify takes natural frequencies; this file is for compare")
     found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
     if write is not None and file is not None:
         _write(found, file, write, given.source)
