@@ -22,19 +22,22 @@ TASKS = {
     "Random road": ("random.velocity", "60 km/h", "55.56 rad/s"),
     "Deck": ("deck.length", "30 m", "30 m"),
 }
+OFTEN = {"Compare", "Deck"}  # the others with the slow tests: each takes seconds
 _TOO_WIDE = "document.documentElement.scrollWidth > innerWidth"
 _CUT = """() => [...document.querySelectorAll('.tables table')].filter((t) => t.offsetParent).filter((t) =>
   t.getBoundingClientRect().right > t.closest('.numbers').getBoundingClientRect().right + 1 &&
   getComputedStyle(t.parentElement).overflowX == 'visible').length"""
 
 
-@pytest.fixture(scope="module", params=[390, 1440])
+@pytest.fixture(scope="module", params=[390, pytest.param(1440, marks=pytest.mark.slow)])
 def wide(shared, request):
     """A page of `beamdyn app`, of a phone or a desk."""
     return shared("beamdyn", width=request.param)
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize(
+    "name", [name if name in OFTEN else pytest.param(name, marks=pytest.mark.slow) for name in TASKS]
+)
 def test_an_option_is_changed_and_the_answer_follows(wide, name):
     path, text, said = TASKS[name]
     go(wide, name)
