@@ -130,6 +130,9 @@ if TYPE_CHECKING:
     from beamdyn.studies.beside_data.single_numbers import OneNumberFit
     from beamdyn.studies.campbell.diagram import Campbell, campbell
     from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
+    from beamdyn.studies.designing.design import design
+    from beamdyn.studies.designing.found_design import FoundDesign
+    from beamdyn.studies.designing.target import Target
     from beamdyn.studies.floquet.point import FloquetMultipliers, floquet_multipliers
     from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
     from beamdyn.studies.sensitivities.sensitivities import (

@@ -20,6 +20,7 @@ _COMMANDS = (
     ("about_motion", "simulate sweep"),
     ("about_stability", "floquet stability-chart"),
     ("about_data", "compare identify"),
+    ("about_wanted_answers", "design"),
 )
 COMMANDS = {name: module for module, names in _COMMANDS for name in names.split()}
 

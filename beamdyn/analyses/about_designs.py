@@ -101,7 +101,7 @@ def sensitivities(
 
 
 _FACTOR = "factor of a property along the beam"
-Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"]
+Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"]
 
 
 @analysis(

@@ -14,6 +14,7 @@ import numpy as np
 from beamdyn.common.inputs.designs import rows_of
 from beamdyn.common.results import statements
 from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.loads.steady_loads import steady_loads
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.modes import natural_modes
@@ -196,6 +197,17 @@ def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray)
     return _at_each(speeds, found, (found.amplitude, error, np.asarray(found.status)), warned)
 
 
+def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    """The largest strain along the span, of the stations of the loads, in steady response."""
+    response = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
+    found = steady_loads(response)
+    found.check_known("strain")
+    largest = np.abs(found.strain).max(axis=(1, 2))
+    error = np.broadcast_to(found.strain_error, found.strain.shape).max(axis=(1, 2))
+    warned = response.is_warned if response.warnings else None
+    return _at_each(speeds, found, (largest, error, np.asarray(response.status)), warned)
+
+
 def _answer_peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
     options = _options_of_responses(question)
     found = sweep(scene, np.unique(speeds), question.window, **options)
@@ -234,6 +246,7 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
     "crossings": _answer_crossings,
     "amplitude": _answer_amplitude,
     "peak": _answer_peak,
+    "strain": _answer_strain,
 }
 
 

@@ -46,6 +46,7 @@ KINDS = {
     "crossings": Kind("resonance speed", "rad/s", False, ("speed", "modes")),
     "amplitude": Kind("steady amplitude", "m", True, ("speed",), needs_motion=True),
     "peak": Kind("peak", "m", True, ("speed", "window"), needs_motion=True),
+    "strain": Kind("largest strain", "", True, ("speed",), needs_motion=True),
 }
 OPTIONS = {what: kind.options for what, kind in KINDS.items()}
 

@@ -128,7 +128,9 @@ _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius":
 def spread(
     scene: Scene,
     inputs: Mapping[str, str | tolerances.Distribution],
-    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
+    what: Literal[
+        "frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"
+    ] = "frequencies",
     *,
     samples: int = DEFAULT_SAMPLES,
     seed: int = 0,
@@ -157,7 +159,7 @@ def spread(
         the scene's value, within which all values are as likely; "sd 1%", normally distributed with this
         standard deviation; without the percent sign numbers in SI, also "1.9e-4 to 2.1e-4"; or
         `Uniform(low, high)`, `Normal(mean, deviation)` in SI.
-    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"}
         The answer, as of `study`.
     samples : int
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from

@@ -50,7 +50,9 @@ _MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest v
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
-    what: Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"] = "frequencies",
+    what: Literal[
+        "frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"
+    ] = "frequencies",
     *,
     speed: float | None = None,
     modes: int | None = None,
@@ -80,7 +82,7 @@ def study(
         the motion, of amplitudes and peaks, such as "motion.road.wavelength"; and
         "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
         Sides and material are those of a rectangular section.
-    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak"}
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"}
         The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
         meets each line of the excitation; the steady amplitude of the tip; or its largest deflection in a
         window of time, of a run from rest.

@@ -10,6 +10,7 @@ from rich.console import Group
 from rich.text import Text
 
 from beamdyn.analyses.results.of_data import VIEWS as OF_DATA
+from beamdyn.analyses.results.of_design import VIEWS as OF_DESIGN
 from beamdyn.analyses.results.of_stability import VIEWS as OF_STABILITY
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
@@ -328,7 +329,7 @@ def campbell_csv(result: Campbell) -> Columns:
     )
 
 
-VIEWS = OF_DATA | OF_STABILITY | {
+VIEWS = OF_DATA | OF_DESIGN | OF_STABILITY | {
     "Campbell": View(campbell_tables, campbell_csv, 1, lambda result: figure_of(result.plot, (8.5, 6.0))),
     "Diagram": View(diagram_table, diagram_csv),
     "Sensitivities": View(sensitivities_table, sensitivities_csv, 1),

@@ -9,7 +9,6 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.digits import percent
-from beamdyn.common.results.one_line import number
 from beamdyn.common.words import Named, amount
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import SCALE
@@ -149,12 +148,13 @@ def _explanation(
     return OneNumberFit(free.path, free.unit, free.given, free.value(x), float(off.max()), explains)
 
 
-def say_value(value: float, unit: str) -> str:
-    """A value with three digits and its unit, as each medium has it: Python in SI, files in mm, GPa and g."""
+def say_value(value: float, unit: str, digits: int = _DIGITS) -> str:
+    """A value with three digits, or as many as are given, and its unit, as each medium has it: Python in SI, files in mm, GPa and g."""
     if math.isinf(value):
         return "clamped"
-    rounded = float(f"{value:.{_DIGITS}g}")
+    rounded = float(f"{value:.{digits}g}")
     if unit in ("m", "rad"):
         return amount(rounded, unit=unit)
     usual, size = _USUAL.get(unit, (unit, 1.0))
-    return Named(number(rounded, unit), number(float(f"{rounded * size:.{_DIGITS}g}"), usual))
+    said = (f"{each:.{digits}g} {name}".rstrip() for each, name in ((rounded, unit), (rounded * size, usual)))
+    return Named(*said)

@@ -1,0 +1,119 @@
+"""Designs sought backwards: numbers of a scene for wanted answers."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+import beamdyn as bd
+from beamdyn.analyses.about_data import parse_free
+from beamdyn.analyses.analysis import WRITTEN, Answer, analysis
+from beamdyn.analyses.options import Discretization, FrequencyTolerance, Text
+from beamdyn.analyses.values import final_speed, in_unit_of, parse_quantity, parse_speed
+from beamdyn.common.results.files import write_text
+from beamdyn.files.scenes import with_numbers_in_text
+from beamdyn.studies.questions import KINDS
+
+if TYPE_CHECKING:
+    from beamdyn.scene.scene import Scene
+    from beamdyn.studies.designing.found_design import FoundDesign
+
+_WORDS = {"frequency": "frequencies", "critical speed": "critical_speed", "resonance speed": "crossings"}
+_WORDS |= {name: name for name in ("amplitude", "peak", "strain")}
+_TARGET = re.compile(
+    rf"(?P<what>{'|'.join(_WORDS)})(?: (?P<mode>\d+))?(?: with (?P<line>.+?))?(?: at (?P<speed>.+?))?"
+    r" *(?:(?P<sign>=|>=|<=) *(?P<value>.+)|(?<= )(?P<best>largest|smallest))"
+)
+_SIGNS = {"=": "equals", ">=": "at_least", "<=": "at_most"}
+_EXAMPLE = 'give e.g. "frequency 1 at 50 rad/s = 80 Hz", "critical speed >= 90 rad/s" or "amplitude smallest"'
+
+
+@analysis(
+    'beamdyn design examples/tyre_harvester.toml --free "length=30:60 mm" --so-that "frequency 1 = 80 Hz"',
+    'beamdyn design examples/rolling_harvester.toml --free "thickness=0.1:0.4 mm, length=40:60 mm" '
+    '--so-that "resonance speed 1 with road + = 50 rad/s" --so-that "critical speed >= 150 rad/s"',
+    screen="Design",
+)
+def design(
+    scene: Scene,
+    *,
+    free: Text,
+    so_that: Annotated[
+        tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)
+    ] = (),
+    seed: int = 0,
+    discretization: Discretization = "ritz",
+    tolerance: FrequencyTolerance = None,
+    write: Annotated[Path | None, WRITTEN] = None,
+    file: Path | None = None,
+) -> Answer:
+    """Numbers of the scene, within bounds, for which its answers are what is wanted.
+
+    Parameters
+    ----------
+    free
+        The numbers by their names in the file, a comma between them, each with its bounds:
+        "beam.thickness=0.1:0.3 mm, beam.length=40:60 mm".
+    so_that
+        What is wanted, the option once for each: an answer, then =, >= or <= and a value, or largest or
+        smallest. Answers are "frequency 1 at 50 rad/s", of the first mode; "critical speed"; "resonance
+        speed 1 with road +", of a mode and a line of the excitation; "amplitude", "peak" and "strain", with
+        "at" and a speed. Without it frequencies are those at rest, and responses those at the final speed.
+    seed
+        Of the random designs with which a search over several numbers begins.
+    write
+        Write the scene with the numbers found into this file, with what they were to reach.
+    """
+    if not so_that:
+        raise ValueError(f"--so-that: say what is wanted; {_EXAMPLE}")
+    asked = [_match(text.strip()) for text in so_that]
+    scene = in_unit_of(scene, *(each["speed"] for each in asked))
+    bounds = parse_free(free)
+    if lost := [name for name, ends in bounds.items() if ends is None]:
+        raise ValueError(f'--free = "{free}": give bounds of {" and ".join(lost)}, such as "=0.1:0.3 mm"')
+    targets = [_target(each, scene) for each in asked]
+    known = {name: ends for name, ends in bounds.items() if ends is not None}
+    found = bd.design(scene, known, targets, seed=seed, discretization=discretization, tolerance=tolerance)
+    if write is not None and file is not None:
+        _write(found, file, write)
+    return Answer(found, "" if found.found else str(found.sentences()[0]))
+
+
+def _match(text: str) -> re.Match[str]:
+    """The parts of ``--so-that``."""
+    found = _TARGET.fullmatch(text)
+    if found is None:
+        raise ValueError(f'--so-that = "{text}": {_EXAMPLE}')
+    return found
+
+
+def _target(found: re.Match[str], scene: Scene) -> bd.Target:
+    """A target of ``--so-that``."""
+    what, unit = _WORDS[found["what"]], KINDS[_WORDS[found["what"]]].unit
+    wanted: dict[str, Any] = {"best": found["best"]}
+    if found["sign"]:
+        wanted = {_SIGNS[found["sign"]]: _value(found["value"], unit, scene)}
+    speed = None if found["speed"] is None else parse_speed("--so-that", found["speed"], scene)
+    if speed is None and what == "crossings":
+        speed = final_speed(scene)
+    return bd.Target(what, **wanted, speed=speed, mode=int(found["mode"] or 1), line=found["line"] or "")
+
+
+def _value(text: str, unit: str, scene: Scene) -> float:
+    """A wanted value, in SI."""
+    if unit == "rad/s":
+        return parse_speed("--so-that", text, scene)
+    return parse_quantity("--so-that", text, unit) if unit else float(text)
+
+
+def _write(found: FoundDesign, scene: Path, to: Path) -> None:
+    wanted = ", ".join(each.says for each in found.targets)
+    head = [
+        f"Found by beamdyn {found.provenance.version} design, beginning with {scene.name}.",
+        f"{'It has' if found.found else 'It comes nearest to'}: {wanted}.",
+    ]
+    values = dict(zip(found.names, found.value.tolist(), strict=True))
+    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))

@@ -1,0 +1,206 @@
+"""Designs sought backwards: numbers of a scene for wanted answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from time import perf_counter
+
+import numpy as np
+
+from beamdyn._version import __version__
+from beamdyn.common.inputs.checks import InvalidValue, as_floats, count
+from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import announced
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.numbers import SPEED, check_path, number_at, unit_of, with_numbers
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.studies.designing.found_design import FoundDesign
+from beamdyn.studies.designing.search import Ranges, Search
+from beamdyn.studies.designing.target import Target
+
+MOST_NUMBERS = 6
+_SAME = 1e-9  # difference of logarithms that is none
+_AT = 1e-6  # share of a range, or relative distance from a limit, at which a design lies at it
+
+
+@announced
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
+def design(
+    scene: Scene,
+    free: Mapping[str, tuple[float, float]],
+    targets: Sequence[Target],
+    *,
+    seed: int = 0,
+    discretization: DiscretizationChoice = "ritz",
+    tolerance: float | None = None,
+) -> FoundDesign:
+    """Find numbers of a scene, within bounds, whose answers are what is wanted.
+
+    Of many designs that meet all targets the one is found whose answer is the best, if a target says so, else
+    the one nearest to the scene: by logarithms of numbers over those of their bounds.  If no design is found
+    that meets them, the result says so and is the nearest.  At most 60 designs are computed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; its motion is used for crossings, amplitudes, peaks and strains.
+    free : mapping of str to pair of float
+        The numbers by their names in scene files, such as "beam.thickness", at most 6, each with its
+        least and largest value [SI].
+    targets : sequence of Target
+        What the answers shall be.
+    seed : int
+        Of the random designs with which a search over several numbers begins.
+    discretization, tolerance
+        As for `study`.
+
+    Returns
+    -------
+    FoundDesign
+
+    Raises
+    ------
+    ValueError
+        If an argument is wrong, or no design in the bounds has an answer.
+
+    References
+    ----------
+    Sequential quadratic programming: Kraft (1988); one number: Alefeld, Potra and Shi (1995), Algorithm 748.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    >>> resonance = bd.Target("frequencies", equals=80.0, speed=50.0)
+    >>> found = bd.design(scene, {"beam.thickness": (0.1e-3, 0.4e-3)}, [resonance])
+    >>> round(float(found.value[0] * 1e3), 6)  # mm
+    0.253122
+    """
+    start = perf_counter()
+    check_scene(scene)
+    inputs, targets = _check_free(scene, free), _check_targets(targets)
+    ranges = Ranges(inputs)
+    given = np.array([number_at(scene, each.name) or 0.0 for each in inputs])
+    middle = ranges.values(np.full(len(inputs), 0.5))
+    own = ranges.shares(np.where(np.isfinite(given), given, middle))
+    search = Search(scene, ranges, targets, own, discretization, tolerance)
+    x = search.run(count("seed", seed, 0))
+    return _Told(search, x).result(given, start)
+
+
+def _check_free(scene: Scene, free: Mapping[str, tuple[float, float]]) -> tuple[VariedInput, ...]:
+    """The numbers with their bounds, all of whose combinations are scenes."""
+    if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
+        bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
+        raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
+    inputs = tuple(_check_bounds(path, bounds) for path, bounds in free.items())
+    for corner in Designs(inputs).extremes():
+        with_numbers(scene, corner)
+    return inputs
+
+
+def _check_bounds(path: str, bounds: object) -> VariedInput:
+    if check_path("free", path) == SPEED:
+        bound = "the speed is no number of a scene"
+        raise InvalidValue("free", path, bound, "give targets their speeds")
+    ends = as_floats(bounds)
+    if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] < ends[1]):
+        unit = unit_of(path) or ""
+        raise InvalidValue(path, bounds, "give a least and a largest value, finite and ascending", "", unit)
+    return VariedInput(path, unit_of(path) or "", ends)
+
+
+def _check_targets(targets: object) -> tuple[Target, ...]:
+    good = isinstance(targets, list | tuple) and targets and all(isinstance(t, Target) for t in targets)
+    if not good:
+        remedy = 'such as [bd.Target("frequencies", equals=62.0)]'
+        raise InvalidValue("targets", targets, "give targets in a list", remedy)
+    assert isinstance(targets, list | tuple)
+    if sum(each.best is not None for each in targets) > 1:
+        bound = "one answer alone can be the best"
+        raise InvalidValue("targets", [each.says for each in targets], bound, "give limits to the others")
+    return tuple(targets)
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What a search tells of its best design, of shares (p,)."""
+
+    search: Search
+    x: np.ndarray
+
+    @cached_property
+    def _excess(self) -> np.ndarray:
+        return self.search.excess(self.x[None])[0]
+
+    @cached_property
+    def _met(self) -> np.ndarray:
+        return self.search.met(self.x[None])[0]
+
+    @cached_property
+    def _slopes(self) -> np.ndarray:
+        return self.search.derivatives(self.x)
+
+    def _limits(self) -> Iterator[str]:
+        """Yield the bounds and limits that the design lies at."""
+        for each, x in zip(self.search.ranges.inputs, self.x.tolist(), strict=True):
+            if x <= _AT or x >= 1 - _AT:
+                yield f"{each.name} is at its {'smallest' if x <= _AT else 'largest'} value"
+        for target, excess in zip(self.search.targets, self._excess.tolist(), strict=True):
+            if target.is_limit and abs(excess) <= _AT:
+                yield target.says
+
+    def _only_one_way(self) -> bool:
+        """Whether the answers that are missed rise or fall with each number over all designs computed.
+
+        The design then lies at the bounds that are best for each of these answers.
+        """
+        designs = self.search.designs
+        excess = self.search.excess(designs)
+        for k in np.flatnonzero(~self._met):
+            better = -np.sign(self._excess[k]) * np.sign(self._slopes[k])  # way in which each number helps
+            if self.search.targets[k].at_most is not None:
+                better = -better
+            if not (np.where(better > 0, self.x >= 1 - _AT, self.x <= _AT) | (better == 0)).all():
+                return False
+            z = designs * better
+            above = (z[:, None] >= z).all(axis=2)
+            gain = -np.sign(self._excess[k]) * (excess[:, None, k] - excess[:, k])
+            if (gain[above] < -_SAME).any():
+                return False
+        return not self._met.all()
+
+    def result(self, given: np.ndarray, start: float) -> FoundDesign:
+        """The result of a search that began at a time."""
+        search, x = self.search, self.x
+        value, error = (each[0] for each in search.known(x[None]))
+        studies = [search.studied(asked, x[None]) for asked in search.asked]
+        low, high = np.array([each.values for each in search.ranges.inputs]).T
+        return FoundDesign(
+            names=tuple(each.name for each in search.ranges.inputs),
+            units=tuple(each.unit for each in search.ranges.inputs),
+            given=given,
+            value=search.ranges.values(x),
+            low=low,
+            high=high,
+            targets=search.targets,
+            reached=value,
+            error=error,
+            met=self._met,
+            derivative=value[:, None] * self._slopes / search.ranges.slopes(x),
+            limited_by=tuple(self._limits()),
+            only_one_way=self._only_one_way(),
+            solves=search.solves,
+            warnings=tuple(dict.fromkeys(said for each in studies for said in each.warnings)),
+            provenance=Provenance(
+                __version__,
+                studies[0].provenance.method,
+                studies[0].provenance.compared_with,
+                perf_counter() - start,
+            ),
+            scene=search.scene,
+        )

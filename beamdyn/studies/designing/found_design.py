@@ -1,0 +1,141 @@
+"""The result of a search for a design."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from beamdyn.common.plots.curves import plot_bars
+from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words
+from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.designing.target import Target, say_number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class FoundDesign(Result):
+    """Numbers of a scene whose answers are what was wanted, or come nearest to it; made by `design`.
+
+    Parameters
+    ----------
+    names, units : tuple of str, shape (p,)
+        The numbers, by their names in scene files, and their SI units.
+    given, value : ndarray, shape (p,)
+        Values in the scene, nan where it has none, and found [unit].
+    low, high : ndarray, shape (p,)
+        The bounds [unit].
+    targets : tuple of Target, shape (m,)
+        What was wanted.
+    reached : ndarray, shape (m,)
+        The answers of the design [unit of each]; nan where there is none.
+    error : ndarray, shape (m,)
+        Their estimated relative errors.
+    met : ndarray of bool, shape (m,)
+        Whether each target is met, to 1e-10 or the error of the answer; the best is met where there is an
+        answer.
+    derivative : ndarray, shape (m, p)
+        Derivative of each answer by each number [unit / unit of the number], by differences of neighbouring
+        designs.
+    limited_by : tuple of str
+        Bounds and limits that the design lies at, in words.
+    only_one_way : bool
+        Whether the answers that miss their targets rise or fall with each number over all designs computed,
+        so that no other design in the bounds comes nearer.
+    solves : int
+        Number of designs computed, at most 60.
+    warnings : tuple of str
+        Limits of the answers of the design.
+    provenance : Provenance
+        How it was found.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> free = {"beam.thickness": (0.1e-3, 0.2e-3)}
+    >>> found = bd.design(bd.Scene(strip), free, [bd.Target("frequencies", equals=80.0)])
+    >>> found.found, found.limited_by
+    (False, ('beam.thickness is at its largest value',))
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    given: np.ndarray
+    value: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    targets: tuple[Target, ...]
+    reached: np.ndarray
+    error: np.ndarray
+    met: np.ndarray
+    derivative: np.ndarray
+    limited_by: tuple[str, ...]
+    only_one_way: bool
+    solves: int
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)
+
+    def headline(self) -> Iterator[str]:
+        """Whether a design was found, and its numbers, in one line; see `Result.headline`."""
+        yield "found" if self.found else "no design in the bounds, the nearest"
+        yield from (f"{name} {value:.6g} {unit}".rstrip() for name, value, unit in self._numbers)
+        yield from (counted(self.solves, "solve"), warned(self.warnings))
+
+    @property
+    def found(self) -> bool:
+        """Whether the design meets all targets."""
+        return bool(self.met.all())
+
+    @property
+    def scene_found(self) -> Scene:
+        """The scene of the design."""
+        return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
+
+    @property
+    def relative(self) -> np.ndarray:
+        """Relative change of each answer over that of each number, (m, p): 3 where it grows as its cube."""
+        return self.derivative * self.value / self.reached[:, None]
+
+    @property
+    def _numbers(self) -> Iterator[tuple[str, float, str]]:
+        return zip(self.names, self.value.tolist(), self.units, strict=True)
+
+    def sentences(self) -> tuple[str, ...]:
+        """Sentences on what the design misses, and on what limits it."""
+        return tuple(self._sentences())
+
+    def _sentences(self) -> Iterator[str]:
+        missed = [k for k, met in enumerate(self.met) if not met]
+        if missed:
+            numbers = joined(", ", (Words(f"{n} = ", say_number(v, u)) for n, v, u in self._numbers))
+            said = (Words(self.targets[k].says, f" (there {self._reached(k)})") for k in missed)
+            yield Words(
+                "No design in the bounds has ", joined(" and ", said), "; the nearest is ", numbers, "."
+            )
+            if self.only_one_way:
+                said = "rise or fall with each number over all designs computed: no other comes nearer"
+                yield f"These answers {said}."
+        if self.limited_by:
+            yield Words("Limited by: ", joined("; ", self.limited_by), ".")
+
+    def _reached(self, k: int) -> str:
+        value = float(self.reached[k])
+        return "no answer" if np.isnan(value) else self.targets[k].amount(value)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain numbers, lists and strings, with sentences."""
+        return super().to_dict() | {"found": self.found, "sentences": plain(self.sentences())}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the relative change of each answer over that of each number, the most important on top."""
+        labels = [each.name for each in self.targets]
+        return plot_bars(self.names, self.relative.T, labels, "relative change over that of the number", ax)

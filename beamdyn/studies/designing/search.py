@@ -1,0 +1,314 @@
+"""The search for a design: its numbers as shares of their ranges, and the best of all designs computed.
+
+Numbers and answers are taken as logarithms, in which powers are straight lines.  All designs that a search
+computes are kept, and the best one is the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize, toms748
+
+from beamdyn.common.inputs.checks import NoModelAnswer
+from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.common.results.statements import unannounced
+from beamdyn.common.spreading.statistics import seeded
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.designing.target import Asked, Target
+from beamdyn.studies.study import study
+from beamdyn.studies.study_result import Study
+
+MOST_SOLVES = 60  # designs computed
+_EXACT = 1e-10  # relative, to which a target is met whose answer has no larger error
+_STEP = 1e-5  # of shares, of differences within a search
+_WIDE = 1e-3  # of shares, of the derivatives of the answer
+_CLOSE = 1e-13  # of shares, to which a root is bracketed
+_SCANNED, _SPREAD = 9, 4  # designs with which the search begins: of one number, and for each of several
+_ROUNDING = 4 * np.finfo(float).eps
+_FLAT = 1e-12  # change of the aim at which a minimization ends
+_STARTS = 3  # of the search, from the best designs of these
+
+Function = Callable[[np.ndarray], np.ndarray]  # of designs (N, p), with N rows
+
+
+class Spent(Exception):
+    """The search has made as many solves as it may."""
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Numbers of a scene between bounds, as shares from 0 to 1 of the ranges; of logarithms where positive.
+
+    Parameters
+    ----------
+    inputs : tuple of VariedInput
+        The p numbers, whose two values are their bounds.
+    """
+
+    inputs: tuple[VariedInput, ...]
+
+    @cached_property
+    def _ends(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        low, high = np.array([each.values for each in self.inputs]).T
+        return low, high, low > 0
+
+    def values(self, shares: np.ndarray) -> np.ndarray:
+        """Values [unit] (..., p) of shares."""
+        low, high, positive = self._ends
+        ratio = np.where(positive, high / np.where(positive, low, 1.0), 1.0)
+        found = np.where(positive, low * ratio**shares, low + (high - low) * shares)
+        return np.where(shares == 1, high, found)
+
+    def shares(self, values: np.ndarray) -> np.ndarray:
+        """Shares (p,) of values, within the bounds."""
+        low, high, positive = self._ends
+        values = np.clip(values, low, high)
+        safe = [np.where(positive, each, 1.0) for each in (values, low, high)]
+        of_logarithms = np.log(safe[0] / safe[1]) / np.where(positive, np.log(safe[2] / safe[1]), 1.0)
+        return np.where(positive, of_logarithms, (values - low) / (high - low))
+
+    def slopes(self, shares: np.ndarray) -> np.ndarray:
+        """Derivatives [unit] (p,) of the values by the shares."""
+        low, high, positive = self._ends
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(positive, self.values(shares) * np.log(high / low), high - low)
+
+
+@dataclass(frozen=True)
+class Search:
+    """A search, and the designs that it has computed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    ranges : Ranges
+        Its numbers.
+    targets : tuple of Target
+        What the design shall reach.
+    own : ndarray, shape (p,)
+        Shares of the scene's own numbers.
+    discretization, tolerance
+        As for `study`.
+    """
+
+    scene: Scene
+    ranges: Ranges
+    targets: tuple[Target, ...]
+    own: np.ndarray
+    discretization: DiscretizationChoice
+    tolerance: float | None
+    _computed: dict[bytes, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
+
+    # Answers ----------------------------------------------------------------------------------------
+
+    @cached_property
+    def asked(self) -> dict[Asked, list[int]]:
+        """What is asked of studies, with the targets that ask it."""
+        found: dict[Asked, list[int]] = {}
+        for k, target in enumerate(self.targets):
+            found.setdefault(target.asked, []).append(k)
+        return found
+
+    def studied(self, asked: Asked, shares: np.ndarray) -> Study:
+        """The study of some designs, of shares (N, p)."""
+        values = self.ranges.values(shares)
+        vary = {each.name: values[:, k] for k, each in enumerate(self.ranges.inputs)}
+        of = [self.targets[k] for k in self.asked[asked]]
+        modes = max(each.mode for each in of) if of[0].has_modes else None
+        how = {"discretization": self.discretization, "tolerance": self.tolerance, "combine": "zip"}
+        with unannounced():
+            return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
+
+    def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Answers and relative errors (N, m); nan where there is none."""
+        value = np.full((len(shares), len(self.targets)), np.nan)
+        error = np.zeros(value.shape)
+        for asked, targets in self.asked.items():
+            try:
+                found = self.studied(asked, shares)
+            except NoModelAnswer:
+                continue
+            for k in targets:
+                place = self.targets[k].place(found.labels)
+                if place is not None:
+                    value[:, k], error[:, k] = (
+                        each.reshape(len(shares), -1)[:, place] for each in (found.value, found.error)
+                    )
+        return value, np.where(np.isfinite(error), error, 0.0)
+
+    def known(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Answers and relative errors (N, m) of designs (N, p), computed together if not known.
+
+        Raises
+        ------
+        Spent
+            If these are more than the search may still compute.
+        """
+        new = np.array([x for x in shares if x.tobytes() not in self._computed])
+        if len(new):
+            if self.solves + len(new) > MOST_SOLVES:
+                raise Spent
+            rows = zip(new, *self._answers(new), strict=True)
+            self._computed.update({x.tobytes(): (value, error) for x, value, error in rows})
+        each = [self._computed[x.tobytes()] for x in shares]
+        return np.array([value for value, _ in each]), np.array([error for _, error in each])
+
+    def excess(self, shares: np.ndarray) -> np.ndarray:
+        """How far beyond the targets (N, m) designs are; see `Target.excess`."""
+        value, _ = self.known(shares)
+        return np.array([each.excess(value[:, k]) for k, each in enumerate(self.targets)]).T
+
+    # All designs ------------------------------------------------------------------------------------
+
+    @property
+    def solves(self) -> int:
+        """Number of designs computed, with those for the derivatives of the best one."""
+        return len(self._computed) + 2 * len(self.own) + 1
+
+    @property
+    def designs(self) -> np.ndarray:
+        """Shares (N, p) of the designs computed."""
+        return np.array([np.frombuffer(key) for key in self._computed])
+
+    def missed(self, shares: np.ndarray) -> np.ndarray:
+        """By how much (N, m) designs that are computed miss the targets: 0 to 1e-10."""
+        excess = self.excess(shares)
+        missed = np.array([each.missed(excess[:, k]) for k, each in enumerate(self.targets)]).T
+        return np.where(missed <= _EXACT, 0.0, missed)
+
+    def met(self, shares: np.ndarray) -> np.ndarray:
+        """Whether designs that are computed meet the targets (N, m), within the errors of the answers."""
+        return self.missed(shares) <= self.known(shares)[1]
+
+    def aim(self, shares: np.ndarray) -> np.ndarray:
+        """What is minimized (N,): the answer that shall be the best, or the squared distance from the own."""
+        for k, each in enumerate(self.targets):
+            if each.best is not None:
+                return -self.excess(shares)[:, k]
+        return ((shares - self.own) ** 2).sum(axis=1)
+
+    def _aim_slopes(self, x: np.ndarray) -> np.ndarray:
+        """Derivatives (p,) of the aim at a design (p,)."""
+        if any(each.best is not None for each in self.targets):
+            return _slopes(self.aim, x)
+        return 2 * (x - self.own)
+
+    def ranked(self, shares: np.ndarray) -> np.ndarray:
+        """Designs (N, p) from the best: those that miss the targets least, and of these by the aim."""
+        missed = (self.missed(shares) ** 2).sum(axis=1)
+        return shares[np.lexsort((self.aim(shares), missed))]
+
+    # The search -------------------------------------------------------------------------------------
+
+    def run(self, seed: int) -> np.ndarray:
+        """Search; return the shares (p,) of the best design."""
+        with suppress(Spent):
+            self.known(self._first(seed))
+            if len(self.own) == 1:
+                self._bracket()
+            self._descend(self.ranked(self.designs)[:_STARTS])
+        return self.ranked(self.designs)[0]
+
+    def _first(self, seed: int) -> np.ndarray:
+        """Designs (N, p) with which the search begins: the own one, and others over the ranges."""
+        p = len(self.own)
+        if p == 1:
+            return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]
+        from scipy.stats.qmc import LatinHypercube  # it takes long to load
+
+        return np.vstack([self.own, seeded(LatinHypercube, p, seed).random(_SPREAD * p)])
+
+    @property
+    def _is_found(self) -> bool:
+        """Whether a design is known that meets all targets, none of which asks for the best."""
+        is_met = self.met(self.designs).all(axis=1).any()
+        return is_met and all(each.best is None for each in self.targets)
+
+    def _bracket(self) -> None:
+        """Find where the one answer that shall have a value has it, between designs on either side of it."""
+        wanted = [k for k, each in enumerate(self.targets) if each.equals is not None]
+        if len(wanted) != 1:
+            return
+
+        def beyond(x: float) -> float:
+            return float(self.excess(np.array([[x]]))[0, wanted[0]])
+
+        shares = np.sort(self.designs[:, 0]).tolist()
+        around = [(a, b) for a, b in pairwise(shares) if beyond(a) * beyond(b) < 0]
+        for a, b in sorted(around, key=lambda ends: abs(sum(ends) / 2 - self.own[0])):
+            self.known(np.array([[toms748(beyond, a, b, xtol=_CLOSE, rtol=_ROUNDING)]]))
+            if self._is_found:
+                return
+
+    def _descend(self, starts: np.ndarray) -> None:
+        """Minimize the aim from several designs within the targets, or what they are missed by."""
+        for start in starts:
+            if self._is_found:
+                return
+            self._minimize(self.aim, self._aim_slopes, start, [*self._constraints()])
+            if not self.met(self.designs).all(axis=1).any():
+                missed = lambda shares: (self.missed(shares) ** 2).sum(axis=1)  # noqa: E731
+                self._minimize(missed, partial(_slopes, missed), self.ranked(self.designs)[0], [])
+
+    def _constraints(self) -> Iterator[dict[str, Any]]:
+        """Yield the targets that are values, and those that are limits, for the minimization."""
+        for kind, is_limit in (("eq", False), ("ineq", True)):
+            places = [k for k, t in enumerate(self.targets) if t.best is None and t.is_limit == is_limit]
+            if places:
+                excess = partial(self._some_excess, places)
+                yield {"type": kind, "fun": _at(excess), "jac": partial(_slopes, excess)}
+
+    def _some_excess(self, places: list[int], shares: np.ndarray) -> np.ndarray:
+        return self.excess(shares)[:, places]
+
+    def _minimize(
+        self, function: Function, slopes: Function, start: np.ndarray, constraints: Sequence[Any]
+    ) -> None:
+        """Minimize a function of designs by sequential quadratic programming; what it computes is kept."""
+        minimize(
+            _at(function),
+            start,
+            jac=slopes,
+            bounds=[(0.0, 1.0)] * len(start),
+            constraints=constraints,
+            method="SLSQP",
+            options={"ftol": _FLAT, "maxiter": MOST_SOLVES},
+        )
+
+    # Beside the answer ------------------------------------------------------------------------------
+
+    def derivatives(self, x: np.ndarray) -> np.ndarray:
+        """Derivatives (m, p) of the logarithms of the answers by shares, from neighbours on either side.
+
+        Each is that of the parabola through three designs, which at a bound lie within it.
+        """
+        steps = np.where(x < _WIDE, 1.0, np.where(x > 1 - _WIDE, -2.0, -1.0)) * _WIDE
+        a, b = steps, np.where((x < _WIDE) | (x > 1 - _WIDE), np.where(x < _WIDE, 2, -1), 1) * _WIDE
+        designs = np.vstack([x, x + np.diag(a), x + np.diag(b)])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            own, before, after = np.split(np.log(self._answers(designs)[0]), [1, 1 + len(x)])
+            a, b = a[:, None], b[:, None]
+            found = -(a + b) / (a * b) * own + b / (a * (b - a)) * before - a / (b * (b - a)) * after
+        return found.T
+
+
+def _at(function: Function) -> Callable[[np.ndarray], Any]:
+    """A function of one design (p,), of one of many."""
+    return lambda x: function(np.clip(x, 0.0, 1.0)[None])[0]
+
+
+def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
+    """Differences (..., p) of a function at a design (p,) over a small step, away from the upper bound."""
+    x = np.clip(x, 0.0, 1.0)
+    steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
+    values = function(np.vstack([x, x + np.diag(steps)]))
+    return (values[1:] - values[0]).T / steps

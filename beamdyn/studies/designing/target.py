@@ -1,0 +1,160 @@
+"""What a design shall reach: a wanted value of an answer, a limit, or the best."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from beamdyn.common.inputs import checks
+from beamdyn.common.results.statements import Speeds
+from beamdyn.common.words import Words
+from beamdyn.studies.beside_data.single_numbers import say_value
+from beamdyn.studies.questions import KINDS, OPTIONS, Kind
+
+_FAR = 5.0  # largest logarithm of an answer over what is wanted: also of designs without an answer
+_NONE = 100.0  # that of an answer that shall be the best and is not there, in SI
+
+
+class Asked(NamedTuple):
+    """What is asked of a study, by one target or several."""
+
+    what: str
+    speed: float | None
+    window: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Target:
+    """What an answer of a design shall be: a value, within a limit, or the largest or smallest.
+
+    Exactly one of `equals`, `at_least`, `at_most` and `best` is given.
+
+    Parameters
+    ----------
+    what : str
+        The answer, as for `study`: "frequencies" [Hz], "critical_speed" or "crossings" [rad/s],
+        "amplitude" or "peak" [m], or "strain".
+    equals : float, optional
+        The wanted value [unit of the answer].
+    at_least, at_most : float, optional
+        A limit that the answer keeps [same unit].
+    best : {"largest", "smallest"}, optional
+        The answer shall be the largest or the smallest of all designs within the limits.
+    speed : float, optional
+        Speed of the answer, or top speed of crossings [rad/s]; as for `study` if not given.
+    mode : int
+        Number of the mode of a frequency or crossing, from 1.
+    line : str
+        The line of the excitation that the mode of a crossing meets, as `study` names it, such as "road -" or
+        "road - (parametric)".
+    window : tuple of float, optional
+        Window of time of a peak [s], as for `study`.
+
+    Examples
+    --------
+    >>> print(bd.Target("frequencies", equals=62.0, speed=50.0).says)
+    frequency of mode 1 at 50 rad/s = 62 Hz
+    """
+
+    what: str
+    equals: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    best: Literal["largest", "smallest"] | None = None
+    speed: float | None = None
+    mode: int = 1
+    line: str = ""
+    window: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        checks.one_of("what", self.what, tuple(KINDS))
+        given = {name: getattr(self, name) for name in ("equals", "at_least", "at_most", "best")}
+        given = {name: value for name, value in given.items() if value is not None}
+        if len(given) != 1:
+            bound = "give one of equals, at_least, at_most and best"
+            raise checks.InvalidValue("target", ", ".join(given) or None, bound)
+        if self.best is None:
+            name, value = next(iter(given.items()))
+            checks.positive(name, value, self.kind.unit)
+        else:
+            checks.one_of("best", self.best, ("largest", "smallest"))
+        checks.check_used(self.what, OPTIONS, speed=self.speed, window=self.window)
+        checks.count("mode", self.mode)
+        if (self.what == "crossings") != bool(self.line):
+            bound = "a crossing is where a mode meets a line, and no other answer has one"
+            raise checks.InvalidValue("line", self.line, bound, 'give such as "road -" of crossings alone')
+
+    @property
+    def kind(self) -> Kind:
+        """The kind of the answer."""
+        return KINDS[self.what]
+
+    @property
+    def asked(self) -> Asked:
+        """What is asked of a study."""
+        return Asked(self.what, self.speed, self.window)
+
+    @property
+    def has_modes(self) -> bool:
+        """Whether the answer is that of a mode."""
+        return "modes" in self.kind.options
+
+    @property
+    def is_limit(self) -> bool:
+        """Whether the answer shall be within a limit."""
+        return self.at_least is not None or self.at_most is not None
+
+    def place(self, labels: tuple[str, ...]) -> int | None:
+        """Which of the numbers of an answer it is; None if there is no such number."""
+        if self.what != "crossings":
+            return self.mode - 1 if self.has_modes else 0
+        wanted = f"mode {self.mode}, {self.line}"
+        return next((k for k, label in enumerate(labels) if label in (wanted, f"{wanted} (forced)")), None)
+
+    def excess(self, value: np.ndarray) -> np.ndarray:
+        """Logarithm of answers over what is wanted, or how much better than it they are.
+
+        It is 0 where a value or limit is met exactly, and positive where a limit is kept; of what shall be
+        the best it is the larger, the better.  Answers of beams are near powers of their numbers, so that
+        these are nearly linear in the logarithms of the numbers.
+        """
+        wanted = self.equals or self.at_least or self.at_most or 1.0
+        sign = -1.0 if self.at_most is not None or self.best == "smallest" else 1.0
+        with np.errstate(divide="ignore"):
+            found = sign * np.log(value / wanted)
+        most = _FAR if self.best is None else _NONE
+        return np.clip(np.where(np.isnan(found), -most, found), -most, most)
+
+    def missed(self, excess: np.ndarray) -> np.ndarray:
+        """By how much, as a logarithm, the target is missed; 0 of what shall be the best."""
+        if self.best is not None:
+            return np.where(excess <= -_NONE, _FAR, 0.0)
+        return np.maximum(-excess, 0.0) if self.is_limit else np.abs(excess)
+
+    @property
+    def name(self) -> Words:
+        """The answer in words."""
+        of = f" of mode {self.mode}" if self.has_modes else ""
+        of += f" with {self.line}" if self.line else ""
+        is_at = self.speed is not None and self.kind.has_speed
+        return Words(self.kind.word, of, *((" at ", Speeds(self.speed or 0.0)) if is_at else ()))
+
+    @property
+    def says(self) -> Words:
+        """The target in words."""
+        if self.best is not None:
+            return Words(self.name, f" {self.best}")
+        words = {"=": self.equals, "at least": self.at_least, "at most": self.at_most}
+        word, value = next((word, value) for word, value in words.items() if value is not None)
+        return Words(self.name, f" {word} ", self.amount(value))
+
+    def amount(self, value: float) -> str:
+        """A value of the answer with its unit."""
+        return say_number(value, self.kind.unit)
+
+
+def say_number(value: float, unit: str) -> str:
+    """A value with six digits and its unit, as each medium has it."""
+    return Speeds(value) if unit == "rad/s" else say_value(value, unit, 6)
