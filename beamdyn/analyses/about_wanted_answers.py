@@ -12,7 +12,7 @@ import beamdyn as bd
 from beamdyn.analyses.about_data import parse_free
 from beamdyn.analyses.analysis import WRITTEN, Answer, analysis
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, Text
-from beamdyn.analyses.values import final_speed, in_unit_of, parse_quantity, parse_speed
+from beamdyn.analyses.values import in_unit_of, parse_quantity, parse_speed
 from beamdyn.common.results.files import write_text
 from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.studies.questions import KINDS
@@ -97,8 +97,6 @@ def _target(found: re.Match[str], scene: Scene) -> bd.Target:
     if found["sign"]:
         wanted = {_SIGNS[found["sign"]]: _value(found["value"], unit, scene)}
     speed = None if found["speed"] is None else parse_speed("--so-that", found["speed"], scene)
-    if speed is None and what == "crossings":
-        speed = final_speed(scene)
     return bd.Target(what, **wanted, speed=speed, mode=int(found["mode"] or 1), line=found["line"] or "")
 
 

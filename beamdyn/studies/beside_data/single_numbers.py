@@ -149,7 +149,10 @@ def _explanation(
 
 
 def say_value(value: float, unit: str, digits: int = _DIGITS) -> str:
-    """A value with three digits, or as many as are given, and its unit, as each medium has it: Python in SI, files in mm, GPa and g."""
+    """A value with three digits, or as many as are given, and its unit, as each medium has it.
+
+    Python has it in SI, files in mm, GPa and g.
+    """
     if math.isinf(value):
         return "clamped"
     rounded = float(f"{value:.{digits}g}")

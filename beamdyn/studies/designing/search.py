@@ -23,6 +23,7 @@ from beamdyn.common.spreading.statistics import seeded
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.designing.target import Asked, Target
+from beamdyn.studies.resonance_speeds import NO_RESONANCE
 from beamdyn.studies.study import study
 from beamdyn.studies.study_result import Study
 
@@ -129,7 +130,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers and relative errors (N, m); nan where there is none."""
+        """Answers and relative errors (N, m); nan where there is none, inf of resonances above the top speed."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():
@@ -140,8 +141,9 @@ class Search:
             for k in targets:
                 place = self.targets[k].place(found.labels)
                 if place is not None:
+                    beyond = np.where(found.status == NO_RESONANCE, np.inf, found.value)  # the top speed
                     value[:, k], error[:, k] = (
-                        each.reshape(len(shares), -1)[:, place] for each in (found.value, found.error)
+                        each.reshape(len(shares), -1)[:, place] for each in (beyond, found.error)
                     )
         return value, np.where(np.isfinite(error), error, 0.0)
 
@@ -228,10 +230,14 @@ class Search:
         return np.vstack([self.own, seeded(LatinHypercube, p, seed).random(_SPREAD * p)])
 
     @property
+    def _is_met(self) -> bool:
+        """Whether a design is known that meets all targets."""
+        return bool(self.met(self.designs).all(axis=1).any())
+
+    @property
     def _is_found(self) -> bool:
         """Whether a design is known that meets all targets, none of which asks for the best."""
-        is_met = self.met(self.designs).all(axis=1).any()
-        return is_met and all(each.best is None for each in self.targets)
+        return self._is_met and all(each.best is None for each in self.targets)
 
     def _bracket(self) -> None:
         """Find where the one answer that shall have a value has it, between designs on either side of it."""
@@ -255,7 +261,7 @@ class Search:
             if self._is_found:
                 return
             self._minimize(self.aim, self._aim_slopes, start, [*self._constraints()])
-            if not self.met(self.designs).all(axis=1).any():
+            if not self._is_met:
                 missed = lambda shares: (self.missed(shares) ** 2).sum(axis=1)  # noqa: E731
                 self._minimize(missed, partial(_slopes, missed), self.ranked(self.designs)[0], [])
 

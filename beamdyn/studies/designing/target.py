@@ -43,7 +43,8 @@ class Target:
     best : {"largest", "smallest"}, optional
         The answer shall be the largest or the smallest of all designs within the limits.
     speed : float, optional
-        Speed of the answer, or top speed of crossings [rad/s]; as for `study` if not given.
+        Speed of the answer, or top speed of crossings [rad/s]; if not given as for `study`, and
+        twice the wanted value of a crossing.
     mode : int
         Number of the mode of a frequency or crossing, from 1.
     line : str
@@ -93,8 +94,10 @@ class Target:
 
     @property
     def asked(self) -> Asked:
-        """What is asked of a study."""
-        return Asked(self.what, self.speed, self.window)
+        """What is asked of a study; crossings are sought up to twice the wanted one."""
+        wanted = self.equals or self.at_least or self.at_most
+        top = 2 * wanted if wanted and self.what == "crossings" and self.speed is None else self.speed
+        return Asked(self.what, top, self.window)
 
     @property
     def has_modes(self) -> bool:
