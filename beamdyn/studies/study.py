@@ -147,7 +147,7 @@ def study(
         bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
         raise checks.InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
     question = StudyQuestion(
-        scene, what, at, modes, discretization, tolerance, _check_window(WINDOW if window is None else window)
+        scene, what, at, modes, discretization, tolerance, check_window(WINDOW if window is None else window)
     )
     request = _Request(question, designs)
     request.check()
@@ -220,7 +220,8 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     return at
 
 
-def _check_window(window: tuple[float, float]) -> tuple[float, float]:
+def check_window(window: tuple[float, float]) -> tuple[float, float]:
+    """Beginning and end of a window of time [s]; refused where they do not ascend from 0."""
     ends = checks.as_floats(window)
     if ends is None or ends.shape != (2,) or not (0 <= ends[0] < ends[1] < np.inf):
         bound = "give its beginning and its end [s], two ascending numbers such as (20.0, 30.0)"

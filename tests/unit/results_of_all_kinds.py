@@ -126,6 +126,11 @@ MAKERS: dict[str, Callable[[], Result]] = {
         {"beam.thickness": None},
     ),
     "FloquetMultipliers": lambda: bd.floquet_multipliers(PULSATING, 2),
+    "FoundDesign": lambda: bd.design(
+        HARVESTER,
+        {"beam.thickness": (1e-4, 4e-4), "mount.radius": (0.1, 0.3)},
+        [bd.Target("frequencies", equals=80.0, speed=50.0), bd.Target("critical_speed", at_least=90.0)],
+    ),
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
     "FromPedal": _from_pedal,

@@ -307,6 +307,16 @@ CALLS = {
         {"scene": SCENE, "data": bd.MeasuredFrequencies([65.0]), "free": {"beam.thickness": None}}
         | {"starts": 1, "seed": 0},
     ),
+    "design": (
+        bd.design,
+        {"scene": SCENE, "free": {"beam.thickness": (1e-4, 4e-4)}, "seed": 0, "tolerance": 1e-3}
+        | {"targets": [bd.Target("frequencies", equals=80.0)], "discretization": "ritz"},
+    ),
+    "Target": (
+        bd.Target,
+        {"what": "frequencies", "equals": 80.0, "at_least": None, "at_most": None, "best": None}
+        | {"speed": 5.0, "mode": 1, "line": "", "window": None},
+    ),
     "read_measurements": (
         bd.read_measurements,
         {"path": "examples/strip_shells.csv", "speeds": None, "columns": None},

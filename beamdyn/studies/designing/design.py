@@ -31,7 +31,7 @@ _AT = 1e-6  # share of a range, or relative distance from a limit, at which a de
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
 def design(
     scene: Scene,
-    free: Mapping[str, tuple[float, float]],
+    free: Mapping[str, tuple[float, float] | None],
     targets: Sequence[Target],
     *,
     seed: int = 0,
@@ -48,9 +48,9 @@ def design(
     ----------
     scene : Scene
         The scene; its motion is used for crossings, amplitudes, peaks and strains.
-    free : mapping of str to pair of float
+    free : mapping of str to pair of float or None
         The numbers by their names in scene files, such as "beam.thickness", at most 6, each with its
-        least and largest value [SI].
+        least and largest value [SI], or None for half and twice that of the scene.
     targets : sequence of Target
         What the answers shall be.
     seed : int
@@ -92,21 +92,24 @@ def design(
     return _Told(search, x).result(given, start)
 
 
-def _check_free(scene: Scene, free: Mapping[str, tuple[float, float]]) -> tuple[VariedInput, ...]:
+def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) -> tuple[VariedInput, ...]:
     """The numbers with their bounds, all of whose combinations are scenes."""
     if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
         bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
-    inputs = tuple(_check_bounds(path, bounds) for path, bounds in free.items())
+    inputs = tuple(_check_bounds(scene, path, bounds) for path, bounds in free.items())
     for corner in Designs(inputs).extremes():
         with_numbers(scene, corner)
     return inputs
 
 
-def _check_bounds(path: str, bounds: object) -> VariedInput:
+def _check_bounds(scene: Scene, path: str, bounds: object) -> VariedInput:
     if check_path("free", path) == SPEED:
         bound = "the speed is no number of a scene"
         raise InvalidValue("free", path, bound, "give targets their speeds")
+    own = number_at(scene, path)
+    if bounds is None and own and np.isfinite(own):
+        bounds = sorted((own / 2, own * 2))
     ends = as_floats(bounds)
     if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] < ends[1]):
         unit = unit_of(path) or ""

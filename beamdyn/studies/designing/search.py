@@ -130,7 +130,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers and relative errors (N, m); nan where there is none, inf of resonances above the top speed."""
+        """Answers and relative errors (N, m); nan where there is none, inf beyond the top speed."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():

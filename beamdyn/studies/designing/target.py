@@ -10,8 +10,10 @@ import numpy as np
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
+from beamdyn.scene.validity import check_speeds
 from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.questions import KINDS, OPTIONS, Kind
+from beamdyn.studies.study import check_window
 
 _FAR = 5.0  # largest logarithm of an answer over what is wanted: also of designs without an answer
 _NONE = 100.0  # that of an answer that shall be the best and is not there, in SI
@@ -83,6 +85,11 @@ class Target:
             checks.one_of("best", self.best, ("largest", "smallest"))
         checks.check_used(self.what, OPTIONS, speed=self.speed, window=self.window)
         checks.count("mode", self.mode)
+        if self.speed is not None:
+            check_speeds(checks.real("speed", self.speed, "rad/s"), "speed")
+        if self.window is not None:
+            check_window(self.window)
+        checks.kind("line", self.line, str)
         if (self.what == "crossings") != bool(self.line):
             bound = "a crossing is where a mode meets a line, and no other answer has one"
             raise checks.InvalidValue("line", self.line, bound, 'give such as "road -" of crossings alone')
