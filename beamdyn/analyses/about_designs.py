@@ -131,7 +131,8 @@ def study(
     what
         frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the
         speeds at which modes meet lines of the excitation; amplitude, of the tip in steady motion;
-        or peak, its largest deflection in a window of time.
+        peak, its largest deflection in a window of time; or strain, the largest along the span in
+        steady motion.
     speed
         Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed
         of crossings. Default: the final speed of the scene's motion, or 0 without one.

@@ -84,8 +84,8 @@ def study(
         Sides and material are those of a rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"}
         The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
-        meets each line of the excitation; the steady amplitude of the tip; or its largest deflection in a
-        window of time, of a run from rest.
+        meets each line of the excitation; the steady amplitude of the tip; its largest deflection in a
+        window of time, of a run from rest; or the largest strain along the span in steady motion.
     speed : float, optional
         Speed of frequencies, amplitudes and peaks where it is not varied, and top speed of crossings
         [rad/s]; if not given, 0 for frequencies, else the final speed of the motion.
@@ -144,7 +144,7 @@ def study(
     # Numbers of the motion matter where the answer is that of one motion.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
-        bound = f"only amplitudes and peaks are studied over numbers of the motion, not {what}"
+        bound = f"only amplitudes, peaks and strains are studied over numbers of the motion, not {what}"
         raise checks.InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
     question = StudyQuestion(
         scene, what, at, modes, discretization, tolerance, check_window(WINDOW if window is None else window)

@@ -289,7 +289,12 @@ def test_numbers_of_a_rotation_of_a_wheel_are_inputs():
             "no such number; give one of motion.rolling_radius, motion.r",
         ),
         ("amplitude", "motion.road.wavelength", [-0.1], "motion.road.wavelength = -0.1 m: "),
-        ("frequencies", "motion.road.wavelength", [0.1], "only amplitudes and peaks are studied over"),
+        (
+            "frequencies",
+            "motion.road.wavelength",
+            [0.1],
+            "only amplitudes, peaks and strains are studied over",
+        ),
         ("crossings", "motion.rolling_radius", [0.1], "ask for one of these"),
         ("amplitude", "motion.rotation.speed", [0.1], "unknown input"),
         ("amplitude", "motion.road.wavelenght", [0.1], "give motion.road.wavelength"),
