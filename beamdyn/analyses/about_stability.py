@@ -14,7 +14,7 @@ from beamdyn.analyses.options import Discretization, ModeCount
 from beamdyn.analyses.results.of_stability import chart_table
 from beamdyn.analyses.values import in_unit_of
 from beamdyn.common.edge.varied_inputs import parse_axis
-from beamdyn.common.edge.varying import OPTION
+from beamdyn.common.edge.varying import OPTION, Folder, Workers
 from beamdyn.scene.numbers import SPEED, number_at
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ _VALUES = 41  # of an amplitude, where none are given
 @analysis(
     "beamdyn floquet examples/pulsating_wheel.toml",
     about_scene="The scene, in a motion that repeats itself.",
-    moving=lambda _: True,
 )
 def floquet(
     scene: Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"
@@ -41,7 +40,6 @@ def floquet(
 @analysis(
     "beamdyn stability-chart examples/pulsating_wheel.toml",
     about_scene="The scene, in a motion that repeats itself.",
-    moving=lambda _: True,
 )
 def stability_chart(
     scene: Scene,
@@ -49,6 +47,8 @@ def stability_chart(
     vary: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)] = (),
     modes: ModeCount = 3,
     discretization: Discretization = "ritz",
+    workers: Workers = 1,
+    store: Folder = None,
 ) -> Answer:
     """Where free motion grows, over two numbers of a scene whose motion repeats itself.
 
@@ -58,9 +58,14 @@ def stability_chart(
         A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; give
         the option twice. Names are those of the file, or speed. Default: the frequency of what pulsates, by
         a fifth either way, and its amplitude, up to twice as much.
+    workers
+        Number of processes; the answer is the same for any.
+    store
+        Folder in which integrated scenes are kept; the same command resumes from it.
     """
+    how = {"modes": modes, "discretization": discretization, "workers": workers, "store": store}
     if not vary:
-        return Answer(bd.stability_chart(scene, _about(scene), modes, discretization))
+        return Answer(bd.stability_chart(scene, _about(scene), **how))
     if len(vary) != 2:
         raise ValueError(f'{OPTION}: a chart is over two numbers; give two, such as "speed=50:60:21 rad/s"')
     varied = (text.partition("=") for text in vary)
@@ -70,7 +75,7 @@ def stability_chart(
     units = {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
     if len(inputs) < 2:
         raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two numbers")
-    result = bd.stability_chart(scene, inputs, modes, discretization)
+    result = bd.stability_chart(scene, inputs, **how)
     return Answer(result, tables=[chart_table(result, units)])
 
 

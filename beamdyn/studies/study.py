@@ -34,7 +34,7 @@ from beamdyn.studies.resonance_speeds import crossings_of, list_resonances
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
 from beamdyn.studies.study_result import Study
 
-_VERSIONS = (
+VERSIONS = (
     __version__,
     np.__version__,
     scipy.__version__,
@@ -131,7 +131,7 @@ def study(
     check_designs(designs)
     checks.one_of("what", what, tuple(KINDS))
     check_discretization(discretization)
-    run = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress)
+    run = TaskRunner(workers, executor, store, _KIND, VERSIONS, progress)
     varied = SPEED in {each.name for each in designs.inputs}
     at = speed_of_study(scene, what, speed, varied)
     checks.check_used(what, OPTIONS, speed=speed, modes=modes, window=window)

@@ -13,6 +13,7 @@ from beamdyn.studies.floquet.interpolation import interpolate_on_grid
 from beamdyn.studies.floquet.monodromy import Monodromy
 from beamdyn.studies.floquet.multipliers import multipliers_of
 from beamdyn.studies.floquet.period import period_of
+from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 PULSATING = bd.PulsatingRotation(50.0, 0.1, 20.0)
@@ -92,6 +93,29 @@ def test_charts_refuse_phases_that_meet_after_other_numbers_of_turns():
         bd.stability_chart(scene, {"motion.frequency": rates, "mount.radius": [0.1, 0.2]}, 1)
 
 
+def test_a_chart_resumes_from_its_store(tmp_path, monkeypatch):
+    vary = {"motion.frequency": np.linspace(15.0, 25.0, 4), "motion.fluctuation": [0.1, 0.2]}
+    scene = bd.Scene(STRIP, MOUNT, PULSATING)
+    chart = bd.stability_chart(scene, vary, 1, store=tmp_path / "store")
+    monkeypatch.delattr(PeriodicScenes, "monodromy")  # nothing is integrated again
+    again = bd.stability_chart(scene, vary, 1, store=tmp_path / "store")
+    np.testing.assert_array_equal(again.growth_rate, chart.growth_rate)
+    with pytest.raises(AttributeError):
+        bd.stability_chart(scene, vary, 1)
+
+
+def test_a_chart_has_the_physics_that_its_fastest_motion_needs():
+    scene = bd.Scene(
+        bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3),
+        MOUNT,
+        PULSATING,
+        physics="auto",
+    )
+    vary = {"speed": [1.0, 150.0], "motion.fluctuation": [0.0, 0.1]}
+    chosen = bd.stability_chart(scene, vary, 1).scene.physics_choice
+    assert chosen is not None and max(chosen.speeds) > 140.0
+
+
 # Verdicts -----------------------------------------------------------------------------------------
 
 J = np.kron([[0, 1], [-1, 0]], np.eye(2))  # the form of two oscillators
@@ -146,7 +170,7 @@ def test_interpolation_states_its_error():
     def wave(a, b):
         return np.array([np.cos(9 * a + b), b])
 
-    found = interpolate_on_grid(wave, (x, y), lambda: 1e-9, slice(1))
+    found = interpolate_on_grid(lambda pairs: [wave(*each) for each in pairs], (x, y), lambda: 1e-9, slice(1))
     exact = np.array([[wave(a, b) for b in y] for a in x])
     assert found.samples <= 65 * 5
     assert np.abs(found.value - exact).max() <= found.error + 1e-13
@@ -155,6 +179,8 @@ def test_interpolation_states_its_error():
 
 def test_what_polynomials_do_not_resolve_is_taken_at_the_values():
     x = np.linspace(-1, 1, 30)
-    found = interpolate_on_grid(lambda a, b: np.array([abs(a) + b]), (x, np.zeros(1)), lambda: 1e-9, slice(1))
+    found = interpolate_on_grid(
+        lambda pairs: [np.array([abs(a) + b]) for a, b in pairs], (x, np.zeros(1)), lambda: 1e-9, slice(1)
+    )
     np.testing.assert_array_equal(found.value[:, 0, 0], np.abs(x))
     assert found.error == 0

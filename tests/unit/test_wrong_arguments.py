@@ -174,7 +174,7 @@ CALLS = {
     "stability_chart": (
         bd.stability_chart,
         {"scene": PULSATING, "vary": {"speed": [5.0], "mount.radius": [0.1]}, "modes": 2}
-        | {"discretization": "ritz"},
+        | {"discretization": "ritz", "workers": 1, "store": None},
     ),
     "simulate": (
         bd.simulate,
@@ -347,6 +347,7 @@ ALLOWED = {
     "Scene.units": {"dictionary"},
     "sweep.store": {"text"},
     "study.store": {"text"},
+    "stability_chart.store": {"text"},
     "spread.store": {"text"},
     "Uniform.text": {"text"},
     "Normal.text": {"text"},

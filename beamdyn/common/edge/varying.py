@@ -35,6 +35,9 @@ def _check_workers(_: object, value: object) -> None:
         raise ValueError(f"Give at most {_MOST_WORKERS}.")
 
 
+Workers = Annotated[int, Parameter(validator=_check_workers)]
+
+
 @Parameter(name="*")
 @dataclass(frozen=True)
 class VaryOptions:
@@ -56,7 +59,7 @@ class VaryOptions:
 
     vary: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)] = ()
     together: Flag = False
-    workers: Annotated[int, Parameter(validator=_check_workers)] = 1
+    workers: Workers = 1
     store: Folder = None
 
     @property

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -101,7 +102,7 @@ class OnGrid:
 
 
 def interpolate_on_grid(
-    function: Callable[[float, float], np.ndarray],
+    function: Callable[[list[tuple[float, float]]], list[np.ndarray]],
     values: tuple[np.ndarray, np.ndarray],
     tolerance: Callable[[], float],
     entries: slice,
@@ -111,7 +112,8 @@ def interpolate_on_grid(
     Parameters
     ----------
     function : callable
-        The function: it takes two numbers, also between the given values, and returns an array (k,).
+        The function: it takes pairs of numbers, also between the given values, and returns an array (k,) of
+        each.
     values : tuple of ndarray, shapes (A,) and (B,)
         Values of the two numbers on the grid.
     tolerance : callable
@@ -122,15 +124,13 @@ def interpolate_on_grid(
     """
     known: dict[tuple[float, float], np.ndarray] = {}
 
-    def sample(x: float, y: float) -> np.ndarray:
-        if (x, y) not in known:
-            known[x, y] = function(x, y)
-        return known[x, y]
-
     axes = [ChebyshevAxis.coarsest(each) for each in values]
     while True:
         first, second = (axis.nodes.tolist() for axis in axes)
-        found = np.array([[sample(x, y) for y in second] for x in first])
+        pairs = [*product(first, second)]
+        new = [pair for pair in pairs if pair not in known]
+        known.update(zip(new, function(new), strict=True))
+        found = np.array([known[pair] for pair in pairs]).reshape(len(first), len(second), -1)
         for place, axis in enumerate(axes):
             found = axis.coefficients(found, place)
         tails = [axis.tail(found[..., entries], place) for place, axis in enumerate(axes)]

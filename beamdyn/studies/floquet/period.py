@@ -7,7 +7,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.words import Words
 from beamdyn.scene.motion import Rotation
+from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.scene import Scene
 
 MOST_TURNS = 64  # periods of the first phase in which all must meet again
@@ -43,7 +45,7 @@ def period_of(scene: Scene) -> Period:
     """
     motion = scene.motion
     if motion is None:
-        remedy = "such as PulsatingRotation(50.0, fluctuation=0.1, frequency=20.0)"
+        remedy = Words("such as ", REPEATING)
         raise InvalidValue("scene.motion", None, "stability needs a periodic motion", remedy)
     rates = tuple(map(abs, motion.rates))
     if isinstance(motion, Rotation) and not scene.gravity and len(rates) > 1:

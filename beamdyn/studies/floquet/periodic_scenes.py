@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count
+from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
@@ -79,8 +80,12 @@ def speeds_of(scene: Scene) -> np.ndarray:
     return np.array(find_speed_range(scene.motion, period.time))
 
 
-def check_periodic(scene: Scene, modes: int, discretization: DiscretizationChoice) -> PeriodicScenes:
+def check_periodic(
+    scene: Scene, modes: int, discretization: DiscretizationChoice, inputs: Sequence[VariedInput] = ()
+) -> PeriodicScenes:
     """Check the arguments of an analysis of stability in periodic motion, and choose the physics if "auto".
+
+    Of scenes over some inputs it is that of the extreme one which needs the most effects.
 
     Raises
     ------
@@ -89,7 +94,22 @@ def check_periodic(scene: Scene, modes: int, discretization: DiscretizationChoic
     """
     check_scene(scene)
     modes = count("modes", modes)
-    scene = choose_physics(scene, speeds_of(scene), modes, barred={LARGE_DEFLECTION.name: _STRAIGHT})
+    if scene.chooses_physics:
+        extremes = Designs(inputs).extremes() if inputs else [{}]
+        each = PeriodicScenes(scene, modes, discretization)
+        chosen = [_choose_physics(each.at(numbers), modes) for numbers in extremes]
+        most = max(chosen, key=_needs)
+        scene = replace(scene, physics=most.physics, physics_choice=most.physics_choice)
     if scene.physics.large_deflection:
         raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave it out")
     return PeriodicScenes(scene, modes, discretization)
+
+
+def _needs(scene: Scene) -> tuple[int, float]:
+    """Key that orders chosen physics: the number of effects included, then what is still left out."""
+    choice = scene.physics_choice
+    return (0, 0.0) if choice is None else (len(choice.included), choice.model_error)
+
+
+def _choose_physics(scene: Scene, modes: int) -> Scene:
+    return choose_physics(scene, speeds_of(scene), modes, barred={LARGE_DEFLECTION.name: _STRAIGHT})

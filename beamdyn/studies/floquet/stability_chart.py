@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from os import PathLike
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,9 +19,11 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
+from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability_charts import plot_stability_chart
 from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -32,10 +36,12 @@ from beamdyn.studies.floquet.monodromy import COARSER, Monodromy
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
 from beamdyn.studies.floquet.period import period_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
+from beamdyn.studies.study import VERSIONS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_TASK = 16  # scenes of a task
 _JUDGED = 3  # values of each number at which the model error is computed
 _ROUNDING = 1e-12  # relative, of a product that is constant
 _MOST_ENTRIES = 20_000_000  # of all matrices, so that they fit into memory
@@ -132,6 +138,8 @@ def stability_chart(
     vary: Mapping[str, Sequence[float] | np.ndarray],
     modes: int = 3,
     discretization: DiscretizationChoice = "ritz",
+    workers: int = 1,
+    store: str | PathLike[str] | None = None,
 ) -> StabilityChart:
     """Decide where free motion about a periodic motion is stable, over two numbers of the scene.
 
@@ -146,6 +154,10 @@ def stability_chart(
         Number of modes at rest of each field.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
+    workers : int
+        Number of processes; the answer is the same to the bit for any.
+    store : str or Path, optional
+        Folder in which the integrated scenes are kept; those found there are not computed again.
 
     Returns
     -------
@@ -171,8 +183,11 @@ def stability_chart(
     0.05
     """
     start = perf_counter()
-    scenes = check_periodic(scene, modes, discretization)
-    grid = _Grid(scenes, _check_inputs(vary, scenes))
+    inputs = _check_inputs(vary)
+    scenes = check_periodic(scene, modes, discretization, inputs)
+    check_designs(Designs(inputs), most=_MOST_ENTRIES // scenes.size**2)
+    run = TaskRunner(workers, None, store, "beamdyn stability chart", VERSIONS)
+    grid = _Grid(scenes, inputs, run)
     found, integrated = grid.solved()
     model, _ = scenes.modal(scenes.at(grid.numbers(0)))
     method = f"{model.discretization}, {scenes.modes} modes, Gauss collocation of order 16, interpolated"
@@ -184,24 +199,33 @@ def stability_chart(
         spectral_radius=found["radius"],
         period=found["period"],
         integrated=integrated,
-        warnings=tuple(_warnings(scenes.scene, found["status"])),
+        warnings=(*_warnings(scenes.scene, found["status"]), *run.warnings),
         provenance=Provenance(__version__, method, COARSER, perf_counter() - start),
         scene=scenes.scene,
     )
 
 
-def _check_inputs(
-    vary: Mapping[str, Sequence[float] | np.ndarray], scenes: PeriodicScenes
-) -> tuple[VariedInput, ...]:
+def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray]) -> tuple[VariedInput, ...]:
     """Check the two numbers and their values."""
     if not isinstance(vary, Mapping) or len(vary) != 2:
         bound, remedy = "a chart is over two numbers", 'such as {"motion.frequency": [...], "speed": [...]}'
         raise InvalidValue("vary", vary, bound, remedy)
     paths = [check_path("vary", path) for path in vary]
     values = [ascending(f"vary[{path!r}]", each) for path, each in vary.items()]
-    inputs = [VariedInput(path, unit_of(path) or "", each) for path, each in zip(paths, values, strict=True)]
-    check_designs(Designs(inputs), most=_MOST_ENTRIES // scenes.size**2)
-    return tuple(inputs)
+    return tuple(VariedInput(path, unit_of(path) or "", x) for path, x in zip(paths, values, strict=True))
+
+
+@dataclass(frozen=True)
+class Points(FieldsOnly):
+    """Some of the scenes, by their numbers, whose free motion is to be integrated: a task."""
+
+    scenes: PeriodicScenes
+    numbers: tuple[dict[str, float], ...]
+
+
+def integrate(points: Points) -> list[Monodromy]:
+    """Integrate the free motions of a task."""
+    return [points.scenes.monodromy(each) for each in points.numbers]
 
 
 @dataclass(frozen=True)
@@ -214,10 +238,13 @@ class _Grid:
         The scenes.
     inputs : tuple of VariedInput
         The two numbers.
+    run : TaskRunner
+        Integrates the scenes.
     """
 
     scenes: PeriodicScenes
     inputs: tuple[VariedInput, ...]
+    run: TaskRunner
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -235,10 +262,21 @@ class _Grid:
         undecided = np.flatnonzero(found["status"] == UNDECIDED)
         if integrated == len(motion.period):  # nothing was interpolated
             undecided = undecided[:0]
-        for place in undecided.tolist():
-            for name, value in _verdicts(self.scenes.monodromy(self.numbers(place))).items():
+        alone = self._integrated([self.numbers(place) for place in undecided.tolist()])
+        for place, each in zip(undecided.tolist(), alone, strict=True):
+            for name, value in _verdicts(each).items():
                 found[name][place] = value[0]
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
+
+    def _integrated(self, numbers: Sequence[dict[str, float]]) -> list[Monodromy]:
+        """The monodromy matrices of some scenes."""
+        found: dict[int, list[Monodromy]] = {}
+        tasks = [
+            Task(partial(Points, self.scenes, tuple(numbers[k : k + _TASK])), min(_TASK, len(numbers) - k), k)
+            for k in range(0, len(numbers), _TASK)
+        ]
+        self.run.run(integrate, tasks, found.__setitem__)
+        return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
         """Whether the period is inverse to a number, whose reciprocal is then the smoother variable."""
@@ -255,9 +293,11 @@ class _Grid:
 
         inverse = [self._sets_the_period(place) for place in range(2)]
 
-        def entries(*variables: float) -> np.ndarray:
-            numbers = [1 / x if inverted else x for x, inverted in zip(variables, inverse, strict=True)]
-            motion = self.scenes.monodromy(dict(zip(names, numbers, strict=True)))
+        def numbers_of(variables: tuple[float, float]) -> dict[str, float]:
+            each = zip(names, variables, inverse, strict=True)
+            return {name: 1 / x if inverted else x for name, x, inverted in each}
+
+        def entries(motion: Monodromy) -> np.ndarray:
             errors.append(float(motion.error[0]))
             turns.add(motion.turns)
             damped.add(motion.form is None)
@@ -267,7 +307,11 @@ class _Grid:
         pairs = zip(self.inputs, inverse, strict=True)
         first, second = (1 / each.values if inverted else each.values for each, inverted in pairs)
         size = self.scenes.size
-        on_grid = interpolate_on_grid(entries, (first, second), lambda: max(errors), slice(size**2))
+
+        def sampled(pairs: list[tuple[float, float]]) -> list[np.ndarray]:
+            return [*map(entries, self._integrated([*map(numbers_of, pairs)]))]
+
+        on_grid = interpolate_on_grid(sampled, (first, second), lambda: max(errors), slice(size**2))
         if len(turns) > 1:
             bound = "its phases meet again after other numbers of turns at other places of the chart"
             raise InvalidValue("vary", names, bound, "vary what leaves the ratio of its rates")
