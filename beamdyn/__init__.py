@@ -135,6 +135,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.designing.target import Target
     from beamdyn.studies.floquet.point import FloquetMultipliers, floquet_multipliers
     from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
+    from beamdyn.studies.floquet.stability_limits import StabilityLimits, stability_limits
     from beamdyn.studies.sensitivities.sensitivities import (
         critical_speed_sensitivities,
         crossing_sensitivities,

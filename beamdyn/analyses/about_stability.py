@@ -14,16 +14,34 @@ from beamdyn.analyses.options import Discretization, ModeCount
 from beamdyn.analyses.results.of_stability import chart_table
 from beamdyn.analyses.values import in_unit_of
 from beamdyn.common.edge.varied_inputs import parse_axis
-from beamdyn.common.edge.varying import OPTION, Folder, Workers
+from beamdyn.common.edge.varying import OPTION, Folder
+from beamdyn.common.edge.varying import Workers as _Workers
 from beamdyn.scene.numbers import SPEED, number_at
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.studies.floquet.point import FloquetMultipliers
+    from beamdyn.studies.floquet.stability_limits import StabilityLimits
 
 _FREQUENCY = "motion.frequency"
 _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"
 _VALUES = 41  # of an amplitude, where none are given
+
+Varied = Annotated[
+    tuple[str, ...],
+    Parameter(
+        help='A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; '
+        "give the option twice. Names are those of the file, or speed. Default: the frequency of what "
+        "pulsates, by a fifth either way, and its amplitude, up to twice as much.",
+        negative="",
+        consume_multiple=False,
+        show_default=False,
+    ),
+]
+Workers = Annotated[_Workers, Parameter(help="Number of processes; the answer is the same for any.")]
+Store = Annotated[
+    Folder, Parameter(help="Folder in which integrated scenes are kept; the same command resumes from it.")
+]
 
 
 @analysis(
@@ -44,39 +62,51 @@ def floquet(
 def stability_chart(
     scene: Scene,
     *,
-    vary: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, show_default=False)] = (),
+    vary: Varied = (),
     modes: ModeCount = 3,
     discretization: Discretization = "ritz",
     workers: Workers = 1,
-    store: Folder = None,
+    store: Store = None,
 ) -> Answer:
-    """Where free motion grows, over two numbers of a scene whose motion repeats itself.
+    """Where free motion grows, over two numbers of a scene whose motion repeats itself."""
+    scene, inputs, units = _varied(scene, vary)
+    result = bd.stability_chart(scene, inputs, modes, discretization, workers, store)
+    return Answer(result, tables=[chart_table(result, units)])
 
-    Parameters
-    ----------
-    vary
-        A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; give
-        the option twice. Names are those of the file, or speed. Default: the frequency of what pulsates, by
-        a fifth either way, and its amplitude, up to twice as much.
-    workers
-        Number of processes; the answer is the same for any.
-    store
-        Folder in which integrated scenes are kept; the same command resumes from it.
-    """
-    how = {"modes": modes, "discretization": discretization, "workers": workers, "store": store}
+
+@analysis(
+    "beamdyn stability-limits examples/pulsating_wheel.toml",
+    about_scene="The scene, in a motion that repeats itself.",
+)
+def stability_limits(
+    scene: Scene,
+    *,
+    vary: Varied = (),
+    modes: ModeCount = 3,
+    discretization: Discretization = "ritz",
+    workers: Workers = 1,
+    store: Store = None,
+) -> StabilityLimits:
+    """The limits between free motion that grows and that does not, over two numbers, followed as curves."""
+    scene, inputs, _ = _varied(scene, vary)
+    return bd.stability_limits(scene, inputs, modes, discretization, workers, store)
+
+
+def _varied(
+    scene: Scene, vary: tuple[str, ...]
+) -> tuple[Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
+    """The scene, shown in the unit of a speed that is given, two numbers with values, and their units."""
     if not vary:
-        return Answer(bd.stability_chart(scene, _about(scene), **how))
+        return scene, _about(scene), {}
     if len(vary) != 2:
         raise ValueError(f'{OPTION}: a chart is over two numbers; give two, such as "speed=50:60:21 rad/s"')
     varied = (text.partition("=") for text in vary)
     scene = in_unit_of(scene, *(values for key, _, values in varied if key.strip() == SPEED))
     axes = [parse_axis(inputs_of(scene), text, OPTION) for text in vary]
     inputs = {axis.input.path: axis.values for axis in axes}
-    units = {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
     if len(inputs) < 2:
         raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two numbers")
-    result = bd.stability_chart(scene, inputs, **how)
-    return Answer(result, tables=[chart_table(result, units)])
+    return scene, inputs, {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
 
 
 def _about(scene: Scene) -> dict[str, np.ndarray]:

@@ -176,6 +176,11 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "StabilityChart": lambda: bd.stability_chart(
         PULSATING, {"motion.frequency": [110.0, 123.9], "motion.fluctuation": [0.01, 0.1]}, 1
     ),
+    "StabilityLimits": lambda: bd.stability_limits(
+        PULSATING,
+        {"motion.frequency": [110.0, 123.9, 140.0], "motion.fluctuation": [0.01, 0.1]},
+        1,
+    ),
     "Sweep": lambda: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=2),
     "Terms": lambda: bd.terms(SHORT_SPIN_UP),
     "Tradeoff": lambda: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.05),

@@ -176,6 +176,11 @@ CALLS = {
         {"scene": PULSATING, "vary": {"speed": [5.0], "mount.radius": [0.1]}, "modes": 2}
         | {"discretization": "ritz", "workers": 1, "store": None},
     ),
+    "stability_limits": (
+        bd.stability_limits,
+        {"scene": PULSATING, "vary": {"speed": [5.0], "mount.radius": [0.1]}, "modes": 2}
+        | {"discretization": "ritz", "workers": 1, "store": None},
+    ),
     "simulate": (
         bd.simulate,
         {"scene": MOVING, "t_end": 0.02, "modes": 2, "tolerance": 1e-3, "method": "auto"}
@@ -348,6 +353,7 @@ ALLOWED = {
     "sweep.store": {"text"},
     "study.store": {"text"},
     "stability_chart.store": {"text"},
+    "stability_limits.store": {"text"},
     "spread.store": {"text"},
     "Uniform.text": {"text"},
     "Normal.text": {"text"},

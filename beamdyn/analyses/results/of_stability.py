@@ -18,7 +18,9 @@ from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 if TYPE_CHECKING:
     from beamdyn.studies.floquet.point import FloquetMultipliers
     from beamdyn.studies.floquet.stability_chart import StabilityChart
+    from beamdyn.studies.floquet.stability_limits import StabilityLimits
 
+_FEW_POINTS = 7  # of a curve in a table
 _MOST_ROWS = 21  # values of the first number in a table
 _SI: Mapping[str, tuple[str, float]] = {}
 
@@ -100,7 +102,34 @@ def chart_columns(result: StabilityChart) -> Columns:
     )
 
 
+def limit_columns(result: StabilityLimits) -> Columns:
+    """A row a point: its curve, the two numbers, the error and the multiplier that leaves the circle."""
+    numbers = (
+        column_named(name_in_heads(each.name), values, each.unit, words=each.name, form=".9g")
+        for each, values in zip(result.chart.inputs, result.place.T, strict=True)
+    )
+    kinds = ", ".join(f"{k}: {kind}" for k, kind in enumerate(result.kinds, 1))
+    return Columns(
+        Column("curve", result.curve),
+        *numbers,
+        Column("error", result.error, form=".0e", words="error over the range"),
+        Column("multiplier_real", np.real(result.multiplier), form=".6f"),
+        Column("multiplier_imaginary", np.imag(result.multiplier), form=".6f"),
+        title=f"Limits of stability, {result.provenance.method}",
+        note=f"Curves by the multiplier that leaves the unit circle: {kinds}." if kinds else "No limit.",
+    )
+
+
+def _limit_table(result: StabilityLimits) -> Group:
+    """Some of the points, those of each curve evenly spread."""
+    rows = [np.flatnonzero(result.curve == k) for k in np.unique(result.curve)]
+    few = [each[np.unique(np.linspace(0, len(each) - 1, _FEW_POINTS).round().astype(int))] for each in rows]
+    shown = np.concatenate([np.zeros(0, dtype=int), *few])
+    return table_of(limit_columns(result).at(shown), result.display_units)
+
+
 VIEWS = {
     "FloquetMultipliers": View(_multiplier_table, multiplier_columns, 1),
     "StabilityChart": View(chart_table, chart_columns, 2),
+    "StabilityLimits": View(_limit_table, limit_columns, 1),
 }

@@ -1,0 +1,208 @@
+"""Curves between stable and unstable motion in a chart, followed point by point.
+
+A function that is smooth across a limit has its roots there.  With damping it is the logarithm of the largest
+multiplier.  Without damping two multipliers meet on the unit circle as m +- sqrt(s) (1 or -1 in a principal
+tongue, elsewhere in one of a combination): it is s, from their distance where both stay on the circle and
+from the growth where they leave it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import toms748
+
+from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
+from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
+
+_STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6  # largest, first and least step, as shares of the ranges
+_WIDER = 2.0  # most that a step grows
+_TURNS, _FIRST_TURNS = 0.9, 0.2  # least cosine of the angle between steps
+_NARROWER, _NARROWEST = 0.25, 1e-7  # half widths within which the limit is sought: over the last, and least
+_FINE = 1e-11  # share to which a root is sought
+_ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)  # shares, at which the verdicts on either side are tried
+_MOST = 400  # points of a curve each way
+_SLACK = 0.5  # of a cell, by which a curve of straight pieces may miss an edge that the limit crosses
+
+
+class LimitPoint(NamedTuple):
+    """A point of a limit: its place as shares of the ranges (2,), error, and the multiplier that leaves."""
+
+    place: np.ndarray
+    error: float
+    multiplier: complex
+
+
+@dataclass(frozen=True)
+class LimitTracer:
+    """Follows limits of stability over two numbers, from the edges of a chart which they cross.
+
+    Parameters
+    ----------
+    scenes : PeriodicScenes
+        The scenes.
+    inputs : tuple of VariedInput
+        The two numbers.
+    status : ndarray of str, shape (A, B)
+        Verdicts of the chart.
+    """
+
+    scenes: PeriodicScenes
+    inputs: tuple[VariedInput, ...]
+    status: np.ndarray
+    _known: dict[bytes, Multipliers] = field(default_factory=dict)
+
+    def curves(self) -> list[list[LimitPoint]]:
+        """The curves, each once: one that comes over the beginning of another takes its place."""
+        found: list[tuple[list[LimitPoint], np.ndarray, np.ndarray]] = []
+        for low, high in self._edges():
+            if any(_crosses(curve, low, high) for curve, *_ in found):
+                continue
+            first = self._between(low, high)
+            normal = (high - low) / np.linalg.norm(high - low)
+            along = np.array([normal[1], -normal[0]])  # unstable motion is to its left
+            ahead, behind = self._trace(first, along, 1.0), self._trace(first, -along, -1.0)
+            curve = [*reversed(behind), first, *ahead]
+            found = [each for each in found if not _crosses(curve, *each[1:])] + [(curve, low, high)]
+        return [curve for curve, *_ in found]
+
+    @property
+    def solved(self) -> int:
+        """Number of scenes that were integrated."""
+        return len(self._known)
+
+    # The function -----------------------------------------------------------------------------------
+
+    def _multipliers(self, place: np.ndarray) -> Multipliers:
+        place = np.clip(place, 0.0, 1.0)
+        if place.tobytes() not in self._known:
+            each = zip(self.inputs, place.tolist(), strict=True)
+            numbers = {i.name: float(i.values[0] + (i.values[-1] - i.values[0]) * x) for i, x in each}
+            self._known[place.tobytes()] = multipliers_of(self.scenes.monodromy(numbers))
+        return self._known[place.tobytes()]
+
+    def _beyond(self, place: np.ndarray) -> float:
+        """The function whose roots are limits: positive where motion is unstable."""
+        found = self._multipliers(place)
+        largest = float(found.size[0, 0])
+        if found.sign is None:
+            return float(np.log(largest))
+        if found.verdict[0] == UNSTABLE:
+            return (largest - 1) ** 2
+        return -float(_nearest(found)[0] ** 2 / 4)
+
+    def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
+        """A root with its error: how far away on either side the verdicts are certain."""
+        error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
+        found = self._multipliers(place)
+        leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]
+        return LimitPoint(place, error, complex(leaves))
+
+    def _verdicts(self, place: np.ndarray, step: np.ndarray) -> tuple[str, str]:
+        before, after = (str(self._multipliers(each).verdict[0]) for each in (place - step, place + step))
+        return before, after
+
+    # The curve --------------------------------------------------------------------------------------
+
+    def _edges(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield edges of the chart whose ends are stable and unstable: shares (2,) of both."""
+        values = [(i.values - i.values[0]) / max(float(np.ptp(i.values)), 1e-300) for i in self.inputs]
+        grid = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1)
+        for axis in (0, 1):
+            at, status = np.moveaxis(grid, axis, 0), np.moveaxis(self.status, axis, 0)
+            for low, high in (((0, -1), (1, None)), ((1, None), (0, -1))):
+                low, high = slice(*low), slice(*high)
+                crossed = (status[low] == STABLE) & (status[high] == UNSTABLE)
+                yield from zip(at[low][crossed], at[high][crossed], strict=True)
+
+    def _between(self, low: np.ndarray, high: np.ndarray) -> LimitPoint:
+        """The limit on an edge."""
+        x = toms748(lambda x: self._beyond(low + x * (high - low)), 0.0, 1.0, xtol=_FINE)
+        return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
+
+    def _trace(self, first: LimitPoint, along: np.ndarray, side: float) -> list[LimitPoint]:
+        """Follow a limit from a point: until the chart ends, the curve closes, or steps become too small."""
+        points, h, turns, last, width, start = [], _FIRST, _FIRST_TURNS, first.place, 1.0, along
+        while len(points) < _MOST and h >= _LEAST:
+            inside = _room(last, along)
+            to, ends = last + min(h, inside) * along, inside <= h
+            normal = side * np.array([-along[1], along[0]])
+            if ends:
+                normal = _within_border(to, normal)
+            found, width = self._corrected(to, normal, min(h, width / _NARROWER))
+            step = last - last if found is None else found.place - last
+            length = float(np.linalg.norm(step))
+            if found is None or not length or step @ along < turns * length:
+                h, width = h / 2, 1.0
+                continue
+            points.append(found)
+            closed = (
+                np.linalg.norm(found.place - first.place) < h / 2 and step @ start > 0 and len(points) > 2
+            )
+            if ends or closed:
+                break
+            last, along, turns = found.place, step / length, _TURNS
+            h = min(_WIDER * h, _STEP)
+        return points
+
+    def _corrected(
+        self, place: np.ndarray, normal: np.ndarray, width: float
+    ) -> tuple[LimitPoint | None, float]:
+        """The limit on the normal of a place, None if there is none, and the half width that found it.
+
+        A narrow tongue has another limit close by, so that the width must be less than its own.
+        """
+        half = width
+        while half > _NARROWEST:
+            ends = -min(half, _room(place, -normal)), min(half, _room(place, normal))
+            if ends[0] < ends[1] and self._beyond(place + ends[0] * normal) < 0 < self._beyond(
+                place + ends[1] * normal
+            ):
+                x = toms748(lambda x: self._beyond(place + x * normal), *ends, xtol=_FINE)
+                return self._point(place + x * normal, normal), half
+            half *= _NARROWER
+        return None, width
+
+
+def _nearest(found: Multipliers) -> tuple[float, complex]:
+    """The least distance of two multipliers that may leave the circle without damping, and their middle."""
+    value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
+    apart = np.abs(value[:, None] - value)
+    barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)
+    i, j = np.unravel_index(int(np.where(barred, np.inf, apart).argmin()), apart.shape)
+    return float(apart[i, j]), complex(value[i] + value[j]) / 2
+
+
+def _room(place: np.ndarray, along: np.ndarray) -> float:
+    """How far one may go from a place (2,) within the square of shares."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.where(along > 0, (1 - place) / along, np.where(along < 0, -place / along, np.inf))
+    return max(float(ends.min()), 0.0)
+
+
+def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The direction along the border that a place (2,) lies on, to the side of a normal."""
+    on = np.minimum(place, 1 - place)
+    along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
+    return along if along.any() else normal
+
+
+def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
+    """Whether a curve, with its unstable side, crosses an edge."""
+    axis = int(np.abs(high - low).argmax())
+    way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
+    ends = sorted((low[axis], high[axis]))
+    for (p, *_), (q, *_) in pairwise(curve):
+        across = q[1 - axis] - p[1 - axis]
+        # Unstable motion is to the left of the curve, which is followed with it on that side.
+        toward = -across if axis == 0 else across
+        share = (low[1 - axis] - p[1 - axis]) / across if across else np.inf
+        at = p[axis] + share * (q[axis] - p[axis])
+        if 0 <= share <= 1 and toward * way > 0 and ends[0] - slack <= at <= ends[1] + slack:
+            return True
+    return False
