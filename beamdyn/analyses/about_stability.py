@@ -75,7 +75,7 @@ def stability_chart(
 
 
 @analysis(
-    "beamdyn stability-limits examples/pulsating_wheel.toml",
+    "beamdyn stability-limits examples/pulsating_wheel.toml --modes 1",
     about_scene="The scene, in a motion that repeats itself.",
 )
 def stability_limits(

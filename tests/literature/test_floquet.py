@@ -78,3 +78,19 @@ def test_boundaries_of_mathieus_tongues(tongue, p):
         near = min(1e-4, 0.25 * np.ptp(ends))  # further, the excess is above rounding in a narrow tongue
         a = brentq(excess, value - near, value + near, xtol=1e-13)
         assert a == pytest.approx(value, rel=1e-8)
+
+
+def test_limits_that_are_followed_are_mathieus():
+    first = bd.natural_modes(bd.Scene(UNIT), 0.0, 1).frequency[0]
+    scene = bd.Scene(UNIT, motion=bd.ShakenCarrier(2 * first, along_n1=1.0))
+    vary = {
+        "motion.frequency": first * np.linspace(1.7, 2.3, 7),
+        "motion.along_n1": np.linspace(2.0, 6.0, 3),
+    }
+    limits = bd.stability_limits(scene, vary, 1)
+    assert limits.kinds == ("principal", "principal") and limits.error.max() <= 1e-9
+    for frequency, acceleration in limits.place[::5]:
+        a = (2 * first / frequency) ** 2
+        p = 2 * 1.57087819 * acceleration / (2 * np.pi * frequency) ** 2
+        nearest = min(characteristic_values(1, p), key=lambda value: abs(value - a))
+        assert a == pytest.approx(nearest, rel=1e-8)  # of the slope, whose digits are as many

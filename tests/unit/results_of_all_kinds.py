@@ -178,7 +178,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     ),
     "StabilityLimits": lambda: bd.stability_limits(
         PULSATING,
-        {"motion.frequency": [110.0, 123.9, 140.0], "motion.fluctuation": [0.01, 0.1]},
+        {"motion.frequency": [121.0, 123.9], "motion.fluctuation": [0.08, 0.1]},
         1,
     ),
     "Sweep": lambda: bd.sweep(SHORT_SPIN_UP, [50.0, 53.0], AFTER_SHORT_SPIN_UP, modes=2),

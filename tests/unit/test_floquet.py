@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,6 +115,17 @@ def test_a_chart_has_the_physics_that_its_fastest_motion_needs():
     vary = {"speed": [1.0, 150.0], "motion.fluctuation": [0.0, 0.1]}
     chosen = bd.stability_chart(scene, vary, 1).scene.physics_choice
     assert chosen is not None and max(chosen.speeds) > 140.0
+
+
+def test_the_limit_of_a_damped_tongue_goes_round_its_tip():
+    scene = bd.Scene(STRIP, MOUNT, bd.PulsatingRotation(50.0, 0.1, 124.0), damping_ratio=0.01)
+    vary = {"motion.frequency": np.linspace(115.0, 131.0, 17), "motion.fluctuation": np.linspace(0.1, 0.5, 5)}
+    limits = bd.stability_limits(scene, vary, 1)
+    assert limits.kinds == ("principal",) and limits.error.max() <= 1e-8
+    frequency, least = limits.place[limits.place[:, 1].argmin()]
+    for amplitude, expected in ((0.999 * least, "stable"), (1.001 * least, "unstable")):
+        motion = bd.PulsatingRotation(50.0, amplitude, frequency)
+        assert bd.floquet_multipliers(replace(scene, motion=motion), 1).status == expected
 
 
 # Verdicts -----------------------------------------------------------------------------------------

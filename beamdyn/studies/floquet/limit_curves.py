@@ -27,6 +27,7 @@ _NARROWER, _NARROWEST = 0.25, 1e-7  # half widths within which the limit is soug
 _FINE = 1e-11  # share to which a root is sought
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)  # shares, at which the verdicts on either side are tried
 _MOST = 400  # points of a curve each way
+_ROUNDED = 1e-9  # of a piece, by which its end may miss the border of the chart
 _SLACK = 0.5  # of a cell, by which a curve of straight pieces may miss an edge that the limit crosses
 
 
@@ -203,6 +204,10 @@ def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool
         toward = -across if axis == 0 else across
         share = (low[1 - axis] - p[1 - axis]) / across if across else np.inf
         at = p[axis] + share * (q[axis] - p[axis])
-        if 0 <= share <= 1 and toward * way > 0 and ends[0] - slack <= at <= ends[1] + slack:
+        if (
+            -_ROUNDED <= share <= 1 + _ROUNDED
+            and toward * way > 0
+            and ends[0] - slack <= at <= ends[1] + slack
+        ):
             return True
     return False

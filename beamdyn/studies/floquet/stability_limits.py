@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.pictures import add_legend
+from beamdyn.common.results.pictures import COLOURS, add_legend
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -55,7 +55,7 @@ class StabilityLimits(Result):
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
     >>> scene = bd.Scene(strip, motion=bd.ShakenCarrier(frequency=130.0, along_n1=100.0))
-    >>> vary = {"motion.frequency": np.linspace(120, 140, 9), "motion.along_n1": np.linspace(0, 500, 5)}
+    >>> vary = {"motion.frequency": np.linspace(120, 140, 9), "motion.along_n1": [300.0, 500.0]}
     >>> found = bd.stability_limits(scene, vary, modes=1)
     >>> found.kinds, bool(found.error.max() < 1e-9)
     (('principal', 'principal'), True)
@@ -87,7 +87,10 @@ class StabilityLimits(Result):
         ax = self.chart.plot(ax)
         for k in np.unique(self.curve):
             ax.plot(
-                *self.place[self.curve == k].T, color="k", linewidth=1.2, label="" if k > 1 else "followed"
+                *self.place[self.curve == k].T,
+                color=COLOURS[1],
+                linewidth=1.2,
+                label="" if k > 1 else "followed",
             )
         return add_legend(ax)
 
@@ -134,8 +137,8 @@ def stability_limits(
     >>> scene = bd.Scene(strip, bd.Mount(radius=0.215), motion, damping_ratio=0.01)
     >>> vary = {"motion.frequency": np.linspace(110, 135, 11), "motion.fluctuation": np.linspace(0, 0.5, 6)}
     >>> found = bd.stability_limits(scene, vary, modes=1)
-    >>> round(float(found.place[:, 1].min()), 3)  # the least fluctuation at which motion grows
-    0.194
+    >>> round(float(found.place[:, 1].min()), 2)  # the least fluctuation at which motion grows
+    0.19
     """
     start = perf_counter()
     chart = stability_chart(scene, vary, modes, discretization, workers, store)
