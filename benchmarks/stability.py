@@ -1,6 +1,6 @@
 """Charts of stability: their time over a run of the stock integrator, and their verdicts point by point.
 
-Run: python -m benchmarks.stability            (three minutes)
+Run: python -m benchmarks.stability            (ten minutes)
 """
 
 from __future__ import annotations

@@ -35,6 +35,7 @@ _EXAMPLE = 'give e.g. "frequency 1 at 50 rad/s = 80 Hz", "critical speed >= 90 r
     'beamdyn design examples/epps.toml --free length --so-that "frequency = 3 Hz"',
     'beamdyn design examples/bir.toml --free length --so-that "frequency 2 = 9 Hz"',
     screen="Design",
+    opens_with=("--free", "length=30:60 mm", "--so-that", "frequency 1 = 80 Hz"),
 )
 def design(
     scene: Scene,

@@ -14,8 +14,17 @@ from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_tasks import drawn
 from beamdyn.scene.physics import Physics
 
-# Rows of an outline, of modes, of settings, of measured values, and of unknown numbers.
-FEW_ROWS = {"Rotor": 83, "Mode shapes": 3, "Trade": 20, "Compare": 4, "Identify": 2, "Loads": 22, "Map": 82}
+# Rows of an outline, of modes, of settings, of measured values, and of numbers to be found.
+FEW_ROWS = {
+    "Rotor": 83,
+    "Mode shapes": 3,
+    "Trade": 20,
+    "Compare": 4,
+    "Identify": 2,
+    "Design": 2,
+    "Loads": 22,
+    "Map": 82,
+}
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 

@@ -44,10 +44,11 @@ def test_a_limit_that_holds_the_best_is_named():
 
 
 def test_a_resonance_comes_to_the_wanted_speed():
-    found = bd.design(ROLLING, THICKNESS, [bd.Target("crossings", equals=40.0, line="road +")])
+    found = bd.design(ROLLING, THICKNESS, [bd.Target("crossings", equals=37.0, line="road +")])
     crossings = bd.resonance_speeds(found.scene_found, 60.0, 1)
     speed = next(each.speed for each in crossings if each.line.name == "road +" and each.kind == "forced")
-    np.testing.assert_allclose(speed, 40.0, rtol=1e-9)  # the root is bracketed closer than that
+    np.testing.assert_allclose(speed, 37.0, rtol=1e-9)  # the root is bracketed closer than that
+    assert found.solves < 30  # though thick beams have no resonance up to the top speed
 
 
 def test_the_strain_of_a_study_is_the_largest_of_the_steady_loads():

@@ -122,6 +122,7 @@ def test_the_limit_of_a_damped_tongue_goes_round_its_tip():
     vary = {"motion.frequency": np.linspace(115.0, 131.0, 17), "motion.fluctuation": np.linspace(0.1, 0.5, 5)}
     limits = bd.stability_limits(scene, vary, 1)
     assert limits.kinds == ("principal",) and limits.error.max() <= 1e-8
+    np.testing.assert_allclose(limits.place[[0, -1], 1], 0.5, rtol=1e-12)  # both branches to the border
     frequency, least = limits.place[limits.place[:, 1].argmin()]
     for amplitude, expected in ((0.999 * least, "stable"), (1.001 * least, "unstable")):
         motion = bd.PulsatingRotation(50.0, amplitude, frequency)
