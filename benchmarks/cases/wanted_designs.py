@@ -207,10 +207,11 @@ def _amplitude(word: str, bounds: tuple[float, float]) -> Wanted:
         return bd.study(ROLLING, {"beam.thickness": values}, "amplitude", speed=55.0).value
 
     pick: Callable[[np.ndarray], np.intp] = np.argmax if word == "largest" else np.argmin
-    values = np.linspace(*bounds, 41)
+    values, best = np.linspace(*bounds, 41), 0.0
     for _ in range(3):
         found = amplitudes(values)
         k = int(pick(found))
+        best = float(found[k])
         values = np.linspace(values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)], 41)
     target = bd.Target("amplitude", best=word, speed=55.0)  # pyright: ignore[reportArgumentType]
-    return Wanted(f"{word} amplitude", ROLLING, {"beam.thickness": bounds}, [target], best=float(found[k]))
+    return Wanted(f"{word} amplitude", ROLLING, {"beam.thickness": bounds}, [target], best=best)
