@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
@@ -184,9 +185,8 @@ def _the_best() -> Iterator[Wanted]:
     """The largest or smallest answer, at a corner, at a limit or between."""
     fastest = frequency(thickness=4e-4, length=0.03)
     slowest = frequency(thickness=1e-4, length=0.08)
-    for word, best in (("largest", fastest), ("smallest", slowest)):
-        target = bd.Target("frequencies", best=word)
-        yield Wanted(f"the {word} frequency", INWARD, WIDE, [target], best=best)
+    yield Wanted("fastest", INWARD, WIDE, [bd.Target("frequencies", best="largest")], best=fastest)
+    yield Wanted("slowest", INWARD, WIDE, [bd.Target("frequencies", best="smallest")], best=slowest)
     longer, own = bd.critical_speed(with_numbers(INWARD, {"beam.length": 0.08})), bd.critical_speed(INWARD)
     thinnest = max(1e-4, THICKNESS * 100.0 / longer)
     both = [bd.Target("frequencies", best="smallest"), bd.Target("critical_speed", at_least=100.0)]
@@ -195,12 +195,12 @@ def _the_best() -> Iterator[Wanted]:
     thickness = {"beam.thickness": (1e-4, 4e-4)}
     both = [bd.Target("frequencies", best="largest"), bd.Target("critical_speed", at_most=1.3 * own)]
     yield Wanted("fast, and buckles", INWARD, thickness, both, best=1.3 * frequency())
-    for word in ("largest", "smallest"):
-        for bounds in ((1.7e-4, 2.6e-4), (2.3e-4, 4e-4)):
-            yield _amplitude(word, bounds)
+    for bounds in ((1.7e-4, 2.6e-4), (2.3e-4, 4e-4)):
+        yield _amplitude("largest", bounds)
+        yield _amplitude("smallest", bounds)
 
 
-def _amplitude(word: str, bounds: tuple[float, float]) -> Wanted:
+def _amplitude(word: Literal["largest", "smallest"], bounds: tuple[float, float]) -> Wanted:
     """The best steady amplitude over the thickness, by exhaustive search refined about its best."""
 
     def amplitudes(values: np.ndarray) -> np.ndarray:
@@ -213,5 +213,5 @@ def _amplitude(word: str, bounds: tuple[float, float]) -> Wanted:
         k = int(pick(found))
         best = float(found[k])
         values = np.linspace(values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)], 41)
-    target = bd.Target("amplitude", best=word, speed=55.0)  # pyright: ignore[reportArgumentType]
+    target = bd.Target("amplitude", best=word, speed=55.0)
     return Wanted(f"{word} amplitude", ROLLING, {"beam.thickness": bounds}, [target], best=best)
