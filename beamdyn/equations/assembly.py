@@ -9,10 +9,12 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
+from beamdyn.equations.circuit import BENDS, Circuit, coupling_of, open_terms
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import BACKWARD, Equations, Shape, SteadyPencil, place_blocks
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Term
+from beamdyn.scene.beam import Beam
 from beamdyn.scene.scene import Scene
 
 
@@ -56,9 +58,23 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
         pencil, clamped = equations.steady(), np.delete(np.arange(equations.size), turning)
         K, M = (A[np.ix_(clamped, clamped)] for A in (pencil.K0, pencil.M))
         equations = replace(equations, shift=float(1 / scipy.linalg.eigh(M, K, eigvals_only=True)[-1]))
-    if not scene.is_damped:
+    if scene.is_damped:
+        equations = replace(equations, terms=(*equations.terms, *damping_terms(equations, scene)))
+    return equations if scene.beam.electrodes is None else _with_electrodes(equations, scene.beam)
+
+
+def _with_electrodes(equations: Equations, beam: Beam) -> Equations:
+    """Add the stiffness of open electrodes, or note the circuit of those with a load."""
+    electrodes, theta = beam.electrodes, np.zeros(equations.size)
+    assert electrodes is not None
+    if not electrodes.resistance:
         return equations
-    return replace(equations, terms=(*equations.terms, *damping_terms(equations, scene)))
+    theta[equations.blocks[BENDS]] = coupling_of(beam, equations.deflections[BENDS])
+    circuit = Circuit(theta, electrodes.capacitance(beam.length), electrodes.resistance)
+    if electrodes.is_loaded:
+        return replace(equations, circuit=circuit)
+    stiffness = open_terms(circuit, {BENDS: theta[equations.blocks[BENDS]]})
+    return replace(equations, terms=(*equations.terms, *stiffness))
 
 
 def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:

@@ -17,6 +17,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import real_array
 from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.equations.circuit import BLOCK, Circuit, Voltage, charge_terms, flux_terms
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
@@ -119,6 +120,10 @@ class Equations:
         few do, and after a reduction.
     sections : tuple of (str, SectionFunctions)
         Each field that deforms the sections of a strip, and its functions.
+    circuit : Circuit or None
+        That of a harvester with a load, whose coordinate is not among these.
+    voltage : Voltage or None
+        That of a harvester, where its circuit has a coordinate.
     """
 
     blocks: dict[str, slice]
@@ -131,6 +136,8 @@ class Equations:
     shift: float = 0.0
     coarse: np.ndarray | None = None
     sections: tuple[tuple[str, SectionFunctions], ...] = field(default=(), metadata=ADDED_LATER)
+    circuit: Circuit | None = field(default=None, metadata=ADDED_LATER)
+    voltage: Voltage | None = field(default=None, metadata=ADDED_LATER)
 
     @cached_property
     def size(self) -> int:
@@ -365,6 +372,14 @@ class Equations:
             name: Shape(basis[of_field.block].block, of_field.matrix @ basis[of_field.block].matrix)
             for name, of_field in self.shapes.items()
         }
+        circuit = self.circuit
+        if circuit is not None:
+            of_sets = (V.T @ circuit.coupling[self.places(names)] for names, V in bases.items())
+            circuit = replace(circuit, coupling=np.concatenate([*of_sets]))
+        voltage = self.voltage
+        if voltage is not None:
+            of_sets = (V.T @ voltage.row[self.places(names)] for names, V in bases.items())
+            voltage = replace(voltage, row=np.concatenate([*of_sets]))
         return replace(
             self,
             blocks=place_blocks({names[0]: V.shape[1] for names, V in bases.items()}),
@@ -372,6 +387,32 @@ class Equations:
             loads=tuple(loads),
             shapes=shapes,
             coarse=None,
+            circuit=circuit,
+            voltage=voltage,
+        )
+
+    # The circuit of a harvester ---------------------------------------------------------------------
+
+    def with_flux(self) -> Equations:
+        """Add the circuit, if there is one, by its flux: with mass, and without stiffness."""
+        return self if self.circuit is None else self._with(*flux_terms(self.circuit, self._coupled_blocks))
+
+    def with_charge(self) -> Equations:
+        """Add the circuit, if there is one, by its charge: with stiffness, and without mass."""
+        if self.circuit is None:
+            return self
+        return self._with(*charge_terms(self.circuit, self._coupled_blocks))
+
+    @property
+    def _coupled_blocks(self) -> dict[str, np.ndarray]:
+        assert self.circuit is not None
+        return {name: self.circuit.coupling[place] for name, place in self.blocks.items()}
+
+    def _with(self, terms: Iterable[Term], voltage: Voltage) -> Equations:
+        blocks = self.blocks | {BLOCK: slice(self.size, self.size + 1)}
+        kept = tuple(term for term in terms if term.matrix.any() or term.order == 2)
+        return replace(
+            self, blocks=blocks, terms=(*self.terms, *kept), coarse=None, circuit=None, voltage=voltage
         )
 
 

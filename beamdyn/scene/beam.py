@@ -14,6 +14,7 @@ from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
+from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
@@ -77,6 +78,8 @@ class Beam(FieldsOnly, OneLine):
     matrices : SectionMatrices, optional
         The 6 x 6 matrices of stiffness and mass that the properties follow from, by `from_matrices`; None
         where they do not.  The properties are then entries of their diagonals.
+    electrodes : Electrodes, optional
+        Those of piezoelectric layers, which `Harvester.on` puts on a beam with their mass and stiffness.
 
     References
     ----------
@@ -113,6 +116,7 @@ class Beam(FieldsOnly, OneLine):
     mass_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
     tension_offset: Profile | None = field(default=None, metadata=ADDED_LATER)
     matrices: SectionMatrices | None = field(default=None, repr=False, metadata=ADDED_LATER)
+    electrodes: Electrodes | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         set_fields(self, length=positive("length", self.length, "m"))

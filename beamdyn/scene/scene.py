@@ -161,8 +161,9 @@ class Scene(OneLine):
 
     @property
     def is_damped(self) -> bool:
-        """Whether anything damps the vibration."""
-        return bool(self.damping_ratio) or self.damping.damps
+        """Whether anything damps the vibration, the load of a harvester included."""
+        electrodes = self.beam.electrodes
+        return bool(self.damping_ratio) or self.damping.damps or bool(electrodes and electrodes.is_loaded)
 
     @property
     def undamped(self) -> Scene:

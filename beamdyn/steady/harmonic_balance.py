@@ -125,7 +125,11 @@ def _assemble(
         (select_harmonics(f, h)[..., None] * vector[:, None] for f, vector in system.loads),
         np.zeros((S, H, n)),
     )
-    return A.reshape(S, H * n, H * n), np.real(T.conj().T @ load).reshape(S, H * n)
+    A = A.reshape(S, H * n, H * n)
+    if (free := system.is_free(h)).any():
+        speed, place = np.nonzero(free.reshape(S, H * n))
+        A[speed, place, place] = 1.0
+    return A, np.real(T.conj().T @ load).reshape(S, H * n)
 
 
 # The series ---------------------------------------------------------------------------------------
@@ -272,6 +276,9 @@ class _Series:
             in_modes = np.einsum("snm,sn->ms", mean.shapes, vector)
             load += select_harmonics(spectrum, h).T[:, None] * in_modes
         products = tuple(_Products.of(*each, mean, harmonics) for each in system.varying)
+        if system.is_free(h).any():  # the least stiff of the mean modes is the flux of a circuit
+            still = np.abs(mean.squared.T) <= _SETTLED * np.abs(mean.squared).max(axis=1)
+            resistance = np.where(still & (rate == 0), np.inf, resistance)
         return cls(load, 1 / resistance, rate, damping, products)
 
     def __getitem__(self, chosen: np.ndarray) -> _Series:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -74,6 +75,21 @@ class PeriodicSystem:
     def size(self) -> int:
         """Number of coordinates n."""
         return self.mean.shape[-1]
+
+    @cached_property
+    def without_stiffness(self) -> np.ndarray:
+        """Whether a coordinate acts by its rate alone, as the flux of a circuit: (n,)."""
+        stiff = self.mean[0].any(axis=(0, 1))
+        for order, _, matrix in self.varying:
+            stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
+        return ~stiff
+
+    def is_free(self, harmonics: np.ndarray) -> np.ndarray:
+        """Whether a coordinate without stiffness has a static part, which is any: harmonics (H, 2), (S, H, n).
+
+        It is taken as 0.
+        """
+        return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 
     @property
     def load_harmonics(self) -> set[Pair]:

@@ -132,7 +132,11 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
         B = np.zeros_like(A)
         B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
         periodic.append((spectrum, B))
-    return A, periodic
+    # A coordinate that moves without stiffness, as the flux of a circuit, is no state: its rate alone is.
+    states = np.append(~system.without_stiffness, np.ones(n, dtype=bool))
+    if states.all():
+        return A, periodic
+    return A[:, states][..., states], [(f, B[:, states][..., states]) for f, B in periodic]
 
 
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

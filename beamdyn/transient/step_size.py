@@ -57,7 +57,9 @@ class StepSize:
         speed = np.abs(system.motion.at(t).speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
         _, K, _ = system.coefficients(t)
-        natural = np.sqrt(np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, self.modes - 1].max(axis=1))
+        first = int(system.equations.voltage is not None)  # after a circuit's flux, without stiffness
+        squared = np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, max(self.modes - 1, first)]
+        natural = np.sqrt(squared.max(axis=1))
         fastest = np.maximum(natural, speed * max(multiple, float(system.equations.gravity != 0)))
         return np.maximum(1, np.ceil(np.diff(ends) * fastest / self.phase)).astype(int).tolist()
 

@@ -221,10 +221,10 @@ def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
     """Angular frequency of each coordinate, uncoupled, at time 0 [rad/s].
 
     An error of velocity over it is one of the coordinate.  On a hinge it may be 0: the error of velocity
-    then grows to one of the coordinate over the duration [s] of the run.
+    then grows to one of the coordinate over the duration [s] of the run; so does that of a circuit's flux.
     """
     _, K, _ = system.coefficients(np.zeros(()))
-    slowest = 1 / duration if system.equations.shift else 0.0
+    slowest = 1 / duration if system.equations.shift or system.equations.voltage else 0.0
     return np.maximum(np.sqrt(np.abs(np.diag(K))), slowest)
 
 

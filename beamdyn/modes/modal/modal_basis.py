@@ -85,7 +85,24 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
         tips = equations.tips[:, places] @ shapes
         larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
         bases[names] = shapes * np.where(larger < 0, -1.0, 1.0)
-    return equations.reduced(bases)
+    reduced = equations.reduced(bases)
+    return reduced if equations.circuit is None else _with_residual(equations, reduced, basis.speeds[-1])
+
+
+def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
+    """Add to the capacitance what the modes left out bend by a voltage, at a speed [rad/s]."""
+    circuit, kept = equations.circuit, reduced.circuit
+    assert circuit is not None and kept is not None
+    stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
+    by_modes = np.linalg.solve(stiffness[1], kept.coupling)
+    bent = np.linalg.solve(stiffness[0], circuit.coupling)
+    bent = {
+        name: bent[equations.blocks[name]] - shape.matrix @ by_modes[reduced.blocks[shape.block]]
+        for name, shape in reduced.shapes.items()
+    }
+    more = sum(circuit.coupling[equations.blocks[name]] @ g for name, g in bent.items())
+    capacitance = circuit.capacitance + float(more)
+    return replace(reduced, circuit=replace(kept, capacitance=capacitance, bent=bent))
 
 
 def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:

@@ -129,8 +129,12 @@ class Model(FieldsOnly):
         return self.scene.beam.length * xi, eta, np.outer(section.width(xi), -eta / 2)
 
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
-        """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest."""
-        return reduce_to_modes(self.equations, ModalBasis(basis) if isinstance(basis, int) else basis)
+        """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest.
+
+        A harvester's circuit is added by its flux.
+        """
+        basis = ModalBasis(basis) if isinstance(basis, int) else basis
+        return reduce_to_modes(self.equations, basis).with_flux()
 
     @cached_property
     def coarser(self) -> Model:
