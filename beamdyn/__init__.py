@@ -57,6 +57,9 @@ if TYPE_CHECKING:
         AccelerationAt,
         BaseMotion,
         DeflectionAt,
+        HarvestedCurrent,
+        HarvestedVoltage,
+        LayerStrain,
         MomentAtRoot,
         PointForce,
         StrainAtRoot,
@@ -88,6 +91,7 @@ if TYPE_CHECKING:
     from beamdyn.modes.modes import Modes, natural_modes
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
+    from beamdyn.scene.harvester import Harvester
     from beamdyn.scene.measured_curves import (
         MeasuredHistory,
         MeasuredLoads,

@@ -62,6 +62,12 @@ class Voltage:
     row: np.ndarray
 
 
+def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
+    """Strain of the layer's outer face at xi (k,) per function of the bending field: shape (n, k)."""
+    assert beam.electrodes is not None, "electrodes stand on a layer"
+    return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
+
+
 def coupling_of(beam: Beam, deflection: Deflection) -> np.ndarray:
     """theta over the functions of the bending field: the moment by a unit voltage on the slopes there."""
     assert beam.electrodes is not None, "electrodes couple"

@@ -176,7 +176,9 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
         return RootMoment({}, {}, {})
     full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
     kept, M, rigid = _embed(full, equations), full.matrices[2]["unity"], _rotation(full, full.blocks[name])
-    share = np.linalg.solve(kept.T @ M @ kept, kept.T @ M @ rigid)
+    moving = kept.any(axis=0)  # all but the coordinate of a circuit
+    share, own = np.zeros(equations.size), kept[:, moving]
+    share[moving] = np.linalg.solve(own.T @ M @ own, own.T @ M @ rigid)
     rotation = rigid - kept @ share  # minus its projection by the mass on the kept shapes
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
@@ -191,7 +193,12 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     if math.isfinite(spring):
         slope = kept[full.blocks[name].start] / length  # slope by bending, without shear
         position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
-    return RootMoment(load, position, rows(1))
+    velocity = rows(1)
+    if (voltage := equations.voltage) is not None and full.circuit is not None:
+        by_state = position if voltage.order == 0 else velocity
+        of_voltage = length * (rotation @ full.circuit.coupling) * voltage.row
+        by_state["unity"] = by_state.get("unity", 0.0) + of_voltage
+    return RootMoment(load, position, velocity)
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, TypeAlias, get_args
 
@@ -12,6 +13,7 @@ from beamdyn.common.words import Named, Words
 from beamdyn.equations.root_moment import strain_per_moment
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.scene.beam import Beam
+from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.names_elsewhere import GIVE_IT
@@ -298,7 +300,98 @@ class StrainAtRoot:
         return strain_per_moment(scene)
 
 
-Observation: TypeAlias = DeflectionAt | AccelerationAt | MomentAtRoot | StrainAtRoot
+@dataclass(frozen=True)
+class HarvestedVoltage:
+    """Voltage across the load of a harvester [V].
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/bimorph.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.HarvestedVoltage()).unit
+    'V per m/s2'
+    """
+
+    unit: ClassVar[str] = "V"
+    label: ClassVar[str] = "voltage"
+
+    def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
+        """Rows of the output; an InvalidValue of a short circuit."""
+        if not electrodes.resistance:
+            raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
+        return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
+
+
+@dataclass(frozen=True)
+class HarvestedCurrent:
+    """Current through the load of a harvester [A].
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/bimorph.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.HarvestedCurrent()).unit
+    'A per m/s2'
+    """
+
+    unit: ClassVar[str] = "A"
+    label: ClassVar[str] = "current"
+
+    def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
+        """Rows of the output; an InvalidValue of an open circuit."""
+        if math.isinf(electrodes.resistance):
+            remedy = "give a finite harvester.resistance"
+            raise InvalidValue("output", "current", "an open circuit has none", remedy)
+        if not electrodes.resistance:
+            return LayerRows(False, 1, -1.0)
+        return LayerRows(True, 0, -1 / electrodes.capacitance(length) / electrodes.resistance)
+
+
+@dataclass(frozen=True)
+class LayerStrain:
+    """Bending strain of the outer face of a piezoelectric layer.
+
+    Parameters
+    ----------
+    position : float, optional
+        Distance from the root along the beam [m]; where the layers begin if not given.
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/bimorph.toml")
+    >>> bd.frequency_response(scene, 50.0, [20.0], output=bd.LayerStrain()).unit
+    '1 per m/s2'
+    """
+
+    unit: ClassVar[str] = ""
+    label: ClassVar[str] = "strain of the layer"
+
+    position: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.position is not None:
+            set_fields(self, position=not_negative("position", self.position, "m"))
+
+    def place(self, electrodes: Electrodes, length: float) -> float:
+        """Position x/L within the layers; an InvalidValue beside them."""
+        (first, last), given = electrodes.span, self.position
+        if given is None:
+            return electrodes.inside(0.0)
+        beside = not first * (1 - 1e-12) <= given / length <= last * (1 + 1e-12)
+        bound = "the layers end at {limit}"
+        refuse(beside, "position", given, "m", bound, "give a place on them", limit=last * length)
+        return electrodes.inside((given / length - first) / (last - first))
+
+
+@dataclass(frozen=True)
+class LayerRows:
+    """Voltage or current of layers: of the circuit's coordinate, or per theta^T q (order 0) or q' (1)."""
+
+    of_circuit: bool
+    order: int
+    factor: float
+
+
+OfLayers: TypeAlias = HarvestedVoltage | HarvestedCurrent | LayerStrain
+Observation: TypeAlias = DeflectionAt | AccelerationAt | MomentAtRoot | StrainAtRoot | OfLayers
 
 _OBSERVATIONS: dict[str, Observation] = {
     "tip": DeflectionAt(),
@@ -306,6 +399,9 @@ _OBSERVATIONS: dict[str, Observation] = {
     "tip acceleration": AccelerationAt(),
     "root moment": MomentAtRoot(),
     "root strain": StrainAtRoot(),
+    "voltage": HarvestedVoltage(),
+    "current": HarvestedCurrent(),
+    "layer strain": LayerStrain(),
 }
 
 
@@ -319,7 +415,7 @@ def as_observation(name: str, given: Any) -> Observation:
     """
     if isinstance(given, str) and given in _OBSERVATIONS:
         return _OBSERVATIONS[given]
-    if not isinstance(given, DeflectionAt | MomentAtRoot | StrainAtRoot):
+    if not isinstance(given, Observation):
         words = ", ".join(map(repr, _OBSERVATIONS))
         python = ", a DeflectionAt(position) or an AccelerationAt(position)"
         objects = Named(python, ' or "deflection@20 mm"')

@@ -15,6 +15,7 @@ from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, sever
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, Speeds, Statement, announced_of_plain_beam
+from beamdyn.equations.circuit import BLOCK
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.linear.convergence import check_linear, model_at_speed, with_forces
@@ -273,7 +274,9 @@ def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
     """Name each coordinate with its unit: a mode, a nodal value, or the coefficient of a function."""
     for name, place in model.equations.blocks.items():
         size = place.stop - place.start
-        if model.modes is not None:
+        if name == BLOCK:
+            yield "charge [C]"
+        elif model.modes is not None:
             yield from (f"{name}, mode {k} [kg^1/2 m]" for k in range(1, size + 1))
         else:
             yield from _name_functions(model, name, size)

@@ -170,8 +170,10 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
 
 
 def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
-    """Residues (n, m) at the poles of the coordinates' answer to a load (n,)."""
-    return -free.poles * free.shapes * free.shares(load[:, None])[:, 0]
+    """Residues (n, m) at the finite poles of the coordinates' answer to a load (n,)."""
+    poles = free.finite_poles
+    finite = slice(0, len(poles))
+    return -poles * free.shapes[:, finite] * free.shares(load[:, None])[finite, 0]
 
 
 def partial_fractions(
@@ -186,11 +188,12 @@ def partial_fractions(
     InvalidValue
         If a mode is not damped: its mean square is not finite.
     """
-    free, pushed = damped_motion(model), np.linalg.solve(model.M, drive.load)
-    q, poles = residues(free, drive.load), free.poles
+    free, own = damped_motion(model), model.mechanical
+    q, poles = residues(free, drive.load), free.finite_poles
+    pushed = np.linalg.solve(model.M[own, own], drive.load[own])
     row, extra = model.row(observation), model.residual(observation, drive)
     seen = row.position @ q + poles * (row.velocity @ q) + poles**2 * (row.acceleration @ q)
-    fractions = PartialFractions(complex(row.acceleration @ pushed + extra[0]), seen, poles)
+    fractions = PartialFractions(complex(row.acceleration[own] @ pushed + extra[0]), seen, poles)
     delay = model.scene.damping.stiffness_factor
     filtered = isinstance(observation, StrainAtRoot) and delay
     return fractions.through_filter(delay) if filtered else fractions
@@ -261,8 +264,9 @@ def parametric_term(
     K_GA = model.equations.matrices[0].get("root_axial")
     if K_GA is None:
         return ParametricTerm(0.0, 0.0, 0.0)
-    squared, shapes = scipy.linalg.eigh(model.K, model.M)
-    kappa = abs(shapes[:, 0] @ K_GA @ shapes[:, 0]) / squared[0]
+    own = model.mechanical
+    squared, shapes = scipy.linalg.eigh(model.K[own, own], model.M[own, own])
+    kappa = abs(shapes[:, 0] @ K_GA[own, own] @ shapes[:, 0]) / squared[0]
     of_gravity = BaseMotion("n2").accelerations(model.scene.mount, model.speed).values()
     weight = abs(model.scene.gravity) * sum(abs(given.get("root_axial", 0.0)) for given in of_gravity)
     along = {
@@ -288,5 +292,5 @@ def _excess(model: ModelAtSpeed, squared: float, shape: np.ndarray, density: flo
     if not density:
         return 0.0
     omega = math.sqrt(squared)
-    zeta = float(shape @ model.C @ shape) / (2 * omega)
+    zeta = float(shape @ model.C[model.mechanical, model.mechanical] @ shape) / (2 * omega)
     return omega * density / (8 * zeta) if zeta > 0 else math.inf

@@ -18,7 +18,8 @@ from scipy.optimize import linear_sum_assignment
 from beamdyn.accuracy.refinement import LINEAR_MESHES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.words import Named, Setting, Words
+from beamdyn.equations.circuit import BENDS, coupling_of, strain_of
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
@@ -30,7 +31,10 @@ from beamdyn.linear.inputs_outputs import (
     Accelerations,
     DeflectionAt,
     Excitation,
+    HarvestedCurrent,
+    LayerStrain,
     Observation,
+    OfLayers,
     StrainAtRoot,
 )
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
@@ -38,6 +42,9 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
+
+
+_LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts them on"))
 
 
 @dataclass(frozen=True)
@@ -107,7 +114,12 @@ class ModelAtSpeed(FieldsOnly):
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations in the kept coordinates."""
+        """Equations in the kept coordinates, a harvester's circuit by its charge among them."""
+        return self._mechanical.with_charge()
+
+    @cached_property
+    def _mechanical(self) -> Equations:
+        """Equations in the kept coordinates, without a circuit."""
         if self.modes is None:
             return self.model.equations
         return reduce_to_modes(self.model.equations, ModalBasis(self.modes, (self.speed,)))
@@ -139,12 +151,28 @@ class ModelAtSpeed(FieldsOnly):
         shapes = np.zeros((full.size, kept.size))
         for name, shape in kept.shapes.items():
             shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
+        if kept.voltage is not None and (circuit := self._mechanical.circuit) is not None:
+            for name, bent in circuit.bent.items():  # as the modes left out follow the voltage
+                shapes[full.blocks[name]] += np.outer(bent, kept.voltage.row)
         return shapes
 
     @cached_property
     def free_motion(self) -> FreeMotion:
         """Poles and shapes of free motion."""
         return free_motion(self.M, self.C, self.K)
+
+    @cached_property
+    def inverse_mechanical_poles(self) -> np.ndarray:
+        """Inverse poles [s] of free motion, without the circuit of a harvester."""
+        if self.equations.voltage is None:
+            return self.free_motion.inverse_poles
+        own = self.mechanical
+        return free_motion(*(A[own, own] for A in (self.M, self.C, self.K))).inverse_poles
+
+    @property
+    def mechanical(self) -> slice:
+        """The coordinates that have mass: all but the charge of a circuit, which is the last."""
+        return slice(0, self._mechanical.size)
 
     # Inputs -----------------------------------------------------------------------------------------
 
@@ -190,9 +218,14 @@ class ModelAtSpeed(FieldsOnly):
 
     def row(self, observation: Observation) -> Row:
         """An output by the kept coordinates."""
-        if isinstance(observation, DeflectionAt):
-            return self._row_at(observation, self.equations)
         zero = np.zeros(self.equations.size)
+        if isinstance(observation, OfLayers):
+            row, order, of_kept = self._of_layers(observation)
+            return Row(*(of_kept if order == k else zero for k in range(3)))
+        if isinstance(observation, DeflectionAt):
+            if self.equations.voltage is None or isinstance(observation, AccelerationAt):
+                return self._row_at(observation, self.equations)
+            return Row(self._row_at(observation, self.model.equations).position @ self.shapes, zero, zero)
         moment, factor = self._moment, self._per_moment(observation)
         position, velocity = (self._at_speed(rows, zero) for rows in (moment.position, moment.velocity))
         return Row(factor * position, factor * velocity, zero)
@@ -202,6 +235,9 @@ class ModelAtSpeed(FieldsOnly):
 
         Per unit of the input, and of its first and second time derivative.
         """
+        if isinstance(observation, OfLayers):
+            row, order, _ = self._of_layers(observation)
+            return np.eye(3)[order] * (row @ drive.residual)
         if isinstance(observation, DeflectionAt):
             row = self._row_at(observation, self.model.equations)
             added = np.array([x @ drive.residual for x in (row.position, row.velocity, row.acceleration)])
@@ -215,6 +251,26 @@ class ModelAtSpeed(FieldsOnly):
         total = static_moment(self.scene, self.discretization, self.model.equations, self._root, load)
         by_kept = self._at_speed(self._moment.position, np.zeros_like(kept)) @ kept
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
+
+    def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
+        """An output of layers by all functions (N,), the time derivative of these, and by the kept ones (n,).
+
+        Where the circuit has a coordinate, the first is what deflections beyond the kept ones add.
+        """
+        beam, full = self.scene.beam, self.model.equations
+        if (electrodes := beam.electrodes) is None:
+            raise InvalidValue("output", observation.label, "the beam carries no piezoelectric layers", _LAYERS)
+        bends, row = full.deflections[BENDS], np.zeros(full.size)
+        if isinstance(observation, LayerStrain):
+            place = np.array([observation.place(electrodes, beam.length)])
+            row[full.blocks[BENDS]] = strain_of(beam, bends, place)[:, 0]
+            return row, 0, row @ self.shapes
+        found, voltage = observation.rows(electrodes, beam.length), self.equations.voltage
+        row[full.blocks[BENDS]] = found.factor * coupling_of(beam, bends)
+        if voltage is None:
+            return row, found.order, row @ self.shapes
+        per_volt = 1 / electrodes.resistance if isinstance(observation, HarvestedCurrent) else 1.0
+        return row, found.order, per_volt * voltage.row
 
     def _row_at(self, observation: DeflectionAt, equations: Equations) -> Row:
         xi, direction = observation.place(self.scene.beam)

@@ -236,7 +236,7 @@ def _frequencies(
 
     Those to white noise end at ten times the lowest resonance.
     """
-    poles = mean_square.damped_motion(model).poles
+    poles = mean_square.damped_motion(model).finite_poles
     if isinstance(spectrum, spectra.PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)

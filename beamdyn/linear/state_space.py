@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.signal import StateSpace, lti
@@ -129,15 +129,17 @@ def state_space(
     drives = [steady_drive(model, each) for each in excitations]
     observed = [as_observation(f"outputs[{k}]", each) for k, each in enumerate(listed("outputs", outputs))]
     _refuse_delayed_strain(scene, observed)
-    M, n = _with_mass(model), model.equations.size
     loads = np.column_stack([drive.load for drive in drives])
-    of_state, of_load = np.linalg.solve(M, -np.hstack([model.K, model.C])), np.linalg.solve(M, loads)
-    A = np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), of_state])
-    B = np.vstack([np.zeros_like(of_load), of_load])
+    rates, n = _rates(model, loads), model.equations.size
+    of_state, of_load = rates.acceleration
+    m = of_state.shape[1] - n  # velocities among the states
+    A, B = (np.vstack([velocity, acceleration]) for velocity, acceleration in zip(*rates, strict=True))
     rows = [model.row(each) for each in observed]
-    C = np.array([np.concatenate([r.position, r.velocity]) + r.acceleration @ of_state for r in rows])
+    C = np.array(
+        [np.concatenate([r.position, r.velocity[:m]]) + r.acceleration[:m] @ of_state for r in rows]
+    )
     correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
-    D = np.array([r.acceleration @ of_load for r in rows]) + correction
+    D = np.array([r.acceleration[:m] @ of_load for r in rows]) + correction
     system: Any = StateSpaceWithErrors(A, B, C, D)  # pyright: ignore[reportAbstractUsage]
     system.scene, system.speed, system.error = scene, speed, pole_errors(model)
     return system
@@ -151,10 +153,30 @@ def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> Non
         raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
 
 
-def _with_mass(model: ModelAtSpeed) -> np.ndarray:
+class _Rates(NamedTuple):
+    """Rates of the coordinates, and of those that have mass the accelerations, each by states and inputs."""
+
+    velocity: tuple[np.ndarray, np.ndarray]
+    acceleration: tuple[np.ndarray, np.ndarray]
+
+
+def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
+    """Rates under loads (n, k) per unit of each input; the charge of a circuit, the last, has but a rate."""
+    n = model.equations.size
+    m = model.mechanical.stop
+    M = _with_mass(model, model.M[:m, :m])
+    of_state = np.linalg.solve(M, -np.hstack([model.K[:m], model.C[:m, :m]]))
+    of_load = np.linalg.solve(M, loads[:m])
+    resistance = model.C[m:, m:]
+    flow = np.linalg.solve(resistance, -model.K[m:]), np.linalg.solve(resistance, loads[m:])
+    by_state = np.block([[np.zeros((m, n)), np.eye(m)], [flow[0], np.zeros((n - m, m))]])
+    return _Rates((by_state, np.vstack([np.zeros_like(of_load), flow[1]])), (of_state, of_load))
+
+
+def _with_mass(model: ModelAtSpeed, M: np.ndarray) -> np.ndarray:
     """The mass; refused if a coordinate has none, as bending and shear without rotary inertia."""
-    values = np.linalg.eigvalsh(model.M)
+    values = np.linalg.eigvalsh(M)
     if values[0] < _MASSLESS * values[-1]:
         bound = "some functions have no mass of their own, and no rates as states"
         raise InvalidValue("modes", model.modes, bound, "give a number of modes")
-    return model.M
+    return M

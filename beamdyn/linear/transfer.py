@@ -138,9 +138,9 @@ def check_stable(model: ModelAtSpeed) -> None:
         With the speed.
     """
     free, speed = model.free_motion, model.speed
-    inverse = free.inverse_poles
-    elastic = np.abs(inverse[min(2 * _PLANES, len(inverse) - 1)])
-    if elastic < _STILL * np.abs(inverse[0]):
+    inverse, mechanical = free.inverse_poles, model.inverse_mechanical_poles
+    elastic = np.abs(mechanical[min(2 * _PLANES, len(mechanical) - 1)])
+    if elastic < _STILL * np.abs(mechanical[0]):
         bound, remedy = (
             "the beam turns freely about its root, or is at its critical speed",
             "change the speed, or give root_stiffness",

@@ -110,13 +110,24 @@ class LoadRows:
         assert set(M) == {"unity"} and set(self.acceleration) <= {"unity"}
         S, components = self.shape
         inertia = self.acceleration.get("unity", np.zeros((S, components, equations.size)))
-        A = np.linalg.solve(M["unity"].T, inertia.reshape(S * components, -1).T).T.reshape(inertia.shape)
+        A = per_force(M["unity"], inertia)
         return LoadRows(
             _subtract(self.load, {name: -(A @ f) for name, f in undamped.vectors.items()}),
             _subtract(self.position, {name: A @ matrix for name, matrix in K.items()}),
             _subtract(self.velocity, {name: A @ matrix for name, matrix in G.items()}),
             {},
         )
+
+
+def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
+    """Rows (S, K, n) by the forces on the coordinates, of rows by their accelerations.
+
+    The charge of a circuit has no mass, and no part in them.
+    """
+    massive = mass.any(axis=0)
+    rows, found = by_acceleration.reshape(-1, len(mass)), np.zeros((by_acceleration.size // len(mass), len(mass)))
+    found[:, massive] = np.linalg.solve(mass[np.ix_(massive, massive)].T, rows[:, massive].T).T
+    return found.reshape(by_acceleration.shape)
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:

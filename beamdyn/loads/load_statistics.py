@@ -38,7 +38,7 @@ from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, highest_frequency
 from beamdyn.linear.transfer import check_stable
-from beamdyn.loads.load_rows import LoadRows, span_rows
+from beamdyn.loads.load_rows import LoadRows, span_rows, per_force
 from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.motion import MotionSample
@@ -142,9 +142,9 @@ class LinearLoads:
         found = []
         for harmonic, drive in self.model.drives(excitation).items():
             q = residues(free, drive.load)
-            seen = position @ q + (velocity @ q) * free.poles
+            seen = position @ q + (velocity @ q) * free.finite_poles
             shift = harmonic * self.model.speed / _TURN
-            found.append(LoadFractions(shift, self._direct(drive), seen, free.poles))
+            found.append(LoadFractions(shift, self._direct(drive), seen, free.finite_poles))
         return (*found,)
 
     def _direct(self, drive: HarmonicDrive) -> np.ndarray:
@@ -193,8 +193,7 @@ class LinearLoads:
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
-        flat = np.linalg.solve(model.M.T, acceleration.reshape(-1, n).T).T
-        by_force = np.einsum("spk,skn->spn", self.outputs.matrix, flat.reshape(acceleration.shape))
+        by_force = np.einsum("spk,skn->spn", self.outputs.matrix, per_force(model.M, acceleration))
         return rows.in_motion(model.equations).through(self.outputs.matrix), by_force
 
     @cached_property

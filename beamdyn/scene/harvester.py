@@ -256,6 +256,11 @@ class Electrodes(FieldsOnly):
         """Whether a current flows through a resistance: the circuit is neither short nor open."""
         return 0 < self.resistance < math.inf
 
+    def inside(self, fraction: np.ndarray | float) -> Any:
+        """Places x/L at fractions of the layers' length, within them by more than rounding."""
+        first, last = self.span
+        return first + (last - first) * (_EVEN + (1 - 2 * _EVEN) * fraction)
+
     def capacitance(self, length: float) -> float:
         """Capacitance [F] of the electrodes on a beam of a length [m], at constant curvature."""
         return self.capacitance_per_length * (self.span[1] - self.span[0]) * length
