@@ -123,6 +123,7 @@ if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
     from beamdyn.scene.section_matrices import SectionMatrices
     from beamdyn.steady.crossings import Crossing, Crossings
+    from beamdyn.steady.harvest import Harvest, best_resistance, harvest
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
     from beamdyn.studies.beside_data.compare import compare

@@ -22,11 +22,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.equations.fields.field import Deflection, Term
 from beamdyn.scene.beam import Beam
+
+if TYPE_CHECKING:
+    from beamdyn.equations.equations_of_motion import Equations
 
 BENDS = "bending"  # the field whose slope the electrodes feel
 BLOCK = "circuit"  # name of the block of the circuit's coordinate
@@ -56,7 +60,7 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """The voltage [V] as a linear function of the coordinates (order 0) or their rates (order 1): (n,)."""
+    """The voltage [V], or what else, by the coordinates (order 0) or their rates (order 1): row (n,)."""
 
     order: int
     row: np.ndarray
@@ -73,6 +77,29 @@ def coupling_of(beam: Beam, deflection: Deflection) -> np.ndarray:
     assert beam.electrodes is not None, "electrodes couple"
     slopes = deflection.space.evaluate(np.array(beam.electrodes.span), 1) / beam.length
     return beam.electrodes.coupling * (slopes[:, 1] - slopes[:, 0])
+
+
+def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
+    """Voltage across the load [V] and current through it [A], by the coordinates of given equations.
+
+    Parameters
+    ----------
+    equations : Equations
+        Equations with the circuit, if it has a coordinate.
+    full : Equations
+        Those of all functions that they were made from.
+    beam : Beam
+        The beam.
+    """
+    electrodes, nothing = beam.electrodes, Voltage(0, np.zeros(equations.size))
+    assert electrodes is not None, "a harvester has electrodes"
+    if (voltage := equations.voltage) is not None:
+        return voltage, Voltage(voltage.order, voltage.row / electrodes.resistance)
+    row, shape = np.zeros(equations.size), equations.shapes[BENDS]
+    row[equations.blocks[shape.block]] = coupling_of(beam, full.deflections[BENDS]) @ shape.matrix
+    if electrodes.resistance:
+        return Voltage(0, -row / electrodes.capacitance(beam.length)), nothing
+    return nothing, Voltage(1, -row)
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:

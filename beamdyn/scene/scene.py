@@ -264,6 +264,10 @@ def _check_large_deflection(scene: Scene) -> None:
         if spring < math.inf and scene.beam.matrices is not None:
             bound = "the root of a beam with matrices of its sections is clamped"
             raise InvalidValue(f"mount.{name}", spring, bound, "leave it out", "N m/rad")
+    if scene.beam.electrodes is not None and scene.beam.electrodes.resistance:
+        bound = "with physics.large_deflection the layers of a harvester are modelled short-circuited alone"
+        remedy = "leave large_deflection out where the deflection is small"
+        raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
         bound = "with physics.large_deflection there are none: they would keep their direction"
         remedy = "leave large_deflection out where the deflection is small"

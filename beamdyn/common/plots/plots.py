@@ -253,6 +253,44 @@ def plot_response(
     return add_legend(ax)
 
 
+def plot_harvest(
+    speeds: np.ndarray,
+    power: np.ndarray,
+    resonances: np.ndarray,
+    ax: Axes | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw harvested power over speed with a logarithmic scale, and the speeds of resonance.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    power : ndarray, shape (S,)
+        Mean power [W]; nan leaves a gap.
+    resonances : ndarray, shape (r,)
+        Speeds of resonance [rad/s].
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+    units : DisplayUnits, optional
+        Units of the axes; the arrays are SI.
+
+    Returns
+    -------
+    Axes
+    """
+    speed = units.speed_unit()
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), "mean power [W]")
+    drawn = np.where(np.asarray(power) > 0, power, np.nan)
+    axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), [drawn], ["harvested"])
+    for k, at in enumerate(speed.of(np.asarray(resonances))):
+        label = "" if k else "resonance, short-circuited"
+        ax.axvline(at, color="0.6", linestyle=":", linewidth=1.0, label=label)
+    if (drawn > 0).any():
+        ax.set_yscale("log")
+    return add_legend(ax)
+
+
 def plot_sweep(
     speeds: np.ndarray,
     peaks: np.ndarray,
