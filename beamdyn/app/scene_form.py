@@ -22,7 +22,7 @@ from beamdyn.files.scenes import scene_from_dict
 from beamdyn.scene.scene import Scene
 
 # On the form of each screen, in this order.
-SCENE_TABLES = ("beam", "mount", "motion", "model", "damping", "physics")
+SCENE_TABLES = ("beam", "harvester", "mount", "motion", "model", "damping", "physics")
 TABLES = ("options", *SCENE_TABLES)
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),

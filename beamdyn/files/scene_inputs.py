@@ -21,6 +21,7 @@ from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import Beam
+from beamdyn.scene.harvester import Harvester
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
@@ -156,10 +157,10 @@ def _in_a_list(key: str) -> BeforeValidator:
 
 if TYPE_CHECKING:
     _TipInput = _PointMassInput = _PointSpringInput = _MountInput = CoreSection
-    _MotionInput = _PhysicsInput = _DampingInput = CoreSection
+    _MotionInput = _PhysicsInput = _DampingInput = _HarvesterInput = CoreSection
 else:
     _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
-    _PointSpringInput, _DampingInput = map(section_of, (PointSpring, Damping))
+    _PointSpringInput, _DampingInput, _HarvesterInput = map(section_of, (PointSpring, Damping, Harvester))
     _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
 
@@ -446,13 +447,14 @@ class ModelInput(Section):
 
 
 class SceneInput(CoreSection):
-    """A scene: the tables [beam], [mount], and where wanted [motion], [model], [damping] and [physics]."""
+    """A scene: the tables [beam], [mount], and where wanted [harvester] and others."""
 
     beam: BeamInput
     mount: _MountInput
     motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
     damping: _DampingInput = _DampingInput()
+    harvester: _HarvesterInput | None = None
     physics: Annotated[_PhysicsInput, BeforeValidator(_auto_as_table)] = _PhysicsInput()
 
     @cached_property
@@ -461,4 +463,6 @@ class SceneInput(CoreSection):
         motion = self.motion and self.motion.core
         with _naming_missing_key(type(self.beam)):
             made = {"physics": self.physics.core, "damping": self.damping.core}
-            return Scene(self.beam.core, self.mount.core, motion, **dict(self.model), **made)
+            bare = self.beam.core
+            beam = bare if self.harvester is None else self.harvester.core.on(bare)
+            return Scene(beam, self.mount.core, motion, **dict(self.model), **made)

@@ -341,7 +341,8 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     Parameters
     ----------
     data : mapping
-        Tables "beam" and "mount", and where wanted "motion", "model", "damping" and "physics", as
+        Tables "beam" and "mount", and where wanted "motion", "model", "damping",
+        "harvester" and "physics", as
         tomllib reads them.
     source : str
         Name of its origin, for messages.

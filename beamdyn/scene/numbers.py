@@ -18,6 +18,7 @@ from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.inputs.described import description, kinds_of
 from beamdyn.common.inputs.designs import part_at, with_parts
 from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS, Beam, TipMass
+from beamdyn.scene.harvester import Harvester
 from beamdyn.scene.motion import KINDS, Motion
 from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.points import PointMass, PointSpring
@@ -27,6 +28,8 @@ from beamdyn.scene.scene import Scene
 
 SPEED = "speed"  # key of the speed at which the scene is analysed: no number of the scene itself
 SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
+_HARVESTER = "harvester."  # before the numbers of piezoelectric layers
+_ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["  # what a beam with layers has itself
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
 # Powers of the sides of a section in its properties, whatever its form.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
@@ -56,6 +59,7 @@ def units() -> dict[str, str]:
     found |= dict(_numbers(Mount, "mount"))
     found |= {"model.damping_ratio": "", "model.gravity": "m/s2", "damping.ratios[]": ""}
     found |= dict(_numbers(Damping, "damping"))
+    found |= dict(_numbers(Harvester, "harvester"))
     found |= {path: unit for kind in KINDS.values() for path, unit in _numbers(kind, "motion")}
     return found | {SPEED: "rad/s"}
 
@@ -68,6 +72,11 @@ def unit_of(path: str) -> str | None:
 def is_of_motion(path: str) -> bool:
     """Whether a path is that of a number of the motion."""
     return path.startswith("motion.")
+
+
+def _is_of_a_part(path: str) -> bool:
+    """Whether a path is that of a number of what not every scene has: its motion, or a harvester."""
+    return is_of_motion(path) or path.startswith(_HARVESTER)
 
 
 def paths_of(scene: Scene) -> list[str]:
@@ -117,7 +126,7 @@ def _in_lists_of(scene: Scene, path: str) -> list[str]:
 
 
 def _is_there(scene: Scene, path: str) -> bool:
-    return not is_of_motion(path) or number_at(scene, path) is not None
+    return not _is_of_a_part(path) or number_at(scene, path) is not None
 
 
 # Getting and setting ------------------------------------------------------------------------------
@@ -142,11 +151,21 @@ def number_at(scene: Scene, path: str) -> float | None:
         return 1.0
     if path.startswith("beam.tip.") and scene.beam.tip is None:
         return part_at(TipMass(0.0), path.removeprefix("beam.tip."))
-    value = part_at(scene, _in_scene(path))
+    value = part_at(*_holder(scene, path))
     if isinstance(value, Profile):
         is_constant = value.degree == 0 and len({*map(tuple, value.coefficients)}) == 1
         return float(value.end_values()[0][0]) if is_constant else math.nan
     return value if isinstance(value, float) else None
+
+
+def _holder(scene: Scene, path: str) -> tuple[Any, str]:
+    """What has the number of a path, and its path there: of a beam with layers, these and the bare beam."""
+    electrodes = scene.beam.electrodes
+    if path.startswith(_HARVESTER):
+        return electrodes and electrodes.harvester, path.removeprefix(_HARVESTER)
+    if electrodes is not None and path.startswith("beam.") and not path.startswith(_ON_ANY_BEAM):
+        return electrodes.bare, _in_scene(path).removeprefix("beam.")
+    return scene, _in_scene(path)
 
 
 def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
@@ -166,18 +185,21 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
         motion, or a beam of no rectangular section where a side or the material of one is given.
     """
     of_beam = {path.removeprefix("beam."): float(v) for path, v in values.items() if path.startswith("beam.")}
+    of_layers = {
+        path.removeprefix(_HARVESTER): float(v) for path, v in values.items() if path.startswith(_HARVESTER)
+    }
     others = {
         _in_scene(path): float(value)
         for path, value in values.items()
-        if path != SPEED and not path.startswith("beam.")
+        if path != SPEED and not path.startswith(("beam.", _HARVESTER))
     }
     for path in values:
-        if ("[" not in path and not is_of_motion(path)) or number_at(scene, path) is not None:
+        if ("[" not in path and not _is_of_a_part(path)) or number_at(scene, path) is not None:
             continue
         alike = [
             each
             for each in paths_of(scene)
-            if ("[" in each, is_of_motion(each)) == ("[" in path, is_of_motion(path))
+            if ("[" in each, _is_of_a_part(each)) == ("[" in path, _is_of_a_part(path))
         ]
         whose, otherwise = "scene", "give the scene one"
         if is_of_motion(path):
@@ -185,7 +207,9 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
         remedy = f"give one of {', '.join(alike)}" if alike else otherwise
         raise InvalidValue("vary", path, f"the {whose} has no such number", remedy)
     with _naming_paths(values):
-        return with_parts(scene, others | ({"beam": _beam_with(scene.beam, of_beam)} if of_beam else {}))
+        if of_beam or of_layers:
+            others["beam"] = _layered(scene.beam, of_beam, of_layers)
+        return with_parts(scene, others)
 
 
 @contextmanager
@@ -196,6 +220,15 @@ def _naming_paths(values: Mapping[str, float]) -> Iterator[None]:
     except InvalidValue as error:
         path = next((path for path in values if path.endswith(f".{error.field}")), error.field)
         raise replace(error, field=path) from None
+
+
+def _layered(beam: Beam, values: Mapping[str, float], of_layers: Mapping[str, float]) -> Beam:
+    """The beam with numbers replaced, and with layers that follow it."""
+    if beam.electrodes is None:
+        return _beam_with(beam, values)
+    harvester = replace(beam.electrodes.harvester, **of_layers)
+    carried = {name: getattr(beam, name) for name in ("tip", "point_masses", "point_springs")}
+    return harvester.on(_beam_with(replace(beam.electrodes.bare, **carried), values))
 
 
 def _beam_with(beam: Beam, values: Mapping[str, float]) -> Beam:
