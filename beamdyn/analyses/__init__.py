@@ -18,6 +18,7 @@ _COMMANDS = (
     ("about_motion", "resonances steady"),
     ("about_designs", "study"),
     ("about_motion", "simulate sweep"),
+    ("about_harvest", "harvest best-resistance"),
     ("about_stability", "floquet stability-chart stability-limits"),
     ("about_data", "compare identify"),
     ("about_wanted_answers", "design"),

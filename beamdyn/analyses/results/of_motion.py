@@ -21,6 +21,7 @@ from beamdyn.equations.effects import modelled_directions, words_of_directions
 
 if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossings
+    from beamdyn.steady.harvest import Harvest
     from beamdyn.steady.response import SteadyResponse
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
@@ -197,6 +198,29 @@ def _model_error_of(result: SteadyResponse | Sweep) -> np.ndarray:
     return found
 
 
+def harvest_columns(result: Harvest) -> Columns:
+    """Power, efficiency, voltage, current and strain over speed, with their errors."""
+    of_power = result.error * np.abs(result.power)
+    limit, electrodes = result.strain_limit, result.scene.beam.electrodes
+    resistance = math.nan if electrodes is None else electrodes.resistance
+    resonant = ", ".join(result.say_speed(v) for v in result.resonances.tolist())
+    bears = "" if math.isinf(limit) else f" The layers bear a strain of {limit:g}."
+    return Columns(
+        Column("speed", result.speeds, "rad/s", form=".8g"),
+        Column("power", result.power, "W", error=of_power),
+        Column("efficiency", result.efficiency, error=result.error * result.efficiency),
+        Column("voltage", result.voltage, "V", error=result.error * result.voltage),
+        Column("current", result.current, "A", error=result.error * result.current),
+        Column("strain", result.strain, error=result.strain_error),
+        Column("largest_deflection", result.amplitude, "m", error=result.error * result.amplitude),
+        Column("input_power", result.input_power, "W", words=None),
+        Column("relative_error", result.error, words=None),
+        Column("status", result.status),
+        title=f"Harvested with {resistance:.6g} ohm, by harmonic balance with {result.provenance.method}",
+        note=f"Resonances: {resonant or 'none'} in this range.{bears}",
+    )
+
+
 # Resonances ---------------------------------------------------------------------------------------------
 
 
@@ -242,6 +266,7 @@ def _shares(result: Crossings) -> Iterator[Column]:
 
 VIEWS = {
     "Crossings": View(None, crossings_columns, 1),
+    "Harvest": View(None, harvest_columns, 1),
     "SteadyResponse": View(steady_table, steady_columns, 1),
     "Sweep": View(sweep_table, sweep_columns, 1),
     "Transient": View(transient_table, transient_csv, 1),
