@@ -32,6 +32,7 @@ from beamdyn.scene.beam import Beam
 if TYPE_CHECKING:
     from beamdyn.equations.equations_of_motion import Equations
 
+_FACES = 9  # places along the layers at which their strain is compared
 BENDS = "bending"  # the field whose slope the electrodes feel
 BLOCK = "circuit"  # name of the block of the circuit's coordinate
 
@@ -70,6 +71,17 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
     """Strain of the layer's outer face at xi (k,) per function of the bending field: shape (n, k)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
+
+
+def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
+    """Strain of the layer's outer face at places along it, per coordinate of given equations: (k, n)."""
+    assert beam.electrodes is not None, "electrodes stand on a layer"
+    xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
+    rows = np.zeros((_FACES, equations.size))
+    rows[:, equations.blocks[shape.block]] = (
+        strain_of(beam, equations.deflections[BENDS], xi).T @ shape.matrix
+    )
+    return rows
 
 
 def coupling_of(beam: Beam, deflection: Deflection) -> np.ndarray:

@@ -18,8 +18,7 @@ from beamdyn.common.results.one_line import error_at_most, number, states, warne
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
 from beamdyn.common.words import Named, Words
-from beamdyn.equations.circuit import BENDS, electric_rows, strain_of
-from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.circuit import electric_rows, strain_rows
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.harvester import Electrodes
@@ -34,7 +33,6 @@ from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_FACES = 9  # places along the layers at which their strain is compared
 _DISTANCE = 2.0  # error over the distance from the response with more modes, as that of the tip
 _RESONANT = 3  # modes whose resonances are listed
 _DECADES, _GRID = 4.0, 33  # of the resistances that are tried first, either side of 1/(omega C)
@@ -276,7 +274,8 @@ class _Powers:
         halves = np.where(static, 1.0, 0.5)
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))
         spent = np.real(np.einsum("sil,ij,sjl->sl", velocity.conj(), C, velocity)) @ halves
-        strain = [largest_over_phases(each @ q, pairs) for each in _strain_rows(request, equations)]
+        rows = strain_rows(equations, request.scene.beam)
+        strain = [largest_over_phases(row[None] @ q, pairs) for row in rows]
         return cls(
             power=np.real(voltage.conj() * current) @ halves,
             input_power=spent,
@@ -285,17 +284,6 @@ class _Powers:
             strain=np.max(strain, axis=0),
             truncation=truncation,
         )
-
-
-def _strain_rows(request: ResponseRequest, equations: Equations) -> Iterator[np.ndarray]:
-    """Strain per coordinate at places along the layers, each of shape (1, n)."""
-    beam, shape = request.scene.beam, equations.shapes[BENDS]
-    xi = _electrodes_of(request.scene).inside(np.linspace(0, 1, _FACES))
-    of_functions = strain_of(beam, equations.deflections[BENDS], xi)
-    for place in of_functions.T:
-        row = np.zeros((1, equations.size))
-        row[:, equations.blocks[shape.block]] = place @ shape.matrix
-        yield row
 
 
 # The best resistance ------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossings
     from beamdyn.steady.harvest import Harvest
     from beamdyn.steady.response import SteadyResponse
+    from beamdyn.transient.harvested import TransientHarvest
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
 
@@ -221,6 +222,19 @@ def harvest_columns(result: Harvest) -> Columns:
     )
 
 
+def harvest_over_time(result: TransientHarvest) -> Columns:
+    """Voltage, current, power, harvested energy and strain of the layers over time."""
+    return Columns(
+        Column("time", result.t, "s"),
+        Column("voltage", result.voltage, "V"),
+        Column("current", result.current, "A"),
+        Column("power", result.power, "W"),
+        Column("energy", result.energy, "J"),
+        Column("strain", result.strain),
+        title=f"Harvested in {result.run.path.end:g} s, by {result.provenance.method}",
+    )
+
+
 # Resonances ---------------------------------------------------------------------------------------------
 
 
@@ -269,5 +283,6 @@ VIEWS = {
     "Harvest": View(None, harvest_columns, 1),
     "SteadyResponse": View(steady_table, steady_columns, 1),
     "Sweep": View(sweep_table, sweep_columns, 1),
+    "TransientHarvest": View(None, harvest_over_time, 1),
     "Transient": View(transient_table, transient_csv, 1),
 }

@@ -284,7 +284,7 @@ def plot_harvest(
     drawn = np.where(np.asarray(power) > 0, power, np.nan)
     axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), [drawn], ["harvested"])
     for k, at in enumerate(speed.of(np.asarray(resonances))):
-        label = "" if k else "resonance, short-circuited"
+        label = "" if k else "resonance without a load"
         ax.axvline(at, color="0.6", linestyle=":", linewidth=1.0, label=label)
     if (drawn > 0).any():
         ax.set_yscale("log")

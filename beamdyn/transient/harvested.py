@@ -1,0 +1,157 @@
+"""What a harvester yields during a transient: voltage, current, power, energy and strain of its layers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, kind
+from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
+from beamdyn.common.plots.curves import plot_load_over_time
+from beamdyn.common.results.one_line import error_at_most, number
+from beamdyn.common.results.result import Provenance
+from beamdyn.equations.circuit import Voltage, electric_rows, strain_rows
+from beamdyn.modes.repeated import JudgedByRepeating, repeatable
+from beamdyn.scene.scene import Scene
+from beamdyn.transient.system import ModalSystem
+from beamdyn.transient.transient import Transient
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_POINTS = 4  # Gauss points between two samples of a run, of which there are several in each step
+
+
+@dataclass(frozen=True)
+class TransientHarvest(JudgedByRepeating):
+    """What a harvester yields during a transient.
+
+    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
+    harvested energy.
+
+    Parameters
+    ----------
+    t : ndarray, shape (T,)
+        Times of the run [s].
+    voltage, current, power : ndarray, shape (T,)
+        Voltage across the load [V], current through it [A], power into it [W].
+    energy : ndarray, shape (T,)
+        Energy harvested since the beginning [J].
+    strain : ndarray, shape (T,)
+        Largest magnitude of the bending strain of the layers, over their length.
+    provenance : Provenance
+        How the run was computed.
+
+    Examples
+    --------
+    >>> run = bd.simulate(bd.load_scene("examples/bimorph.toml"), t_end=0.2, modes=2)
+    >>> found = bd.transient_harvest(run)
+    >>> bool((np.diff(found.energy) >= 0).all())
+    True
+    """
+
+    t: np.ndarray
+    voltage: np.ndarray
+    current: np.ndarray
+    power: np.ndarray
+    energy: np.ndarray
+    strain: np.ndarray
+    provenance: Provenance
+    run: Transient = field(repr=False)
+
+    judged_value = "the harvested energy"
+    follows_stiffness = False
+
+    @property
+    def scene(self) -> Scene:
+        """Scene."""
+        return self.run.scene
+
+    @property
+    def mean_power(self) -> float:
+        """Harvested energy over the duration [W]."""
+        return float(self.energy[-1] / (self.t[-1] - self.t[0]))
+
+    @cached_property
+    def energy_error(self) -> float:
+        """Estimated error of the harvested energy by the modes left out [J]: twice the distance from more."""
+        if self.run.refined is None:
+            return float("inf")
+        return 2 * abs(float(transient_harvest(self.run.refined).energy[-1] - self.energy[-1]))
+
+    def headline(self) -> Iterator[str]:
+        """Duration, energy, largest voltage and strain in one line; see `Result.headline`."""
+        yield f"{number(self.run.path.end, 's')}: {number(self.energy[-1], 'J')}"
+        yield f"up to {number(np.abs(self.voltage).max(), 'V')}"
+        yield f"strain to {number(self.strain.max(), '')}"
+        yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
+
+    def judged(self, found: TransientHarvest) -> np.ndarray:
+        """The harvested energy, of which the model error is stated: shape ()."""
+        return np.array(found.energy[-1])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the voltage over time."""
+        return plot_load_over_time(self.t, self.voltage[:, None], [""], "voltage [V]", ax)
+
+
+@repeatable
+def transient_harvest(run: Transient) -> TransientHarvest:
+    """Compute what a harvester yields during a transient.
+
+    Parameters
+    ----------
+    run : Transient
+        The transient, of `simulate`, of a beam with the layers of a `Harvester`.
+
+    Returns
+    -------
+    TransientHarvest
+
+    Raises
+    ------
+    ValueError
+        If the beam carries no layers, or the run is one with large deflection.
+
+    References
+    ----------
+    Circuit: docs/harvester.md.
+
+    Examples
+    --------
+    >>> run = bd.simulate(bd.load_scene("examples/bimorph.toml"), t_end=0.2, modes=2)
+    >>> bd.transient_harvest(run).mean_power > 0
+    True
+    """
+    kind("run", run, Transient, "simulate makes one")
+    beam, system = run.scene.beam, run.system
+    if beam.electrodes is None or not isinstance(system, ModalSystem):
+        bound = "the beam carries no piezoelectric layers, or deflects largely"
+        raise InvalidValue("run", run, bound, "Harvester.on puts layers on a beam")
+    rows = electric_rows(system.equations, run.request.model.equations, beam)
+    voltage, current = (_at(row, run, run.t) for row in rows)
+    samples = np.union1d(run.t, run.path.samples[0])
+    places = gauss_points_on(samples, _POINTS)
+    between = gauss_weights_on(samples, _POINTS).reshape(places.shape)
+    v, i = (_at(row, run, places.ravel()).reshape(places.shape) for row in rows)
+    energy = np.append(0.0, np.cumsum((between * v * i).sum(axis=1)))
+    q, _ = run.path.at(run.t)
+    return TransientHarvest(
+        t=run.t,
+        voltage=voltage,
+        current=current,
+        power=voltage * current,
+        energy=energy[np.searchsorted(samples, run.t)],
+        strain=np.abs(q @ strain_rows(system.equations, beam).T).max(axis=1),
+        provenance=run.provenance,
+        run=run,
+    )
+
+
+def _at(row: Voltage, run: Transient, t: np.ndarray) -> np.ndarray:
+    """A quantity of the circuit at times t [s] (T,)."""
+    return run.path.at(t)[row.order] @ row.row
