@@ -81,6 +81,9 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     scale = np.concatenate([frequency, np.ones(system.size)])
     counts = steps, math.ceil(_COARSER * steps)
     fine, coarse = (scale[:, None] * _propagate(system, period.time, each) / scale for each in counts)
+    if equations.voltage is not None:  # the flux of a circuit, the last coordinate, acts by its rate alone
+        states = np.arange(2 * system.size) != system.size - 1
+        fine, coarse = (each[np.ix_(states, states)] for each in (fine, coarse))
     error = np.linalg.norm(fine - coarse, 2) / _EXCESS + _ROUNDING * steps * np.linalg.norm(fine, 2)
     form = None if scene.is_damped else _form(None if C is None else C[0], scale)[None]
     return Monodromy(fine[None], np.array([error]), np.array([period.time]), form, period.turns)
