@@ -22,17 +22,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.equations.fields.field import Deflection, Term
 from beamdyn.scene.beam import Beam
 
-if TYPE_CHECKING:
-    from beamdyn.equations.equations_of_motion import Equations
-
-_FACES = 9  # places along the layers at which their strain is compared
 BENDS = "bending"  # the field whose slope the electrodes feel
 BLOCK = "circuit"  # name of the block of the circuit's coordinate
 
@@ -73,45 +68,11 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
 
 
-def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
-    """Strain of the layer's outer face at places along it, per coordinate of given equations: (k, n)."""
-    assert beam.electrodes is not None, "electrodes stand on a layer"
-    xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
-    rows = np.zeros((_FACES, equations.size))
-    rows[:, equations.blocks[shape.block]] = (
-        strain_of(beam, equations.deflections[BENDS], xi).T @ shape.matrix
-    )
-    return rows
-
-
 def coupling_of(beam: Beam, deflection: Deflection) -> np.ndarray:
-    """theta over the functions of the bending field: the moment by a unit voltage on the slopes there."""
+    """Theta over the functions of the bending field: the moment by a unit voltage on the slopes there."""
     assert beam.electrodes is not None, "electrodes couple"
     slopes = deflection.space.evaluate(np.array(beam.electrodes.span), 1) / beam.length
     return beam.electrodes.coupling * (slopes[:, 1] - slopes[:, 0])
-
-
-def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
-    """Voltage across the load [V] and current through it [A], by the coordinates of given equations.
-
-    Parameters
-    ----------
-    equations : Equations
-        Equations with the circuit, if it has a coordinate.
-    full : Equations
-        Those of all functions that they were made from.
-    beam : Beam
-        The beam.
-    """
-    electrodes, nothing = beam.electrodes, Voltage(0, np.zeros(equations.size))
-    assert electrodes is not None, "a harvester has electrodes"
-    if (voltage := equations.voltage) is not None:
-        return voltage, Voltage(voltage.order, voltage.row / electrodes.resistance)
-    row, shape = np.zeros(equations.size), equations.shapes[BENDS]
-    row[equations.blocks[shape.block]] = coupling_of(beam, full.deflections[BENDS]) @ shape.matrix
-    if electrodes.resistance:
-        return Voltage(0, -row / electrodes.capacitance(beam.length)), nothing
-    return nothing, Voltage(1, -row)
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:

@@ -43,7 +43,6 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 
-
 _LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts them on"))
 
 
@@ -220,7 +219,7 @@ class ModelAtSpeed(FieldsOnly):
         """An output by the kept coordinates."""
         zero = np.zeros(self.equations.size)
         if isinstance(observation, OfLayers):
-            row, order, of_kept = self._of_layers(observation)
+            _, order, of_kept = self._of_layers(observation)
             return Row(*(of_kept if order == k else zero for k in range(3)))
         if isinstance(observation, DeflectionAt):
             if self.equations.voltage is None or isinstance(observation, AccelerationAt):
@@ -259,7 +258,9 @@ class ModelAtSpeed(FieldsOnly):
         """
         beam, full = self.scene.beam, self.model.equations
         if (electrodes := beam.electrodes) is None:
-            raise InvalidValue("output", observation.label, "the beam carries no piezoelectric layers", _LAYERS)
+            raise InvalidValue(
+                "output", observation.label, "the beam carries no piezoelectric layers", _LAYERS
+            )
         bends, row = full.deflections[BENDS], np.zeros(full.size)
         if isinstance(observation, LayerStrain):
             place = np.array([observation.place(electrodes, beam.length)])

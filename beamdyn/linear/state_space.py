@@ -135,9 +135,7 @@ def state_space(
     m = of_state.shape[1] - n  # velocities among the states
     A, B = (np.vstack([velocity, acceleration]) for velocity, acceleration in zip(*rates, strict=True))
     rows = [model.row(each) for each in observed]
-    C = np.array(
-        [np.concatenate([r.position, r.velocity[:m]]) + r.acceleration[:m] @ of_state for r in rows]
-    )
+    C = np.array([np.concatenate([r.position, r.velocity[:m]]) + r.acceleration[:m] @ of_state for r in rows])
     correction = [[float(np.real(model.residual(each, drive)[0])) for drive in drives] for each in observed]
     D = np.array([r.acceleration[:m] @ of_load for r in rows]) + correction
     system: Any = StateSpaceWithErrors(A, B, C, D)  # pyright: ignore[reportAbstractUsage]

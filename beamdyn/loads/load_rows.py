@@ -125,7 +125,10 @@ def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
     The charge of a circuit has no mass, and no part in them.
     """
     massive = mass.any(axis=0)
-    rows, found = by_acceleration.reshape(-1, len(mass)), np.zeros((by_acceleration.size // len(mass), len(mass)))
+    rows, found = (
+        by_acceleration.reshape(-1, len(mass)),
+        np.zeros((by_acceleration.size // len(mass), len(mass))),
+    )
     found[:, massive] = np.linalg.solve(mass[np.ix_(massive, massive)].T, rows[:, massive].T).T
     return found.reshape(by_acceleration.shape)
 

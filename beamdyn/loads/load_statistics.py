@@ -38,7 +38,7 @@ from beamdyn.linear.mean_square import damped_motion, pole_integrals, residues
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.spectra import PowerSpectrum, highest_frequency
 from beamdyn.linear.transfer import check_stable
-from beamdyn.loads.load_rows import LoadRows, span_rows, per_force
+from beamdyn.loads.load_rows import LoadRows, per_force, span_rows
 from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.motion import MotionSample

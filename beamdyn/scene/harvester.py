@@ -131,7 +131,7 @@ class Harvester(FieldsOnly):
                 continue
             set_fields(self, **{name: described.check(f"harvester.{name}", given)})
         sets = [[n for n in names if getattr(self, n) is not None] for names in (_STRAINED, _STRESSED)]
-        if not (sets in ([[*_STRAINED], []], [[], [*_STRESSED]])):
+        if sets not in ([[*_STRAINED], []], [[], [*_STRESSED]]):
             given = ", ".join(sets[0] + sets[1]) or "nothing"
             missing = [n for n in (_STRAINED if sets[0] else _STRESSED) if getattr(self, n) is None]
             name = missing[0] if missing else sets[1][0]

@@ -207,9 +207,10 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
         remedy = f"give one of {', '.join(alike)}" if alike else otherwise
         raise InvalidValue("vary", path, f"the {whose} has no such number", remedy)
     with _naming_paths(values):
+        beam: dict[str, Any] = {}
         if of_beam or of_layers:
-            others["beam"] = _layered(scene.beam, of_beam, of_layers)
-        return with_parts(scene, others)
+            beam = {"beam": _layered(scene.beam, of_beam, of_layers)}
+        return with_parts(scene, others | beam)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import error_at_most, number, states, warne
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
 from beamdyn.common.words import Named, Words
-from beamdyn.equations.circuit import electric_rows, strain_rows
+from beamdyn.equations.harvested import electric_rows, strain_rows
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.harvester import Electrodes

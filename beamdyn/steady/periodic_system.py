@@ -85,9 +85,9 @@ class PeriodicSystem:
         return ~stiff
 
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
-        """Whether a coordinate without stiffness has a static part, which is any: harmonics (H, 2), (S, H, n).
+        """Whether a coordinate without stiffness has a static part, which may be any and is taken as 0.
 
-        It is taken as 0.
+        For harmonics (H, 2): shape (S, H, n).
         """
         return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 

@@ -14,6 +14,7 @@ MARK = "<!-- errors of analyses -->"
 ANALYSES = (
     *("natural_modes", "frequency_locus", "critical_point", "setting_angle_limits", "resonance_speeds"),
     *("campbell", "equilibrium", "backbone", "simulate", "sweep", "steady_response", "static_loads"),
+    *("harvest", "best_resistance", "transient_harvest"),
     *("transient_loads", "steady_loads", "random_loads", "count_cycles", "frequency_response"),
     *("random_response", "matrices", "state_space", "frequency_sensitivities"),
     *("critical_speed_sensitivities", "crossing_sensitivities", "spread", "study"),
@@ -28,6 +29,7 @@ ELSEWHERE = {
     ("transient_loads", "tolerance"): "that of its transient",
     ("steady_loads", "tolerance"): "that of its response",
     ("count_cycles", "tolerance"): "that of its transient",
+    ("transient_harvest", "tolerance"): "that of its transient",
 }
 _OF_MODEL = {"model_error", "error_of", "growth_rate_error"}
 

@@ -1,4 +1,4 @@
-"""A harvester: limits of its circuit, its section, one mode in closed form, its energy, and other solutions."""
+"""A harvester: its section, limits of its circuit, one mode in closed form, energy, and other solutions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import beamdyn as bd
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.modes.modal.modal_basis import reduce_to_modes
+from beamdyn.scene.numbers import number_at
 from beamdyn.steady.harvest import with_resistance
+from beamdyn.transient.system import ModalSystem
 
 L, b, h, E, rho = 0.05, 0.01, 0.0002, 200e9, 7850.0
 t, modulus, e31, eps, heavy = 0.00015, 61e9, -10.4, 13.3e-9, 7750.0
@@ -47,7 +49,7 @@ def by_thickness(connection: str) -> dict[str, float]:
     neutral = integral([s * x for s, x in zip(stiff, points, strict=True)]) / area
     bending = integral([s * (x - neutral) ** 2 for s, x in zip(stiff, points, strict=True)])
     mass = integral([d + 0 * x for d, x in zip(dense, points, strict=True)])
-    # The field of each layer by a volt on the electrodes; a layer below is polarised the other way, or fed so.
+    # The field of each layer by a volt on the electrodes; one below is polarised or fed the other way.
     field = {"series": 0.5 / t, "parallel": 1 / t, "unimorph": 1 / t}[connection]
     signs = [p[3] for p in parts]
     moment = integral([s * e31 * field * (x - neutral) for s, x in zip(signs, points, strict=True)])
@@ -59,6 +61,7 @@ def by_thickness(connection: str) -> dict[str, float]:
 @pytest.mark.parametrize("connection", KINDS)
 def test_the_section_is_that_by_quadrature_over_the_thickness(connection):
     beam, inside, wanted = scene(OPEN, connection).beam, np.array([0.4]), by_thickness(connection)
+    assert beam.electrodes is not None
     found = {
         "EI": beam.bending_stiffness(inside)[0],
         "m": beam.mass_per_length(inside)[0],
@@ -80,7 +83,8 @@ def test_short_circuited_is_the_laminated_beam(connection, speed):
     mass, stiffness = (bd.Table(ends, [a, a, c, c, a, a]) for a, c in zip(bare, laid, strict=True))
     laminated = bd.Scene(bd.Beam.from_stiffness(L, mass, stiffness, tip=STRIP.tip), bd.Mount(0.215, math.pi))
     found, wanted = (
-        bd.natural_modes(each, speed, 3, discretization=FULL) for each in (scene(SHORT, connection), laminated)
+        bd.natural_modes(each, speed, 3, discretization=FULL)
+        for each in (scene(SHORT, connection), laminated)
     )
     np.testing.assert_allclose(found.frequency, wanted.frequency, rtol=1e-10)  # the issue's bound
 
@@ -118,7 +122,10 @@ SPEED = 90.0
 class Shaken(bd.SteadyRotation):
     """Steady rotation whose carrier shakes along the axis once a turn, by 1 m/s2."""
 
-    lines = (bd.Line("shaking", 1.0),)
+    @property
+    def lines(self) -> tuple[bd.Line, ...]:
+        """Once a turn."""
+        return (bd.Line("shaking", 1.0),)
 
     def steady_acceleration(self, speed, rotation, road):
         """The acceleration along n3, as a function of the phase."""
@@ -138,6 +145,7 @@ def test_one_mode_in_closed_form(connection):
     request = bd.steady_response(given, [SPEED], 1).request
     one = reduce_to_modes(request.model.equations, request.basis)
     pencil, circuit, omega = one.steady(), one.circuit, SPEED
+    assert circuit is not None
     m, c, k = float(pencil.M[0, 0]), float(pencil.C[0, 0]), float((pencil.K0 + omega**2 * pencil.K2)[0, 0])
     load, theta, C = float(one.vectors["root_transverse"][0]), float(circuit.coupling[0]), circuit.capacitance
     mechanical = k - m * omega**2 + 1j * omega * c
@@ -160,7 +168,8 @@ def test_one_mode_in_closed_form(connection):
     if connection != "series":
         return
     best = bd.best_resistance(given, SPEED, modes=1)
-    assert best.scene.beam.electrodes.resistance == pytest.approx(source, rel=1e-4)  # the power is flat there
+    chosen = number_at(best.scene, "harvester.resistance")
+    assert chosen == pytest.approx(source, rel=1e-4)  # the power is flat there
     assert best.power[0] == pytest.approx(abs(voltage(source)) ** 2 / 2 / source, rel=1e-8)
 
 
@@ -173,8 +182,10 @@ def test_energy_of_a_transient(resistance):
     given = lying(resistance, motion=bd.ShakenCarrier(55.0, along_n3=2.0, rotation=40.0))
     run = bd.simulate(given, 0.3, modes=3, tolerance=1e-10)
     system, samples = run.system, run.path.samples[0]
+    assert isinstance(system, ModalSystem)
     places, weights = gauss_points_on(samples, 4).ravel(), gauss_weights_on(samples, 4)
     (_, rates), (C, K, f) = run.path.at(places), system.coefficients(places)
+    assert C is not None
     work = weights @ (f * rates).sum(axis=1)
     spent = weights @ np.einsum("ti,tij,tj->t", rates, C, rates)  # in the beam and in the load
     q, v = run.path.at(np.array([run.path.end]))

@@ -1,10 +1,10 @@
 """A base-excited bimorph beside its differential equation, solved in closed form.
 
-The dimensions are those of Erturk and Inman (2009), Smart Materials and Structures 18, 025009: 50.8 x 31.8 mm,
-0.14 mm of brass between layers of 0.26 mm of PZT-5A, a tip mass of 12 g.  No source that prints its results
-was open, so that their digits are not compared: the check is a second derivation that shares nothing with the
-package.  With layers over the whole length, the voltage bends the beam at its tip alone; of the absolute
-deflection u, with the bending moment EI u'' - theta v,
+The dimensions are those of Erturk and Inman (2009), Smart Materials and Structures 18, 025009:
+50.8 x 31.8 mm, 0.14 mm of brass between layers of 0.26 mm of PZT-5A, a tip mass of 12 g.  No source that
+prints its results was open, so that their digits are not compared: the check is a second derivation that
+shares nothing with the package.  With layers over the whole length, the voltage bends the beam at its tip
+alone; of the absolute deflection u, with the bending moment EI u'' - theta v,
 
     EI u'''' = m omega^2 u,  EI u''(L) = theta v,  EI u'''(L) = -m_t omega^2 u(L),
     (i omega C + 1/R) v + i omega theta u'(L) = 0.
@@ -13,6 +13,7 @@ deflection u, with the bending moment EI u'' - theta v,
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ BEAM = bd.Beam.rectangular(L, WIDTH, CORE, BRASS, HEAVY_BRASS, tip=bd.TipMass(TI
 FREQUENCIES = np.array([5.0, 30.0, 44.0, 47.0, 60.0, 250.0, 480.0])
 
 
-def layers(connection: str, resistance: float) -> bd.Harvester:
+def layers(connection: Any, resistance: float) -> bd.Harvester:
     constants = {"d31": D31, "s11e": 1 / PZT, "eps33t": EPS_T}
     return bd.Harvester(LAYER, HEAVY_PZT, connection, **constants, resistance=resistance)
 
@@ -51,7 +52,7 @@ def by_differential_equation(connection: str, resistance: float, frequency: floa
     turned = beta * np.array([ss, cc, -s, c])
     A[4] = [*(1j * omega * theta * turned), 1j * omega * capacitance + 1 / resistance]
     found = np.linalg.solve(A, right)
-    return found[4], found[:4] @ [cc, ss, c, s] - base
+    return complex(found[4]), complex(found[:4] @ [cc, ss, c, s] - base)
 
 
 @pytest.mark.parametrize("connection", ["series", "parallel"])

@@ -38,6 +38,7 @@ BENT = bd.Scene(
 )
 DAMPED = replace(HARVESTER, damping_ratio=0.01)
 PULSATING = bd.Scene(HARVESTER.beam, HARVESTER.mount, bd.PulsatingRotation(50.0, 0.1, 123.9))
+LAYERED = bd.load_scene(Path(__file__).parents[2] / "examples" / "bimorph.toml")
 BENDIX = forklift.BENDIX_12_5
 ROUGH = bd.PowerSpectrum([5.0, 60.0, 200.0], [1.0, 3.0, 0.2])
 SPEEDS = np.linspace(0.0, 100.0, 41)
@@ -134,6 +135,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
     "FromPedal": _from_pedal,
+    "Harvest": lambda: bd.harvest(LAYERED, [20.0, 50.0], 2),
     "Heat": lambda: chain.heat_of_stop(vehicle.stop(TRUCK, STOP), chain.Drums(18.0, 0.05), 1e5, 0.15),
     "Holding": lambda: vehicle.hold(BICYCLE, ROAD),
     "InputSweep": lambda: InputSweep(("a.x",), ("mm",), (np.arange(3.0),), ("y",), ("N",), (np.ones(3),)),
@@ -185,6 +187,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Terms": lambda: bd.terms(SHORT_SPIN_UP),
     "Tradeoff": lambda: bd.tradeoff(HARVESTER, 50.0, 1, budget=0.05),
     "Transient": _transient,
+    "TransientHarvest": lambda: bd.transient_harvest(bd.simulate(LAYERED, 0.1, 2)),
     "TransientLoads": lambda: bd.transient_loads(_transient(), at=[0.0, 0.025]),
     "VehicleAnswer": lambda: _answer(VEHICLE),
 }
@@ -197,6 +200,7 @@ EXAMPLES_OF_INPUTS = (
     bd.Mount(0.1, np.pi, 0.3, precone=0.05, root_stiffness=3.0),
     SHORT_SPIN_UP.motion,
     bd.SteadyRotation(50.0),
+    LAYERED,
     bd.RotationFunction(np.sin, np.cos, lambda t: -np.sin(t), 1.0),
 )
 

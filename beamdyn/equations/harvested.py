@@ -1,0 +1,45 @@
+"""Voltage, current and strain of a harvester's layers, by the coordinates of equations of motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.equations.circuit import BENDS, Voltage, coupling_of, strain_of
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.scene.beam import Beam
+
+_FACES = 9  # places along the layers at which their strain is compared
+
+
+def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
+    """Voltage across the load [V] and current through it [A], by the coordinates of given equations.
+
+    Parameters
+    ----------
+    equations : Equations
+        Equations with the circuit, if it has a coordinate.
+    full : Equations
+        Those of all functions that they were made from.
+    beam : Beam
+        The beam.
+    """
+    electrodes, nothing = beam.electrodes, Voltage(0, np.zeros(equations.size))
+    assert electrodes is not None, "a harvester has electrodes"
+    if (voltage := equations.voltage) is not None:
+        return voltage, Voltage(voltage.order, voltage.row / electrodes.resistance)
+    row, shape = np.zeros(equations.size), equations.shapes[BENDS]
+    row[equations.blocks[shape.block]] = coupling_of(beam, full.deflections[BENDS]) @ shape.matrix
+    if electrodes.resistance:
+        return Voltage(0, -row / electrodes.capacitance(beam.length)), nothing
+    return nothing, Voltage(1, -row)
+
+
+def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
+    """Strain of the layer's outer face at places along it, per coordinate of given equations: (k, n)."""
+    assert beam.electrodes is not None, "electrodes stand on a layer"
+    xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
+    rows = np.zeros((_FACES, equations.size))
+    rows[:, equations.blocks[shape.block]] = (
+        strain_of(beam, equations.deflections[BENDS], xi).T @ shape.matrix
+    )
+    return rows
