@@ -315,7 +315,7 @@ class HarvestedVoltage:
     label: ClassVar[str] = "voltage"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Rows of the output; an InvalidValue of a short circuit."""
+        """Rows of the output; a ValueError of a short circuit."""
         if not electrodes.resistance:
             raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
         return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
@@ -336,7 +336,7 @@ class HarvestedCurrent:
     label: ClassVar[str] = "current"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Rows of the output; an InvalidValue of an open circuit."""
+        """Rows of the output; a ValueError of an open circuit."""
         if math.isinf(electrodes.resistance):
             remedy = "give a finite harvester.resistance"
             raise InvalidValue("output", "current", "an open circuit has none", remedy)

@@ -78,7 +78,7 @@ class Beam(FieldsOnly, OneLine):
     matrices : SectionMatrices, optional
         The 6 x 6 matrices of stiffness and mass that the properties follow from, by `from_matrices`; None
         where they do not.  The properties are then entries of their diagonals.
-    electrodes : Electrodes, optional
+    electrodes : electrodes, optional
         Those of piezoelectric layers, which `Harvester.on` puts on a beam with their mass and stiffness.
 
     References
@@ -149,6 +149,8 @@ class Beam(FieldsOnly, OneLine):
             raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
         for name, wanted in (("point_masses", PointMass), ("point_springs", PointSpring)):
             set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
+        if self.electrodes is not None:
+            kind("electrodes", self.electrodes, Electrodes, "Harvester.on puts them on a beam")
         if self.section is not None:
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             if not all(_alike(getattr(self, name), made) for name, made in self.section.properties.items()):

@@ -97,7 +97,7 @@ class TransientHarvest(JudgedByRepeating):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the voltage over time."""
-        return plot_load_over_time(self.t, self.voltage[:, None], [""], "voltage [V]", ax)
+        return plot_load_over_time(self.t, self.voltage[:, None], ["voltage"], "voltage [V]", ax)
 
 
 @repeatable

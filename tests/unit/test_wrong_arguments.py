@@ -19,6 +19,8 @@ SCENE = bd.Scene(BEAM, bd.Mount(0.2))
 DAMPED = bd.Scene(BEAM, bd.Mount(0.2), damping_ratio=0.01)
 MOVING = bd.Scene(BEAM, bd.Mount(0.2), bd.RollingWheel(0.3, 20.0, bd.RoadWave(0.3, 0.01)))
 PULSATING = bd.Scene(BEAM, bd.Mount(0.2), bd.PulsatingRotation(5.0, 0.1, 100.0))
+LAYERS = bd.Harvester(1e-4, 7750.0, e31=-10.0, c11e=6e10, eps33s=1.3e-8, resistance=1e5)
+HARVESTING = bd.Scene(LAYERS.on(BEAM), bd.Mount(0.2), MOVING.motion, damping_ratio=0.01)
 RUN, RESPONSE = bd.simulate(MOVING, 0.02, 2, 1e-3), bd.steady_response(MOVING, [5.0], 2)
 LOADS = bd.transient_loads(RUN, at=[0.0])
 
@@ -67,6 +69,12 @@ CALLS = {
     "Damping": (
         bd.Damping,
         {"ratios": [0.01], "mass_factor": 0.1, "stiffness_factor": 1e-6, "tip_damper": 0.01},
+    ),
+    "Harvester": (
+        bd.Harvester,
+        {"thickness": 1e-4, "density": 7750.0, "connection": "series", "e31": -10.0, "c11e": 6e10}
+        | {"eps33s": 1.3e-8, "d31": None, "s11e": None, "eps33t": None}
+        | {"start": 0.0, "end": 0.03, "resistance": 1e5, "strain_limit": 5e-4},
     ),
     "TipMass": (
         bd.TipMass,
@@ -167,6 +175,18 @@ CALLS = {
         {"scene": MOVING, "speeds": [5.0, 6.0], "modes": 2, "harmonics": 1, "tolerance": 1e-3}
         | {"discretization": "ritz"},
     ),
+    "harvest": (
+        bd.harvest,
+        {"scene": HARVESTING, "speeds": [5.0, 6.0], "modes": 2, "tolerance": 1e-3, "discretization": "ritz"},
+    ),
+    "best_resistance": (
+        bd.best_resistance,
+        {"scene": HARVESTING, "speed": 5.0, "modes": 1, "tolerance": 1e-3, "discretization": "ritz"},
+    ),
+    "transient_harvest": (bd.transient_harvest, {"run": bd.simulate(HARVESTING, 0.02, 2, 1e-3)}),
+    "HarvestedVoltage": (bd.HarvestedVoltage, {}),
+    "HarvestedCurrent": (bd.HarvestedCurrent, {}),
+    "LayerStrain": (bd.LayerStrain, {"position": 0.02}),
     "floquet_multipliers": (
         bd.floquet_multipliers,
         {"scene": PULSATING, "modes": 2, "discretization": "ritz"},

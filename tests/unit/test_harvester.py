@@ -1,0 +1,121 @@
+"""What a harvester refuses, its file, its numbers, its command and its limits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamdyn as bd
+from beamdyn.cli import main
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.files.scenes import parse_scene
+from beamdyn.scene.numbers import number_at, paths_of, with_numbers
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "bimorph.toml"
+TEXT = EXAMPLE.read_text(encoding="utf-8")
+SCENE = bd.load_scene(EXAMPLE)
+STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+CERAMIC = {"thickness": 1.5e-4, "density": 7750.0, "e31": -10.4, "c11e": 61e9, "eps33s": 1.33e-8}
+
+
+def refused(*parts, beam=STRIP, **changes):
+    with pytest.raises(ValueError) as refusal:
+        bd.Harvester(**(CERAMIC | changes)).on(beam)
+    said = str(refusal.value)
+    assert "\n" not in said
+    for part in parts:
+        assert part in said, said
+
+
+def test_bad_layers_are_refused_with_key_value_bound_and_remedy():
+    refused("harvester.end = 0.06 m", "the beam ends at 0.05 m", end=0.06)
+    refused("harvester.start = 0.04 m", "before their end at 0.03 m", "swapped", start=0.04, end=0.03)
+    refused("harvester.start = 0.05 m", "the beam ends at 0.05 m", start=0.05)
+    refused("harvester.resistance = -1 ohm", "at least 0", "0 is a short circuit", resistance=-1.0)
+    refused("harvester.eps33s = None", "e31, c11e and eps33s", eps33s=None)
+    refused("harvester.d31", "by d31, s11e and eps33t", d31=-1.7e-10)
+    stressed = {"e31": None, "c11e": None, "eps33s": None, "d31": -1.7e-10, "s11e": 1.6e-11}
+    refused("harvester.eps33t = 1e-09 F/m", "no material has more coupling", **stressed, eps33t=1e-9)
+    refused("harvester.connection = 'both'", connection="both")
+    layered = bd.Harvester(**CERAMIC).on(STRIP)
+    refused("harvester.start", "overlap", beam=layered)
+    refused("rectangular section", beam=bd.Beam.from_stiffness(0.05, 0.0157, 1.3e-3))
+    tapered = bd.Beam.rectangular(0.05, bd.Polynomial([0.02, -0.01]), 0.0002, 200e9, 7850.0)
+    refused("width = 0.01", "constant", beam=tapered)
+    refused("twist", beam=bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, twist=0.3))
+
+
+def test_a_file_says_its_mistakes_by_key():
+    for old, new, said in (
+        ('resistance = "200 kohm"', 'resistance = "-5 kohm"', "harvester.resistance"),
+        ('end = "30 mm"', 'end = "60 mm"', "harvester.end"),
+        ('eps33t = "15.33e-9 F/m"', "", "harvester.eps33t"),
+        ('connection = "series"', 'connection = "star"', "harvester.connection"),
+    ):
+        with pytest.raises(ConfigError, match=said):
+            parse_scene(TEXT.replace(old, new))
+
+
+def test_files_of_open_and_short_circuits():
+    for text, resistance in (("inf", math.inf), ("0 ohm", 0.0)):
+        read = parse_scene(TEXT.replace('"200 kohm"', f'"{text}"'))
+        assert number_at(read, "harvester.resistance") == resistance
+
+
+def test_numbers_of_the_layers_and_of_the_bare_beam_are_set_together():
+    assert number_at(SCENE, "harvester.resistance") == 200e3
+    assert number_at(SCENE, "beam.thickness") == 0.0002
+    changed = with_numbers(SCENE, {"harvester.thickness": 2e-4, "beam.thickness": 3e-4, "beam.tip.mass": 2e-3})
+    bare = bd.Beam.rectangular(0.05, 0.01, 3e-4, 200e9, 7850.0, tip=bd.TipMass(2e-3))
+    assert SCENE.beam.electrodes is not None
+    assert changed.beam == replace(SCENE.beam.electrodes.harvester, thickness=2e-4).on(bare)
+    assert not any(path.startswith("harvester") for path in paths_of(bd.Scene(STRIP)))
+    with pytest.raises(ValueError, match=r"harvester\.resistance"):
+        with_numbers(bd.Scene(STRIP), {"harvester.resistance": 1.0})
+
+
+def test_a_study_of_the_resistance():
+    found = bd.study(SCENE, {"harvester.resistance": [0.0, math.inf]}, speed=20.0, modes=1)
+    short, opened = (
+        bd.natural_modes(with_numbers(SCENE, {"harvester.resistance": r}), 20.0, 1).frequency[0]
+        for r in (0.0, math.inf)
+    )
+    np.testing.assert_allclose(found.outputs["frequency"].ravel(), [short, opened], rtol=1e-9)
+
+
+def test_outputs_that_a_circuit_does_not_have_are_refused():
+    for resistance, output in ((0.0, "voltage"), (math.inf, "current")):
+        given = with_numbers(SCENE, {"harvester.resistance": resistance})
+        with pytest.raises(ValueError, match="circuit has none"):
+            bd.frequency_response(given, 20.0, [10.0], output=output)
+    with pytest.raises(ValueError, match="position = 0.04 m: the layers end at 0.03 m"):
+        bd.frequency_response(SCENE, 20.0, [10.0], output=bd.LayerStrain(0.04))
+    with pytest.raises(ValueError, match="short-circuited"):
+        replace(SCENE, physics=bd.Physics(large_deflection=True))
+
+
+def test_strain_past_its_limit_is_warned_of():
+    found = bd.harvest(with_numbers(SCENE, {"harvester.strain_limit": 4e-5}), [20.0, 60.0], modes=2)
+    assert found.strain[0] < found.strain_limit < found.strain[1]
+    assert any("past their limit" in said and "60 rad/s" in said for said in found.warnings)
+    assert not any("past their limit" in said for said in bd.harvest(SCENE, [60.0], modes=2).warnings)
+
+
+def test_nothing_vibrates_without_gravity_and_road():
+    still = replace(SCENE, motion=None, gravity=0.0)
+    assert bd.harvest(still, [20.0], modes=1).power[0] == 0
+    with pytest.raises(ValueError, match="nothing vibrates"):
+        bd.best_resistance(still, 20.0, modes=1)
+
+
+def test_the_command(capsys, tmp_path):
+    path = tmp_path / "power.csv"
+    given = ["harvest", str(EXAMPLE), "--speeds", "40:60:3 rad/s", "--modes", "2", "--csv", str(path)]
+    assert main(given) == 0
+    printed = capsys.readouterr().out
+    assert "power [W]" in printed and "Resonances: 44.47 rad/s, 58.77 rad/s" in printed
+    assert path.read_text(encoding="utf-8").startswith("speed_rad_per_s,power_W,efficiency,voltage_V")
