@@ -42,6 +42,7 @@ from beamdyn.scene.profile import Profile
 
 Connection = Literal["series", "parallel", "unimorph"]
 _STRAINED, _STRESSED = ("e31", "c11e", "eps33s"), ("d31", "s11e", "eps33t")
+_SETS = _STRAINED, _STRESSED
 _EVEN = 1e-9  # change of a side along the layers, over it, that is rounding
 _SHORT: Any = {"least": 0, "infinite": "open circuit", "remedy": "0 is a short circuit, inf an open one"}
 
@@ -127,23 +128,28 @@ class Harvester(FieldsOnly):
         one_of("harvester.connection", self.connection, get_args(Connection))
         for name, described in descriptions(Harvester).items():
             given = getattr(self, name)
-            if name == "connection" or given is None or (described.infinite and given == math.inf):
-                continue
-            set_fields(self, **{name: described.check(f"harvester.{name}", given)})
-        sets = [[n for n in names if getattr(self, n) is not None] for names in (_STRAINED, _STRESSED)]
-        if sets not in ([[*_STRAINED], []], [[], [*_STRESSED]]):
-            given = ", ".join(sets[0] + sets[1]) or "nothing"
-            missing = [n for n in (_STRAINED if sets[0] else _STRESSED) if getattr(self, n) is None]
-            name = missing[0] if missing else sets[1][0]
-            bound = "the material is given by e31, c11e and eps33s, or by d31, s11e and eps33t"
-            raise InvalidValue(f"harvester.{name}", getattr(self, name), bound, f"given are {given}")
-        _, coupling, permittivity = self.material
-        if permittivity <= 0:
-            bound = "it must be above {limit}, d31^2/s11e: no material has more coupling"
-            limit = coupling * (self.d31 or 0.0)
-            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
+            is_infinite = bool(described.infinite) and isinstance(given, float) and given == math.inf
+            is_left_out = given is None and name in (*_STRAINED, *_STRESSED)
+            if not (name == "connection" or is_infinite or is_left_out):
+                set_fields(self, **{name: described.check(f"harvester.{name}", given)})
+        self._check_material()
         bad, bound = self.start >= self.end, "the layers must begin before their end at {limit}"
         refuse(bad, "harvester.start", self.start, "m", bound, "are the two swapped?", limit=self.end)
+
+    def _check_material(self) -> None:
+        """Refuse constants that are not one set of three, or that no material has."""
+        strained, stressed = ([n for n in names if getattr(self, n) is not None] for names in _SETS)
+        if (strained, stressed) not in (([*_STRAINED], []), ([], [*_STRESSED])):
+            missing = [n for n in (_STRAINED if strained else _STRESSED) if getattr(self, n) is None]
+            name = missing[0] if missing else stressed[0]
+            bound = "the material is given by e31, c11e and eps33s, or by d31, s11e and eps33t"
+            remedy = f"given are {', '.join(strained + stressed) or 'none of them'}"
+            raise InvalidValue(f"harvester.{name}", getattr(self, name), bound, remedy)
+        material = self.material
+        if material.permittivity <= 0:
+            bound = "it must be above {limit}, d31^2/s11e: no material has more coupling"
+            limit = material.coupling * (self.d31 or 0.0)
+            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
 
     @property
     def material(self) -> Material:

@@ -211,9 +211,9 @@ class Scene(OneLine):
     @property
     def is_slender_beam_in_one_plane(self) -> bool:
         """Whether the model is a clamped Euler-Bernoulli beam in one plane, to which some theorems apply."""
-        return (
-            self.physics in _SLENDER and self.mount.root_stiffness == math.inf and not self.beam.point_springs
-        )
+        electrodes = self.beam.electrodes
+        sprung = self.beam.point_springs or (electrodes is not None and math.isinf(electrodes.resistance))
+        return self.physics in _SLENDER and self.mount.root_stiffness == math.inf and not sprung
 
 
 def check_scene(scene: object) -> None:

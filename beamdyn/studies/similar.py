@@ -87,6 +87,7 @@ def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
     lumped = bool(scene.beam.point_masses) and bool(names & _POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
     beyond = scene.mount.precone or scene.beam.point_springs or scene.damping.damps
+    beyond = beyond or scene.beam.electrodes is not None  # layers follow the numbers of the beam beneath them
     return plain and apart and not beyond and not lumped and names <= SIMILAR
 
 

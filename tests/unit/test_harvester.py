@@ -78,13 +78,16 @@ def test_numbers_of_the_layers_and_of_the_bare_beam_are_set_together():
         with_numbers(bd.Scene(STRIP), {"harvester.resistance": 1.0})
 
 
-def test_a_study_of_the_resistance():
-    found = bd.study(SCENE, {"harvester.resistance": [0.0, math.inf]}, speed=20.0, modes=1)
-    short, opened = (
-        bd.natural_modes(with_numbers(SCENE, {"harvester.resistance": r}), 20.0, 1).frequency[0]
-        for r in (0.0, math.inf)
-    )
-    np.testing.assert_allclose(found.outputs["frequency"].ravel(), [short, opened], rtol=1e-9)
+@pytest.mark.parametrize(
+    ("path", "values"),
+    [("harvester.thickness", [1e-4, 2e-4]), ("beam.thickness", [1e-4, 3e-4]), ("mount.radius", [0.1, 0.2])],
+)
+@pytest.mark.parametrize("resistance", [0.0, math.inf])
+def test_studies_solve_each_design_as_by_itself(resistance, path, values):
+    given = with_numbers(SCENE, {"harvester.resistance": resistance})
+    found = bd.study(given, {path: values}, speed=20.0, modes=2)
+    wanted = [bd.natural_modes(with_numbers(given, {path: v}), 20.0, 2).frequency for v in values]
+    np.testing.assert_allclose(found.value, wanted, rtol=1e-9)  # the errors are below that
 
 
 def test_outputs_that_a_circuit_does_not_have_are_refused():
