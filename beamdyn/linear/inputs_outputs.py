@@ -371,7 +371,7 @@ class LayerStrain:
             set_fields(self, position=not_negative("position", self.position, "m"))
 
     def place(self, electrodes: Electrodes, length: float) -> float:
-        """Position x/L within the layers; an InvalidValue beside them."""
+        """Position x/L within the layers; a ValueError beside them."""
         (first, last), given = electrodes.span, self.position
         if given is None:
             return electrodes.inside(0.0)
