@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 _SCENE = "The scene, with a table [harvester]; gravity and its motion excite the beam."
 
 
-@analysis(
-    'beamdyn harvest examples/bimorph.toml --speeds "10:130:61 rad/s"', screen="Harvest", about_scene=_SCENE
-)
+@analysis('beamdyn harvest examples/bimorph.toml --speeds "10:130:61 rad/s"', about_scene=_SCENE)
 def harvest(
     scene: Scene,
     *,
