@@ -96,7 +96,8 @@ class Harvester(FieldsOnly):
     --------
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
     >>> layers = bd.Harvester(0.0002, 7750.0, d31=-171e-12, s11e=1 / 61e9, eps33t=15.33e-9, resistance=1e5)
-    >>> round(float(bd.natural_modes(bd.Scene(layers.on(strip)), modes=1).frequency[0]), 2)  # Hz, short circuit
+    >>> short = bd.natural_modes(bd.Scene(layers.on(strip)), modes=1)
+    >>> round(float(short.frequency[0]), 2)  # Hz, short-circuited
     113.02
     """
 

@@ -178,6 +178,16 @@ def shock(names: Names) -> None:
     assert static < abs(names["run"].tip).max() < 2 * static
 
 
+def harvested_power(names: Names) -> None:
+    """Power peaks beside the resonances of the short circuit, above which the electrodes stiffen the beam."""
+    found, speeds = names["found"], names["speeds"]
+    inner = found.power[1:-1]
+    peaks = speeds[1:-1][(inner > found.power[:-2]) & (inner > found.power[2:])]
+    assert_allclose(peaks, found.resonances, rtol=0.05)
+    assert (peaks > found.resonances).all()
+    assert (found.efficiency < 1).all()
+
+
 def stability_chart(names: Names) -> None:
     """The lowest tongue stands on twice the first frequency, at the amplitude of first-order theory."""
     import beamdyn as bd

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,13 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "bimorph.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 SCENE = bd.load_scene(EXAMPLE)
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
-CERAMIC = {"thickness": 1.5e-4, "density": 7750.0, "e31": -10.4, "c11e": 61e9, "eps33s": 1.33e-8}
+CERAMIC: dict[str, Any] = {
+    "thickness": 1.5e-4,
+    "density": 7750.0,
+    "e31": -10.4,
+    "c11e": 61e9,
+    "eps33s": 1.33e-8,
+}
 
 
 def refused(*parts, beam=STRIP, **changes):
@@ -69,7 +76,9 @@ def test_files_of_open_and_short_circuits():
 def test_numbers_of_the_layers_and_of_the_bare_beam_are_set_together():
     assert number_at(SCENE, "harvester.resistance") == 200e3
     assert number_at(SCENE, "beam.thickness") == 0.0002
-    changed = with_numbers(SCENE, {"harvester.thickness": 2e-4, "beam.thickness": 3e-4, "beam.tip.mass": 2e-3})
+    changed = with_numbers(
+        SCENE, {"harvester.thickness": 2e-4, "beam.thickness": 3e-4, "beam.tip.mass": 2e-3}
+    )
     bare = bd.Beam.rectangular(0.05, 0.01, 3e-4, 200e9, 7850.0, tip=bd.TipMass(2e-3))
     assert SCENE.beam.electrodes is not None
     assert changed.beam == replace(SCENE.beam.electrodes.harvester, thickness=2e-4).on(bare)
@@ -95,7 +104,7 @@ def test_outputs_that_a_circuit_does_not_have_are_refused():
         given = with_numbers(SCENE, {"harvester.resistance": resistance})
         with pytest.raises(ValueError, match="circuit has none"):
             bd.frequency_response(given, 20.0, [10.0], output=output)
-    with pytest.raises(ValueError, match="position = 0.04 m: the layers end at 0.03 m"):
+    with pytest.raises(ValueError, match=r"position = 0\.04 m: the layers end at 0\.03 m"):
         bd.frequency_response(SCENE, 20.0, [10.0], output=bd.LayerStrain(0.04))
     with pytest.raises(ValueError, match="short-circuited"):
         replace(SCENE, physics=bd.Physics(large_deflection=True))
