@@ -2,9 +2,9 @@
 Harvested power over speed
 ==========================
 
-A steel strip between two piezoelectric layers points inward on the rim of a wheel, which rolls over a wavy road.
-Power peaks beside the resonances with the road, and where gravity meets the beam that rotation softens: there the
-strain of the layers sets the limit.
+A steel strip between two piezoelectric layers points inward on the rim of a wheel, which rolls over a wavy
+road. Power peaks beside the resonances with the road, and where gravity meets the beam that rotation softens:
+there the strain of the layers sets the limit.
 """
 
 import matplotlib.pyplot as plt
