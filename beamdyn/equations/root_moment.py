@@ -177,7 +177,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
     kept, M, rigid = _embed(full, equations), full.matrices[2]["unity"], _rotation(full, full.blocks[name])
     moving = kept.any(axis=0)  # all but the coordinate of a circuit
-    share, own = np.zeros(equations.size), kept[:, moving]
+    share, own = np.zeros(equations.size), kept if moving.all() else kept[:, moving]
     share[moving] = np.linalg.solve(own.T @ M @ own, own.T @ M @ rigid)
     rotation = rigid - kept @ share  # minus its projection by the mass on the kept shapes
     length = scene.beam.length  # the slope of the rotation x/L is 1/L

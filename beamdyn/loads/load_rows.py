@@ -124,11 +124,10 @@ def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
 
     The charge of a circuit has no mass, and no part in them.
     """
-    massive = mass.any(axis=0)
-    rows, found = (
-        by_acceleration.reshape(-1, len(mass)),
-        np.zeros((by_acceleration.size // len(mass), len(mass))),
-    )
+    massive, rows = mass.any(axis=0), by_acceleration.reshape(-1, len(mass))
+    if massive.all():
+        return np.linalg.solve(mass.T, rows.T).T.reshape(by_acceleration.shape)
+    found = np.zeros_like(rows)
     found[:, massive] = np.linalg.solve(mass[np.ix_(massive, massive)].T, rows[:, massive].T).T
     return found.reshape(by_acceleration.shape)
 
