@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
 Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # what `Modes.mesh` returns
 
@@ -366,12 +367,11 @@ def warn_of_modes(
         )
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
-        # They are imported here for the time that it takes to import them.
-        from beamdyn.modes.modal.equilibrium import DeflectedSolver
+        # It is imported here for the time that it takes to import it.
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
-        assert isinstance(model.solver, DeflectedSolver)
-        bending = partial(model.solver.elastica.curvature, model.solver.equilibria(speeds))
+        solver = cast("DeflectedSolver", model.solver)
+        bending = partial(solver.elastica.curvature, solver.equilibria(speeds))
         yield from warn_of_suppressed_camber(scene, bending, lambda k: Words("at ", Speeds(speeds[k])))
     else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)

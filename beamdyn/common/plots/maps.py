@@ -251,10 +251,16 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
 
 def _extended(z: np.ndarray) -> np.ndarray:
     """Values with those of the nearest place where there is none."""
+    _, (rows, columns) = _nearest_outside(~np.isfinite(z))
+    return z[rows, columns]
+
+
+def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distances (ny, nx) from the nearest places outside a region, and their indices (2, ny, nx)."""
     from scipy.ndimage import distance_transform_edt
 
-    nearest = distance_transform_edt(~np.isfinite(z), return_distances=False, return_indices=True)
-    return z[tuple(nearest)]  # pyright: ignore[reportArgumentType, reportCallIssue]  (of indices alone)
+    distances, indices = distance_transform_edt(region, return_indices=True)
+    return np.asarray(distances), np.asarray(indices)
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
@@ -305,11 +311,9 @@ def _name_regions(
     ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
 ) -> None:
     """Name each region without an answer in its middle."""
-    from scipy.ndimage import distance_transform_edt
-
     for name in np.unique(why[lacking]).tolist():
         region = lacking & (why == name)
-        depth = np.asarray(distance_transform_edt(np.pad(region, 1)))[1:-1, 1:-1]
+        depth = _nearest_outside(np.pad(region, 1))[0][1:-1, 1:-1]
         deepest = np.argsort(-depth[region], kind="stable")
         rows, columns = (each[deepest] for each in np.nonzero(region))
         labels.add(name, np.stack([x[columns], y[rows]], axis=1), color="0.25", style="italic")

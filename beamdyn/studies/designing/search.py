@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize, toms748
+from scipy.stats.qmc import LatinHypercube
 
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.inputs.designs import VariedInput
@@ -225,8 +226,6 @@ class Search:
         p = len(self.own)
         if p == 1:
             return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]
-        from scipy.stats.qmc import LatinHypercube  # it takes long to load
-
         return np.vstack([self.own, seeded(LatinHypercube, p, seed).random(_SPREAD * p)])
 
     @property
