@@ -101,7 +101,7 @@ def sensitivities(
 
 
 _FACTOR = "factor of a property along the beam"
-Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"]
+Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"]
 
 
 @analysis(
@@ -131,8 +131,8 @@ def study(
     what
         frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the
         speeds at which modes meet lines of the excitation; amplitude, of the tip in steady motion;
-        peak, its largest deflection in a window of time; or strain, the largest along the span in
-        steady motion.
+        peak, its largest deflection in a window of time; strain, the largest along the span in
+        steady motion; or power, the mean that a harvester yields.
     speed
         Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed
         of crossings. Default: the final speed of the scene's motion, or 0 without one.

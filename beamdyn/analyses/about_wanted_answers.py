@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.designing.found_design import FoundDesign
 
 _WORDS = {"frequency": "frequencies", "critical speed": "critical_speed", "resonance speed": "crossings"}
-_WORDS |= {name: name for name in ("amplitude", "peak", "strain")}
+_WORDS |= {name: name for name in ("amplitude", "peak", "strain", "power")}
 _TARGET = re.compile(
     rf"(?P<what>{'|'.join(_WORDS)})(?: (?P<mode>\d+))?(?: with (?P<line>.+?))?(?: at (?P<speed>.+?))?"
     r" *(?:(?P<sign>=|>=|<=) *(?P<value>.+)|(?<= )(?P<best>largest|smallest))"
@@ -60,8 +60,9 @@ def design(
     so_that
         What is wanted, the option once for each: an answer, then =, >= or <= and a value, or largest or
         smallest. Answers are "frequency 1 at 50 rad/s", of the first mode; "critical speed"; "resonance
-        speed 1 with road +", of a mode and a line of the excitation; "amplitude", "peak" and "strain", with
-        "at" and a speed. Without it frequencies are those at rest, and responses those at the final speed.
+        speed 1 with road +", of a mode and a line of the excitation; "amplitude", "peak", "strain" and
+        "power", with "at" and a speed. Without it frequencies are those at rest, and responses those at
+        the final speed.
     seed
         Of the random designs with which a search over several numbers begins.
     write

@@ -21,6 +21,7 @@ from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.numbers import SPEED, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
+from beamdyn.steady.harvest import harvest
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import steady_response
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers
@@ -198,7 +199,10 @@ def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray)
 
 
 def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    """The largest strain along the span, of the stations of the loads, in steady response."""
+    """The largest strain in steady response: of a harvester's layers, or of the stations of the loads."""
+    if scene.beam.electrodes is not None:
+        found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
+        return _at_each(speeds, found, (found.strain, found.strain_error, np.asarray(found.status)), None)
     response = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
     found = steady_loads(response)
     found.check_known("strain")
@@ -206,6 +210,12 @@ def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) ->
     error = np.broadcast_to(found.strain_error, found.strain.shape).max(axis=(1, 2))
     warned = response.is_warned if response.warnings else None
     return _at_each(speeds, found, (largest, error, np.asarray(response.status)), warned)
+
+
+def _answer_power(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
+    found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
+    answer = found.power, found.error * np.abs(found.power), np.asarray(found.status)
+    return _at_each(speeds, found, answer, None)
 
 
 def _answer_peak(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
@@ -247,6 +257,7 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
     "amplitude": _answer_amplitude,
     "peak": _answer_peak,
     "strain": _answer_strain,
+    "power": _answer_power,
 }
 
 

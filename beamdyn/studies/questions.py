@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene
@@ -13,6 +14,11 @@ from beamdyn.studies.resonance_speeds import PossibleCrossing
 OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
 MODES = 3  # number of modes of frequencies and crossings by default
 WINDOW = (20.0, 30.0)  # window of peaks by default [s]
+
+
+What: TypeAlias = Literal[
+    "frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"
+]
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,7 @@ KINDS = {
     "amplitude": Kind("steady amplitude", "m", True, ("speed",), needs_motion=True),
     "peak": Kind("peak", "m", True, ("speed", "window"), needs_motion=True),
     "strain": Kind("largest strain", "", True, ("speed",), needs_motion=True),
+    "power": Kind("mean power", "W", True, ("speed",), needs_motion=True),
 }
 OPTIONS = {what: kind.options for what, kind in KINDS.items()}
 

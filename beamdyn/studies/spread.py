@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from os import PathLike
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from beamdyn.scene.numbers import SCALE, SPEED, check_path, number_at, unit_of, 
 from beamdyn.scene.rectangle import SECTION_UNITS
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.one_by_one import left_out_of_design
-from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion
+from beamdyn.studies.questions import KINDS, OPTIONS, StudyQuestion, What
 from beamdyn.studies.sensitivities.sensitivities import (
     critical_speed_sensitivities,
     crossing_sensitivities,
@@ -128,9 +128,7 @@ _REMEDY = 'give a dictionary, such as {"beam.thickness": "+-2%", "mount.radius":
 def spread(
     scene: Scene,
     inputs: Mapping[str, str | tolerances.Distribution],
-    what: Literal[
-        "frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"
-    ] = "frequencies",
+    what: What = "frequencies",
     *,
     samples: int = DEFAULT_SAMPLES,
     seed: int = 0,
@@ -159,7 +157,7 @@ def spread(
         the scene's value, within which all values are as likely; "sd 1%", normally distributed with this
         standard deviation; without the percent sign numbers in SI, also "1.9e-4 to 2.1e-4"; or
         `Uniform(low, high)`, `Normal(mean, deviation)` in SI.
-    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"}
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
         The answer, as of `study`.
     samples : int
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from

@@ -29,7 +29,7 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out
 from beamdyn.studies.answers import REFUSED, AnswerArrays, DesignAnswers
 from beamdyn.studies.batched import critical_speeds_of, frequencies_of
 from beamdyn.studies.one_by_one import SingleDesigns
-from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion
+from beamdyn.studies.questions import KINDS, MODES, OPTIONS, WINDOW, StudyQuestion, What
 from beamdyn.studies.resonance_speeds import crossings_of, list_resonances
 from beamdyn.studies.similar import Nodes, SimilarDesigns, differ_in_numbers_only, nodes_of
 from beamdyn.studies.study_result import Study
@@ -50,9 +50,7 @@ _MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest v
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
-    what: Literal[
-        "frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"
-    ] = "frequencies",
+    what: What = "frequencies",
     *,
     speed: float | None = None,
     modes: int | None = None,
@@ -82,10 +80,11 @@ def study(
         the motion, of amplitudes and peaks, such as "motion.road.wavelength"; and
         "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
         Sides and material are those of a rectangular section.
-    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain"}
+    what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
         The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
         meets each line of the excitation; the steady amplitude of the tip; its largest deflection in a
-        window of time, of a run from rest; or the largest strain along the span in steady motion.
+        window of time, of a run from rest; the largest strain along the span in steady motion, of the
+        layers where the beam carries a harvester; or the mean power that these harvest.
     speed : float, optional
         Speed of frequencies, amplitudes and peaks where it is not varied, and top speed of crossings
         [rad/s]; if not given, 0 for frequencies, else the final speed of the motion.
@@ -144,7 +143,9 @@ def study(
     # Numbers of the motion matter where the answer is that of one motion.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
-        bound = f"only amplitudes, peaks and strains are studied over numbers of the motion, not {what}"
+        bound = (
+            f"only amplitudes, peaks, strains and power are studied over numbers of the motion, not {what}"
+        )
         raise checks.InvalidValue("vary", name, bound, "ask for one of these, or vary other inputs")
     question = StudyQuestion(
         scene, what, at, modes, discretization, tolerance, check_window(WINDOW if window is None else window)

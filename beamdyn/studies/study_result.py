@@ -46,8 +46,8 @@ class Study(StatesModelError):
     Parameters
     ----------
     what : str
-        What was asked for: "frequencies", "critical_speed", "crossings", "amplitude", "peak" or
-        "strain".
+        What was asked for: "frequencies", "critical_speed", "crossings", "amplitude", "peak",
+        "strain" or "power".
     unit : str
         Unit of the answer.
     inputs : tuple of VariedInput
@@ -60,7 +60,7 @@ class Study(StatesModelError):
     value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
         Frequencies of m modes [Hz], nan where a mode does not vibrate; critical speeds [rad/s], inf where
         the beam does not buckle; resonance speeds [rad/s], nan where a mode meets a line at none up to the
-        top speed; steady amplitudes or peaks [m], or strains, nan where there is none.
+        top speed; steady amplitudes or peaks [m], strains or power [W], nan where there is none.
     error : ndarray, of the same shape
         Estimated relative error; inf where unresolved.
     status : ndarray of str, of the same shape

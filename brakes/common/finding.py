@@ -58,7 +58,8 @@ def find(
     why : callable, optional
         ``why(x)``: why there is no answer at an input, in a sentence.
     rounding : float
-        By how much the wanted value may be rounded: a level answer as near to it is what is wanted.
+        By how much the wanted value may be rounded [unit of the answer]: a level answer as near to it is
+        what is wanted.
 
     Returns
     -------

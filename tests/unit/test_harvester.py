@@ -99,6 +99,20 @@ def test_studies_solve_each_design_as_by_itself(resistance, path, values):
     np.testing.assert_allclose(found.value, wanted, rtol=1e-9)  # the errors are below that
 
 
+def test_studies_ask_for_power_and_strain_of_the_layers():
+    vary = {"harvester.resistance": [1e5, 3e5]}
+    alone = [bd.harvest(with_numbers(SCENE, {"harvester.resistance": r}), [60.0]) for r in (1e5, 3e5)]
+    for what in ("power", "strain"):
+        found = bd.study(SCENE, vary, what, speed=60.0)
+        expected = np.concatenate([getattr(each, what) for each in alone])
+        np.testing.assert_allclose(found.value, expected, rtol=1e-12)  # the same calls
+
+
+def test_a_study_of_power_without_layers_is_refused():
+    with pytest.raises(ValueError, match="the beam carries no piezoelectric layers"):
+        bd.study(replace(SCENE, beam=STRIP), {"mount.radius": [0.2]}, "power", speed=60.0)
+
+
 def test_outputs_that_a_circuit_does_not_have_are_refused():
     for resistance, output in ((0.0, "voltage"), (math.inf, "current")):
         given = with_numbers(SCENE, {"harvester.resistance": resistance})

@@ -297,7 +297,7 @@ def test_numbers_of_a_rotation_of_a_wheel_are_inputs():
             "frequencies",
             "motion.road.wavelength",
             [0.1],
-            "only amplitudes, peaks and strains are studied over",
+            "only amplitudes, peaks, strains and power are studied over",
         ),
         ("crossings", "motion.rolling_radius", [0.1], "ask for one of these"),
         ("amplitude", "motion.rotation.speed", [0.1], "unknown input"),

@@ -47,7 +47,7 @@ def design(
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is used for crossings, amplitudes, peaks and strains.
+        The scene; its motion is used for crossings, amplitudes, peaks, strains and power.
     free : mapping of str to pair of float or None
         The numbers by their names in scene files, such as "beam.thickness", at most 6, each with its
         least and largest value [SI], or None for half and twice that of the scene.

@@ -37,7 +37,7 @@ class Target:
     ----------
     what : str
         The answer, as for `study`: "frequencies" [Hz], "critical_speed" or "crossings" [rad/s],
-        "amplitude" or "peak" [m], or "strain".
+        "amplitude" or "peak" [m], "strain", or "power" [W].
     equals : float, optional
         The wanted value [unit of the answer].
     at_least, at_most : float, optional
