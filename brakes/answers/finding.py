@@ -123,7 +123,7 @@ def _in_si(quantity: Quantity, value: float, unit: str) -> float:
 def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:
     """A result, the value that it is to have and half of its last digit [its unit], and the value's text."""
     name, equals, amount = (part.strip() for part in text.partition("="))
-    output, *more = chosen(outputs, name, SO_THAT)
+    output, *more = chosen(outputs, name if equals else re.split(r"[^\w.]", name)[0], SO_THAT)
     form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'
     if not equals or more:
         raise ValueError(f'{SO_THAT} = "{text}": {form}')

@@ -148,8 +148,10 @@ class ForkliftAnswer(Answer):
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
         """The sentences of each design that has any, by row."""
+        fade = None if self.pedal is None else self.pedal.fade
+        hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
-        return stop | ({} if self.forces is None else self.forces.messages_of_cases(count))
+        return hot | stop | ({} if self.forces is None else self.forces.messages_of_cases(count))
 
     @property
     def error(self) -> Any:

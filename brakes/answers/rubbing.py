@@ -73,8 +73,9 @@ class RubbingAnswer(Answer):
         return (*locks, *(() if self.fade is None else self.fade.refusals))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """A sentence on each design whose brake locks, by row."""
-        return self.result.messages_of_locked(count)
+        """A sentence on each design whose brake locks, or of which a stop does not end, by row."""
+        hot = {} if self.fade is None else self.fade.messages_of_cases(count)
+        return hot | self.result.messages_of_locked(count)
 
     def again(self, brake: Any = None, **changed: Any) -> Any:
         """The result of the same force, with another brake, friction or direction."""

@@ -20,6 +20,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.heat import warn_of_pv
 from brakes.vehicle import Stop
 
 BRAKES = 2  # that share the energy
@@ -113,12 +114,7 @@ class Heat(Result):
     @property
     def warnings(self) -> tuple[str, ...]:
         """A sentence if pressure times speed is above the linings' limit."""
-        most = None if self.drums is None else self.drums.most_pv
-        if most is None or not np.any(self.lining_pv > np.asarray(most)):
-            return ()
-        highest, least = float(np.nanmax(self.lining_pv)), float(np.min(most))
-        said = f"pressure times rubbing speed of the linings reaches {highest / 1e6:.4g} MW/m2"
-        return (f"{said}, above most_pv = {least / 1e6:.4g} MW/m2",)
+        return warn_of_pv(self.lining_pv, None if self.drums is None else self.drums.most_pv)
 
 
 def heat_of_stop(

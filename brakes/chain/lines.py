@@ -136,7 +136,9 @@ class BrakeCable:
     actuator_travel: Annotated[
         Numbers, Described("m", "s_w", "travel of each actuator until the linings press", least=0)
     ] = 0.0
-    brakes: Annotated[Numbers, Described("", "n", "actuators that the cable pulls at", least=1)] = 2.0
+    brakes: Annotated[
+        Numbers, Described("", "n", "actuators that the cable pulls at", least=1, whole=True)
+    ] = 2.0
     lost_travel: Annotated[Numbers, Described("m", "s_0", "slack of the cable", least=0)] = 0.0
     stretch: Annotated[Numbers, Described("m/N", "", "travel by stretch, over the force", least=0)] = 0.0
 

@@ -27,7 +27,7 @@ class WheelBrakes:
     Raises
     ------
     ValueError
-        If a value is not positive.
+        If a value is not positive, or the number of brakes is not whole.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class WheelBrakes:
     c_star: Annotated[Numbers, Described("", "C*", "torque over actuator's force times drum radius", above=0)]
     drum_radius: Annotated[Numbers, Described("m", "r", "radius at which the linings rub", above=0)]
     wheel_radius: Annotated[Numbers, Described("m", "r_w", "radius of the braked wheels", above=0)]
-    number: Annotated[Numbers, Described("", "n", "number of brakes", least=1)] = 2.0
+    number: Annotated[Numbers, Described("", "n", "number of brakes", least=1, whole=True)] = 2.0
 
     def __post_init__(self) -> None:
         keep_checked(self)

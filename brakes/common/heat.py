@@ -223,25 +223,41 @@ class Fade(Result):
     @property
     def refusals(self) -> tuple[str, ...]:
         """A sentence if a stop does not end, or is hotter than the curve says."""
-        found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         if np.ndim(self.status) == 0:
-            return tuple(words for _, words in found)
+            return tuple(self.messages_of_cases(1).values())
+        found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
+
+    def messages_of_cases(self, count: int) -> dict[int, str]:
+        """Which stop of a case has no answer, and why, of as many cases, by their rows."""
+        status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
+        ended = np.isfinite(self.end).reshape(len(self.end), -1)
+        first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))
+        return {
+            i: (f"stop {first[i]} of {stops[i]:g}: " if stops[i] > 1 else "") + _WORDS[status[i]]
+            for i in np.flatnonzero(status != "stops").tolist()
+        }
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """A sentence if pressure times speed is above its limit."""
-        most = self.duty.most_pv
-        if most is None or not np.any(self.pv > np.asarray(most)):
-            return ()
-        highest, least = float(np.nanmax(self.pv)), float(np.min(most))
-        said = f"pressure times rubbing speed of the lining reaches {highest / 1e6:.4g} MW/m2"
-        return (f"{said}, above most_pv = {least / 1e6:.4g} MW/m2",)
+        return warn_of_pv(self.pv, self.duty.most_pv)
+
+
+def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
+    """A sentence if pressure times rubbing speed [W/m2] is above its limit in any case: of those alone."""
+    if most is None or not np.any(above := np.greater(pv, most)):
+        return ()
+    highest, least = (
+        float(end(np.broadcast_to(x, above.shape)[above])) / 1e6 for end, x in ((np.max, pv), (np.min, most))
+    )
+    said = f"pressure times rubbing speed of the linings reaches {highest:.4g} MW/m2"
+    return (f"{said}, above most_pv = {least:.4g} MW/m2",)
 
 
 _WORDS = {
     "never stops": "the brake gives less than load_torque or a slope, at once or by fading: it never stops",
-    "too hot": "a stop gets hotter than the last temperature of friction_curve: give more of the curve",
+    "too hot": "the brake gets hotter than the last temperature of friction_curve: give more of the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
 

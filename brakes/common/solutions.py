@@ -223,13 +223,13 @@ class WholeSolutions(Solutions):
     """All whole numbers between two bounds at which an answer has a wanted value, or has just passed it.
 
     Each number is tried. `values` are those whose answer is the wanted one; and where it lies between the
-    answers of two numbers side by side, the second of them, the least that meets it.
+    answers of two numbers side by side, the second of them, the first past it.
 
     Examples
     --------
     >>> found = brakes.find_whole(lambda n: 87.5 * n, 300.0, range(1, 11))
     >>> found.message
-    'answer passes 300 from input = 3 (262.5) to 4 (350): 4 is the least that meets it'
+    'answer passes 300 from input = 3 (262.5) to 4 (350): 4 is the first past it'
     """
 
     @property
@@ -248,5 +248,4 @@ class WholeSolutions(Solutions):
         (before, now), (first, last) = self.samples[k - 1 : k + 1], self.answers[k - 1 : k + 1]
         steps = f"{self._input(before)} ({self._output(first)}) to {self._input(now)} ({self._output(last)})"
         where = f"from {self.input} = {steps}"
-        least = f"{self._input(now)} is the least that meets it"
-        return f"{self.output} passes {self._target} {where}: {least}"
+        return f"{self.output} passes {self._target} {where}: {self._input(now)} is the first past it"

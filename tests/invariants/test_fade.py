@@ -114,6 +114,37 @@ def test_cases_together_are_those_one_by_one():
             np.testing.assert_allclose(getattr(both, name)[k], getattr(one, name), rtol=1e-14)
 
 
+def test_the_stop_that_does_not_end_is_named():
+    """Alone and among other cases, with its number if there are several."""
+    curve = [[293.15, 0.4], [393.15, 0.15]]
+    stops = np.array([2.0, 9.0, 1.0])
+    duty = drum.Duty(20.0, np.array([50.0, 50.0, 500.0]), 5.0, stops=stops, friction_curve=curve)
+    found = drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu)
+    assert found.status.tolist() == ["stops", "stops", "too hot"]
+    assert list(found.messages_of_cases(3)) == [2]
+    assert found.messages_of_cases(3)[2].startswith("the brake gets hotter")  # of a single stop no number
+    faded = drum.repeat_stops(replace(duty, load_torque=200.0), 0.4, lambda mu: 1000.0 * mu)
+    said = faded.messages_of_cases(3)
+    assert list(said) == [1, 2] and "never stops" in said[1]
+    for k in (1, 2):
+        alone = drum.repeat_stops(
+            replace(duty, speed=duty.speed[k], stops=stops[k], load_torque=200.0), 0.4, lambda mu: 1000.0 * mu
+        )
+        assert alone.refusals == (said[k],)
+    ended = np.isfinite(faded.end[:, 1])
+    assert said[1].startswith(f"stop {ended.sum() + 1} of 9: ") and 1 <= ended.sum() < 8
+
+
+def test_pressure_times_speed_is_compared_case_by_case():
+    """A case that keeps its limit lends neither its product nor its limit to the sentence."""
+    duty = drum.Duty(20.0, 50.0, 5.0, most_pv=np.array([20e6, 4e6, 30e6]))
+    found = drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu, pv=np.array([10e6, 5e6, np.nan]))
+    assert found.warnings == (
+        "pressure times rubbing speed of the linings reaches 5 MW/m2, above most_pv = 4 MW/m2",
+    )
+    assert replace(found, pv=np.array([1e6, 1e6, np.nan])).warnings == ()
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

@@ -163,6 +163,8 @@ def test_a_brake_that_locks_has_no_answer_alone_and_in_a_sweep(run, forklift, tm
         ("front_share = 1 ", "front_share = 60 ", "60 % is 0.6"),
         ("[brakes]\nc_star = 4.6", "# none\n#", "go together"),
         ("\n[cable]\n", f"\n{LINE}\n[cable]\n", "do not go together"),
+        ("\n[cable]\n", "\n[cable]\nbrakes = 1.5\n", "cable.brakes = 1.5: it must be a whole number"),
+        ("\n[brakes]\n", "\n[brakes]\nnumber = 1.5\n", "brakes.number = 1.5: it must be a whole number"),
         ("[road]", f"{BARE}\n[road]", "either [truck]"),
         ('travel = "300 mm"', 'travel = "100 mm"', "needs a travel of 192 mm"),
     ],
@@ -272,7 +274,7 @@ def test_forklift_with_a_duty_fades(run, forklift):
 @pytest.mark.parametrize(
     ("replaced", "code", "said"),
     [
-        (('["200 degC", 0.2]', '["45 degC", 0.29]'), 1, "a stop gets hotter than the last temperature"),
+        (('["200 degC", 0.2]', '["45 degC", 0.29]'), 1, "the brake gets hotter than the last temperature"),
         (('["200 degC", 0.2]', '["60 degC", 0.01]'), 1, "by fading: it never stops"),
         (('[drums]\ndrum_mass = "18 kg"\nlining_area = "500 cm2"\n', ""), 2, "[heat] goes with [drums]"),
     ],

@@ -134,7 +134,7 @@ friction_curve = [["20 degC", 0.2], ["60 degC", 0.15]]
         (
             ("stops = 3", "stops = 3"),
             NO_ANSWER,
-            "a stop gets hotter than the last temperature of friction_curve",
+            "stop 3 of 3: the brake gets hotter than the last temperature of friction_curve",
         ),
         (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "the brake gives less than load_torque"),
         (
@@ -155,3 +155,19 @@ def test_heat_of_stops(answer, changed, code, said):
     assert found == code and said in " ".join(err.split())
     if code == DONE:
         assert "hottest, above the surroundings" in out and "Stop by stop" in out
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--vary", "heat.heated_mass=5,50 kg", "--what", "hottest"),
+        ("--find", "heat.heated_mass=5:50:9 kg", "--so-that", "hottest = 20 K"),
+    ],
+)
+def test_a_design_that_gets_too_hot_says_so(options, tmp_path, capsys):
+    file = tmp_path / "band.toml"
+    text = (EXAMPLES / "band.toml").read_text()
+    file.write_text(text.replace('force = "200 N"', 'force = "200 N"' + HEAT))
+    assert main(["band", str(file), *options]) == DONE
+    said = " ".join(capsys.readouterr().out.split())
+    assert " of 3: the brake gets hotter than the last temperature" in said
