@@ -309,8 +309,11 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
 
 
 def _level_edge(answers: _Answers, level: float, inside: float, outside: float) -> float:
-    """Where answers that are level begin or cease to be so."""
-    return _edge(lambda x: step(level, answers(x)) == 0, inside, outside)[0]
+    """Where answers that are level begin or cease to be so.
+
+    The edge has half of the rounding that is allowed: the piece is level beside its other end, too.
+    """
+    return _edge(lambda x: step(level, answers(x), 0.5) == 0, inside, outside)[0]
 
 
 def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:

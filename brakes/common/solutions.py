@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 _LEVEL = 1e-12  # relative difference of two answers that is rounding
 
 
-def step(first: np.ndarray | float, last: np.ndarray | float) -> np.ndarray:
-    """Sign of the way from one answer to another; 0 if that is rounding."""
-    size = _LEVEL * np.maximum(np.abs(first), np.abs(last))
+def step(first: np.ndarray | float, last: np.ndarray | float, part: float = 1.0) -> np.ndarray:
+    """Sign of the way from one answer to another; 0 if that is rounding, or less than a part of the most."""
+    size = part * _LEVEL * np.maximum(np.abs(first), np.abs(last))
     return np.sign(np.where(np.abs(np.subtract(last, first)) <= size, 0.0, np.subtract(last, first)))
 
 

@@ -148,6 +148,21 @@ def run(capsys, *arguments):
     return code, " ".join(shown.out.split()), " ".join(shown.err.split())
 
 
+@pytest.mark.parametrize("phase", np.linspace(0.0, 6.0, 13))
+@pytest.mark.parametrize("way", [1, -1])
+def test_no_rounding_makes_a_level_answer_rise(phase, way):
+    """The value at the edge of a level piece is as far from the level as rounding may be, the others are not."""
+
+    def answer(x):
+        return np.minimum(way * (x - 2.0), 0.0) + 2.0 + 2e-13 * np.sin(1e5 * x + phase)
+
+    found = brakes.find(answer, 2.0, SAMPLES)
+    assert found.values.size == 0
+    span = [2.0, SAMPLES[-1]] if way == 1 else [SAMPLES[0], 2.0]
+    np.testing.assert_allclose(found.ranges, [span], rtol=2e-12)
+    assert "is level" in {piece.course for piece in found.pieces}
+
+
 @pytest.mark.slow
 def test_command_finds_a_diameter_for_a_torque(capsys):
     code, out, _ = run(
