@@ -434,6 +434,6 @@ def _warnings(levers: Levers, friction: np.ndarray, lining: Numbers | None) -> l
         if abs(worst - 1) > _FRICTION_DIFFERS:
             sentences.append(
                 f"the torque needs {worst:.3g} times the friction that the lining has: the forces are not "
-                "those of this lining; leave out the torque"
+                "those of this lining; leave out the torque, or the stop that it comes from"
             )
     return sentences

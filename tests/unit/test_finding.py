@@ -151,7 +151,7 @@ def run(capsys, *arguments):
 @pytest.mark.parametrize("phase", np.linspace(0.0, 6.0, 13))
 @pytest.mark.parametrize("way", [1, -1])
 def test_no_rounding_makes_a_level_answer_rise(phase, way):
-    """The value at the edge of a level piece is as far from the level as rounding may be, the others are not."""
+    """The value at the edge of a level piece is half as far from the level as rounding may be."""
 
     def answer(x):
         return np.minimum(way * (x - 2.0), 0.0) + 2.0 + 2e-13 * np.sin(1e5 * x + phase)
