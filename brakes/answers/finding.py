@@ -107,7 +107,7 @@ class _Designs:
             return str(error).partition(": ")[2] or str(error)
         said = dict((*made.refused, *made.unanswered)).get(0)
         words = self.output.words.removeprefix("... ")
-        return said or (f"{words}: without end" if np.isinf(made.found[0][0]) else f"there is no {words}")
+        return said or (f"{words}: never" if np.isinf(made.found[0][0]) else f"there is no {words}")
 
     def _sweep(self, x: np.ndarray) -> Any:
         axis = self.axis

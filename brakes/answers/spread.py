@@ -95,9 +95,10 @@ def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, 
 
 def _check_reach(entry: Input, given: SpreadInput) -> None:
     """Refuse a tolerance that reaches beyond the bounds of an input."""
+    in_unit = "1 deg" if entry.quantity.unit == "rad" else None  # in which people read the bounds
     for end in given.distribution.reach:
         try:
-            entry.quantity.within_bounds(end, end)
+            entry.quantity.within_bounds(in_unit or end, end)
         except InvalidInput as error:
             said = f", which {given.text} reaches"
             raise InvalidValue(

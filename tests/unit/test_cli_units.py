@@ -102,6 +102,13 @@ def test_the_spread_of_a_brake_is_refused_in_the_unit_of_its_tolerance(capsys):
     assert "run.finger = -495.921 kgf, which +-500 kgf reaches" in " ".join(capsys.readouterr().err.split())
 
 
+def test_the_bounds_of_an_angle_that_a_spread_passes_are_in_degrees(capsys):
+    vehicle = TYRE.with_name("vehicle.toml")
+    assert brakes(["vehicle", str(vehicle), "--spread", "road.slope=1 deg to 50 deg"]) == BAD_INPUT
+    said = " ".join(capsys.readouterr().err.split())
+    assert "reaches: it must be at least 0, at most 45 deg; give a smaller spread" in said
+
+
 def test_a_size_below_all_bounds_is_told_the_bound_in_its_unit(tmp_path, capsys):
     small = TYRE.read_text("utf-8").replace('"50 mm"', '"1e-60 mm"')
     (tmp_path / "small.toml").write_text(small)

@@ -199,6 +199,7 @@ def test_command_finds_a_diameter_for_a_torque(capsys):
             "at most 14.6061 deg, at any road.",
         ),
         (("band", "friction", "torque = 1 N m"), 1, "no answer from 0.330953 to 2: locked"),
+        (("vehicle", "lever.force", "rolling_slope_front = 45 deg"), 0, "past, front downhill: never"),
         (("cone", "friction", "torque = 100 N m"), 1, "torque is 200 N m whatever brake.friction is"),
         (("plates", "plates.faces", "torque = 300 N m"), 0, "13 is the first past it"),
         (("plates", "plates.faces=2:5:2", "torque = 300 N m"), 1, "at most 120 N m, at plates.faces = 5"),
