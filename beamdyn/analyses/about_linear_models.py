@@ -206,7 +206,7 @@ Output = Annotated[
     AsText(lambda _, text, __: parse_output(text), default="tip"),
     Parameter(
         help="tip, tip across, tip acceleration, root moment, root strain; deflection@20 mm, "
-        "acceleration@20 mm."
+        "acceleration@20 mm; of a harvester voltage, current, layer strain."
     ),
 ]
 

@@ -162,7 +162,8 @@ def frequency_response(
         accelerations of the base [m/s2], "tip force" and "tip force across" are forces [N].
     output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
         What is observed.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
-        "root strain".
+        "root strain".  Of a harvester, HarvestedVoltage, HarvestedCurrent or LayerStrain: "voltage",
+        "current" or "layer strain".
     modes : int, "auto" or None
         Number of modes at the speed of each set of coupled fields; "auto": all functions of the
         discretization up to 300 of them, else the fewest modes with which the truncation error meets the

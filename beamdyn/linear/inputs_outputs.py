@@ -376,8 +376,9 @@ class LayerStrain:
         if given is None:
             return electrodes.inside(0.0)
         beside = not first * (1 - 1e-12) <= given / length <= last * (1 + 1e-12)
-        bound = "the layers end at {limit}"
-        refuse(beside, "position", given, "m", bound, "give a place on them", limit=last * length)
+        bound, limit = ("begin", first) if given / length < first else ("end", last)
+        bound = f"the layers {bound} at {{limit}}"
+        refuse(beside, "position", given, "m", bound, "give a place on them", limit=limit * length)
         return electrodes.inside((given / length - first) / (last - first))
 
 

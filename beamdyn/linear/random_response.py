@@ -145,7 +145,7 @@ def random_response(
     input : BaseMotion, PointForce or str, optional
         As for `frequency_response`; that of a road is "n2".
     output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        As for `frequency_response`.
+        As for `frequency_response`, those of a harvester among them.
     frequencies : sequence of float, optional
         Frequencies at which the density of the response is computed [Hz], ascending from 0 or more; by
         default those of the input, and so dense about resonances that straight lines between the densities

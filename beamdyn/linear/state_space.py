@@ -90,7 +90,7 @@ def state_space(
     inputs : sequence of BaseMotion, PointForce or str, optional
         As for `matrices`.
     outputs : sequence of DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        As for `frequency_response`.
+        As for `frequency_response`, those of a harvester among them.
     modes : int or None
         Number of modes at this speed of each set of coupled fields; None keeps all functions.
     discretization : {"ritz", "fem"} or Discretization

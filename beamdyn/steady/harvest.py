@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import InvalidValue, real
+from beamdyn.common.inputs.checks import BeyondModel, InvalidValue, real
 from beamdyn.common.plots.plots import plot_harvest
 from beamdyn.common.results.one_line import error_at_most, number, states, warned
 from beamdyn.common.results.result import Provenance
@@ -65,7 +65,8 @@ class Harvest(JudgedByRepeating):
     amplitude : ndarray, shape (S,)
         Largest tip deflection [m].
     error : ndarray, shape (S,)
-        Estimated relative error of the power: by the harmonics and the modes left out.
+        Estimated relative error of the power, or without a load of the voltage or current: by the harmonics
+        and the modes left out.
     strain_error : ndarray, shape (S,)
         Estimated error of the strain by the modes left out.
     status : ndarray of str, shape (S,)
@@ -193,8 +194,7 @@ def harvest(
     relative, of_strain = np.full((2, len(response.speeds)), np.inf)
     if finer is not None:
         better = _Powers.of(finer.request)
-        scale = np.where(own.power == 0, 1.0, own.power)
-        relative = _DISTANCE * np.abs(better.power - own.power) / scale
+        relative = _DISTANCE * own.apart(better)
         of_strain = _DISTANCE * np.abs(better.strain - own.strain)
     values = {name: np.where(response.stable, each, np.nan) for name, each in vars(own).items()}
     warnings = (*response.warnings, *_warn_of_strain(values["strain"], response.speeds, electrodes))
@@ -285,6 +285,14 @@ class _Powers:
             truncation=truncation,
         )
 
+    def apart(self, other: _Powers) -> np.ndarray:
+        """Relative distance (S,) in power, or without a load in voltage or current; 0 where nothing flows."""
+        found = np.zeros(len(self.power))
+        for name in ("current", "voltage", "power"):
+            own, its = getattr(self, name), getattr(other, name)
+            np.divide(np.abs(its - own), own, out=found, where=own != 0)
+        return found
+
 
 # The best resistance ------------------------------------------------------------------------------
 
@@ -319,7 +327,7 @@ def best_resistance(
     Raises
     ------
     ValueError
-        As `harvest`; or if nothing vibrates at that speed.
+        As `harvest`; or if there is no steady response at that speed, or no power by any resistance.
 
     References
     ----------
@@ -335,7 +343,10 @@ def best_resistance(
     electrodes = _electrodes_of(scene)
     speed = real("speed", speed, "rad/s")
     loaded = with_resistance(scene, 1.0)
-    request = steady_response(loaded, [speed], modes, None, tolerance, discretization).request
+    response = steady_response(loaded, [speed], modes, None, tolerance, discretization)
+    if not response.stable[0]:
+        raise BeyondModel("speed", speed, f"{response.status[0]}: no steady response", "", "rad/s")
+    request = response.request
     request = replace(request, discretization=request.model.discretization)
     first = math.sqrt(request.model.solver.lowest_at_rest)
     middle = math.log10(1 / (first * electrodes.capacitance(scene.beam.length)))
@@ -349,6 +360,8 @@ def best_resistance(
     k = int(np.argmin(lowest))
     if not lowest[k] < 0:
         bound, remedy = "nothing vibrates at this speed", "give gravity, or a wavy road"
+        if electrodes.coupling == 0:
+            bound, remedy = "the layers do not couple: no voltage follows", "give e31 or d31"
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
     bounds = grid[max(k - 1, 0)], grid[min(k + 1, _GRID - 1)]
     best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": _TOLERANCE / 3})

@@ -81,7 +81,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     if len(rows):
         R, n = R[rows], system.size  # columns of equal action make |V| symmetric
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
-        V = [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic]
+        V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
         shift, damped = np.zeros((len(rows), sigma.shape[1])), np.flatnonzero(rate[rows])
         shift[damped] = free[damped].second_order_shift()
@@ -125,6 +125,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
     S, n = len(K), system.size
     K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
+    w = np.where(w == 0, 1.0, w)  # a circuit that nothing couples has no stiffness
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
     periodic = []
@@ -148,6 +149,22 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
     sigma = np.concatenate([root, -root], axis=1)
     shapes = np.tile(modes.shapes, 2)
     return sigma, np.concatenate([A[:, :1, n, None] * shapes, sigma[:, None] * shapes], axis=1)
+
+
+def _balance(
+    sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Scale the modes that decay without oscillation to act on others as much as these act on them.
+
+    By the scale of those that oscillate, the slow decay of a circuit with a large resistance would act on all
+    others by discs that grow with that resistance.
+    """
+    parts = (np.abs(f).sum(axis=(1, 2))[:, None, None] * np.abs(v) for f, v in V)
+    size = reduce(np.add, parts) * (1 - np.eye(sigma.shape[1]))
+    felt, acts = size.sum(axis=2), size.sum(axis=1)
+    scaled = (np.imag(sigma) == 0) & (felt > 0) & (acts > 0)
+    d = np.sqrt(np.where(scaled, felt, 1.0) / np.where(scaled, acts, 1.0))
+    return [(f, v * d[:, None, :] / d[:, :, None]) for f, v in V]
 
 
 # Which modes and harmonics resonate -----------------------------------------------------------------

@@ -120,6 +120,9 @@ def test_outputs_that_a_circuit_does_not_have_are_refused():
             bd.frequency_response(given, 20.0, [10.0], output=output)
     with pytest.raises(ValueError, match=r"position = 0\.04 m: the layers end at 0\.03 m"):
         bd.frequency_response(SCENE, 20.0, [10.0], output=bd.LayerStrain(0.04))
+    beside = with_numbers(SCENE, {"harvester.start": 0.02})
+    with pytest.raises(ValueError, match=r"position = 0\.01 m: the layers begin at 0\.02 m"):
+        bd.frequency_response(beside, 20.0, [10.0], output=bd.LayerStrain(0.01))
     with pytest.raises(ValueError, match="short-circuited"):
         replace(SCENE, physics=bd.Physics(large_deflection=True))
 
@@ -136,6 +139,55 @@ def test_nothing_vibrates_without_gravity_and_road():
     assert bd.harvest(still, [20.0], modes=1).power[0] == 0
     with pytest.raises(ValueError, match="nothing vibrates"):
         bd.best_resistance(still, 20.0, modes=1)
+
+
+def test_a_resistance_that_hardly_conducts_takes_no_longer_than_an_open_circuit():
+    """The slow decay of its charge is no state that resonates with the vibration."""
+    found = [
+        bd.harvest(with_numbers(SCENE, {"harvester.resistance": each}), [50.0], modes=3)
+        for each in (1e15, math.inf)
+    ]
+    assert found[0].status[0] == "stable" and not found[0].warnings
+    assert found[0].voltage[0] == pytest.approx(found[1].voltage[0], rel=3e-4)
+
+
+@pytest.mark.parametrize(("resistance", "name"), [(0.0, "current"), (math.inf, "voltage")])
+def test_without_a_load_the_error_is_that_of_the_voltage_or_current(resistance, name):
+    scene = with_numbers(SCENE, {"harvester.resistance": resistance})
+    few, many = (bd.harvest(scene, [50.0], modes=each) for each in (1, 12))
+    apart = abs(getattr(few, name)[0] / getattr(many, name)[0] - 1)
+    assert 5e-4 < apart < few.error[0] < 5 * apart
+
+
+def test_layers_that_do_not_couple_harvest_nothing():
+    with np.errstate(all="raise"):
+        scene = with_numbers(SCENE, {"harvester.d31": 0.0})
+        found = bd.harvest(scene, [50.0], modes=2)
+        assert found.power[0] == 0 and found.amplitude[0] > 0
+        with pytest.raises(ValueError, match="do not couple"):
+            bd.best_resistance(scene, 50.0, modes=2)
+
+
+def test_past_the_critical_speed_no_resistance_is_best():
+    with pytest.raises(ValueError, match=r"speed = 300 rad/s: past the critical speed"):
+        bd.best_resistance(SCENE, 300.0, modes=2)
+    assert main(["best-resistance", str(EXAMPLE), "--speed", "300 rad/s"]) == 1
+
+
+def test_sensitivities_of_a_scene_with_layers(capsys):
+    """By the coupling, which is negative, and by a begin at 0; the load changes no natural mode."""
+    given = with_numbers(SCENE, {"harvester.resistance": math.inf, "harvester.start": 0.005})
+    found = bd.frequency_sensitivities(given, modes=1)
+    names = [each.name for each in found.inputs]
+    assert "harvester.resistance" not in names and "harvester.strain_limit" not in names
+    for name, step in (("harvester.d31", 1e-15), ("harvester.end", 1e-6)):
+        own = number_at(given, name)
+        either = (with_numbers(given, {name: own + sign * step}) for sign in (1, -1))
+        above, below = (bd.natural_modes(each, modes=1).frequency[0] for each in either)
+        derivative = found.derivative[names.index(name), 0]
+        assert derivative == pytest.approx((above - below) / (2 * step), rel=1e-4), name
+    assert main(["sensitivities", str(EXAMPLE), "--modes", "1"]) == 0
+    assert "harvester.s11e" in capsys.readouterr().out
 
 
 def test_the_command(capsys, tmp_path):
