@@ -33,6 +33,9 @@ _SAME = 0.2  # relative distance up to which an answer may be the same one
 _NEAR = 0.8  # similarity of a mistyped name: all begin alike
 _ACROSS = "beam.tip.offset_across"
 _OF_OFFSETS = tuple(f"beam.{name}" for name in OFFSETS)
+_COUPLING = "harvester.d31", "harvester.e31"  # of either sign
+_ENDS = "harvester.start", "harvester.end"
+_OF_LOAD = "harvester.resistance", "harvester.strain_limit"  # of which no natural mode knows
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,8 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
         return False
     if table == "damping" or key in ("damping_ratio", "precone"):
         return value != 0
+    if path in _OF_LOAD:
+        return False
     if path == _ACROSS:
         return scene.beam.tip is not None and scene.modelled_beam.torsion_stiffness is not None
     if key.startswith("tip."):
@@ -154,14 +159,13 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
         return SceneNumber(path, unit, value, _STEP)
     if path.endswith("].position"):
         return SceneNumber(path, unit, value, _room_of(beam, path), 0.0)
-    if path.startswith(("mount.", "beam.tip.", "beam.point_")) or path in _OF_OFFSETS:
+    if path.startswith(("mount.", "beam.tip.", "beam.point_")) or path in (*_OF_OFFSETS, *_ENDS):
         mass, bending = mean(beam.mass_per_length) * beam.length, mean(beam.bending_stiffness)
         sizes = {"m": beam.length, "kg": mass, "kg m2": mass * beam.length**2}
         sizes |= {"N m/rad": bending / beam.length, "N/m": bending / beam.length**3}
         step = _STEP * max(abs(value), sizes[unit])
-    return SceneNumber(
-        path, unit, value, step, -math.inf if path in ("beam.tip.offset", _ACROSS, *_OF_OFFSETS) else 0.0
-    )
+    of_any_sign = ("beam.tip.offset", _ACROSS, *_OF_OFFSETS, *_COUPLING)
+    return SceneNumber(path, unit, value, step, -math.inf if path in of_any_sign else 0.0)
 
 
 def _room_of(beam: Beam, path: str) -> float:
