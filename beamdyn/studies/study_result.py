@@ -184,7 +184,7 @@ class Study(StatesModelError):
     def _where_unknown(self, name: str) -> str:
         """The first design of `left_out_places` of which the change by an effect is not known, in words."""
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
-        refused = [(self.status[place] == REFUSED).all() for place in self.left_out_places]
+        refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))
         if not unknown.size:
             return ""

@@ -1,6 +1,7 @@
 """The command of studies: what it shows, writes and refuses."""
 
 import csv
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +9,7 @@ import beamdyn as bd
 from beamdyn.cli import main
 from beamdyn.common.inputs.designs import MOST_DESIGNS
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 TOML = """
 [beam]
 length = "50 mm"
@@ -135,3 +137,14 @@ def test_the_command_refuses_an_unknown_input(tmp_path, capsys):
     (tmp_path / "scene.toml").write_text(TOML)
     assert main(["study", str(tmp_path / "scene.toml"), "--vary", "beam.thicknes=1:2:3 mm"]) == 2
     assert "beam.thickness" in capsys.readouterr().err
+
+
+def test_lengths_are_in_the_unit_of_their_head(capsys):
+    """An amplitude of 0.26 mm; that of a beam of which the change by an effect is not known is shown, too."""
+    given = ["study", str(EXAMPLES / "rolling_harvester.toml"), "--vary", "beam.thickness=0.2:0.3:2 mm"]
+    assert main([*given, "--what", "amplitude"]) == 0
+    printed = capsys.readouterr().out
+    assert "steady amplitude [mm]" in printed and "0.26187" in printed
+    given = ["study", str(EXAMPLES / "bimorph.toml"), "--vary", "harvester.resistance=100:200:2 kohm"]
+    assert main([*given, "--what", "amplitude"]) == 0
+    assert "0.2127" in capsys.readouterr().out

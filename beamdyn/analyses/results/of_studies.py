@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,9 +77,14 @@ def study_columns(result: Study) -> Columns:
     """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
     parts = (result.value, result.error, result.status)
     value, error, status = (each.reshape(result.designs.count, -1).T for each in parts)
+    there = np.isfinite(value)
+    absolute = np.where(there & (value != 0), error, 0.0) * np.where(there, np.abs(value), 0.0)
     kind, units = result.question.kind.word, {each.name: each.unit for each in result.inputs}
     numbers = [_plain_name(label) for label in result.labels] or [""]
-    answers = zip(numbers, result.labels or (kind,), value, map(_answers, value, error, status), strict=True)
+    answers = zip(
+        numbers, result.labels or (kind,), value, absolute, map(_without, value, status), strict=True
+    )
+    form = partial(supported, most=_DIGITS)
     word = kind.replace(" ", "_")
     return Columns(
         *(
@@ -86,22 +92,18 @@ def study_columns(result: Study) -> Columns:
             for name, each in result.designs.columns().items()
         ),
         *(
-            column_named(word, each, result.unit, n, cells=cells, words=head)
-            for n, head, each, cells in answers
+            column_named(word, each, result.unit, n, error=wrong, form=form, cells=cells, words=head)
+            for n, head, each, wrong, cells in answers
         ),
         *(Column("relative_error", each, "", n, words=None) for each, n in zip(error, numbers, strict=True)),
         *(Column("status", each, "", n, words=None) for each, n in zip(status, numbers, strict=True)),
     )
 
 
-def _answers(value: np.ndarray, error: np.ndarray, status: np.ndarray) -> list[str]:
-    """Cells of an answer in all designs: the number, or why there is none."""
-    return [
-        supported(number, wrong * abs(number) if number else 0.0, _DIGITS)
-        if np.isfinite(number)
-        else str(state)
-        for number, wrong, state in zip(value, error, status, strict=True)
-    ]
+def _without(value: np.ndarray, status: np.ndarray) -> list[str | None]:
+    """Why there is no answer, of the designs that have none."""
+    pairs = zip(value, status, strict=True)
+    return [None if np.isfinite(number) else str(state) for number, state in pairs]
 
 
 def _plain_name(label: str) -> str:

@@ -242,9 +242,17 @@ def _for_people(column: Column, units: DisplayUnits) -> Column:
 
 
 def _cells(column: Column) -> Sequence[str | Text]:
-    """Cells of a column in a table."""
-    if column.cells is not None:
-        return column.cells
+    """Cells of a column in a table: those that are given, else its values."""
+    given = column.cells
+    if given is None:
+        return _values(column)
+    if all(each is not None for each in given):
+        return given
+    return [value if cell is None else cell for value, cell in zip(_values(column), given, strict=True)]
+
+
+def _values(column: Column) -> Sequence[str | Text]:
+    """Values of a column as tables write them."""
     form = column.form or (".6g" if column.error is None else supported)
     if isinstance(form, str):
         return [each if isinstance(each, str) else format(each, form) for each in column.plain]

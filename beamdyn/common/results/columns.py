@@ -34,7 +34,7 @@ class Column:
         How tables write a value: a format, or ``form(value, error)``; by default with the digits that its
         error supports, or six.
     cells : sequence, optional
-        What tables show in place of the values.
+        What tables show in place of the values, whatever their unit; None shows the value itself.
     words : str, optional
         Head in tables, without the unit; if "", the name in words and the number.  None keeps the column out
         of tables.
