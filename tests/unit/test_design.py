@@ -69,8 +69,29 @@ def test_the_strain_of_a_study_is_the_largest_of_the_steady_loads():
 def test_where_no_design_meets_the_targets_the_nearest_is_said(targets, is_sure):
     found = bd.design(INWARD, THICKNESS, targets)
     assert not found.found and found.only_one_way == is_sure
-    assert found.sentences()[0].startswith("No design in the bounds has ")
+    said = "No design in the bounds has " if is_sure else "No design was found that has "
+    assert found.sentences()[0].startswith(said)
     assert ("no other comes nearer" in " ".join(found.sentences())) == is_sure
+
+
+@pytest.mark.parametrize(
+    ("tip", "radius", "wanted"), [(1e-3, 0.2, 57.0), (3e-4, 0.1, 78.5), (2e-3, 0.25, 67.7)]
+)
+def test_a_value_is_met_exactly_beside_the_best_of_another(tip, radius, wanted):
+    """The last steps close what is missed when no more designs may be tried."""
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip=bd.TipMass(tip))
+    free = {"beam.thickness": (1e-4, 5e-4), "beam.length": (0.03, 0.08), "beam.tip.mass": (1e-5, 4e-3)}
+    best = bd.Target("critical_speed", best="largest")
+    scene = bd.Scene(beam, bd.Mount(radius=radius))
+    found = bd.design(scene, free, [bd.Target("frequencies", equals=wanted), best])
+    assert found.found and found.solves <= 60
+    np.testing.assert_allclose(found.reached[0], wanted, rtol=1e-10)
+
+
+def test_an_answer_beyond_all_numbers_is_said_in_words():
+    outward = bd.Scene(INWARD.beam, bd.Mount(radius=0.2, setting_angle=np.pi))
+    found = bd.design(outward, THICKNESS, [bd.Target("critical_speed", equals=160.0)])
+    assert "(there it does not buckle)" in found.sentences()[0]
 
 
 def test_the_answer_follows_from_the_seed_alone():

@@ -86,7 +86,7 @@ class FoundDesign(Result):
 
     def headline(self) -> Iterator[str]:
         """Whether a design was found, and its numbers, in one line; see `Result.headline`."""
-        yield "found" if self.found else "no design in the bounds, the nearest"
+        yield "found" if self.found else "none found, the nearest"
         yield from (f"{name} {value:.6g} {unit}".rstrip() for name, value, unit in self._numbers)
         yield from (counted(self.solves, "solve"), warned(self.warnings))
 
@@ -118,9 +118,10 @@ class FoundDesign(Result):
         if missed:
             numbers = joined(", ", (Words(f"{n} = ", say_number(v, u)) for n, v, u in self._numbers))
             said = (Words(self.targets[k].says, f" (there {self._reached(k)})") for k in missed)
-            yield Words(
-                "No design in the bounds has ", joined(" and ", said), "; the nearest is ", numbers, "."
-            )
+            sure = self.only_one_way
+            none = "No design in the bounds has " if sure else "No design was found that has "
+            nearest = "; the nearest is " if sure else "; the nearest found is "
+            yield Words(none, joined(" and ", said), nearest, numbers, ".")
             if self.only_one_way:
                 said = "rise or fall with each number over all designs computed: no other comes nearer"
                 yield f"These answers {said}."
@@ -129,6 +130,10 @@ class FoundDesign(Result):
 
     def _reached(self, k: int) -> str:
         value = float(self.reached[k])
+        if np.isinf(value):
+            return (
+                "it does not buckle" if self.targets[k].what == "critical_speed" else "beyond the top speed"
+            )
         return "no answer" if np.isnan(value) else self.targets[k].amount(value)
 
     def to_dict(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -36,6 +36,7 @@ _CLOSE = 1e-13  # of shares, to which a root is bracketed
 _SCANNED, _SPREAD = 9, 4  # designs with which the search begins: of one number, and for each of several
 _ROUNDING = 4 * np.finfo(float).eps
 _FLAT = 1e-12  # change of the aim at which a minimization ends
+_NEARLY, _CORRECTIONS = 1e-2, 2  # logarithm by which targets are missed that the last steps meet, and these
 _STARTS = 3  # of the search, from the best designs of these
 
 Function = Callable[[np.ndarray], np.ndarray]  # of designs (N, p), with N rows
@@ -100,6 +101,8 @@ class Search:
         Shares of the scene's own numbers.
     discretization, tolerance
         As for `study`.
+    spare : int
+        Designs that are left for the last steps.
     """
 
     scene: Scene
@@ -108,6 +111,7 @@ class Search:
     own: np.ndarray
     discretization: DiscretizationChoice
     tolerance: float | None
+    spare: int = 0
     _computed: dict[bytes, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
     # Answers ----------------------------------------------------------------------------------------
@@ -158,7 +162,7 @@ class Search:
         """
         new = np.array([x for x in shares if x.tobytes() not in self._computed])
         if len(new):
-            if self.solves + len(new) > MOST_SOLVES:
+            if self.solves + len(new) > MOST_SOLVES - self.spare:
                 raise Spent
             rows = zip(new, *self._answers(new), strict=True)
             self._computed.update({x.tobytes(): (value, error) for x, value, error in rows})
@@ -215,11 +219,35 @@ class Search:
     def run(self, seed: int) -> np.ndarray:
         """Search; return the shares (p,) of the best design."""
         with suppress(Spent):
-            self.known(self._first(seed))
-            if len(self.own) == 1:
-                self._bracket()
-            self._descend(self.ranked(self.designs)[:_STARTS])
+            replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
+                seed
+            )  # what it computes is known here, too
+        with suppress(Spent):
+            self._correct(self.ranked(self.designs)[0])
         return self.ranked(self.designs)[0]
+
+    def _explore(self, seed: int) -> None:
+        """Compute designs towards the best one."""
+        self.known(self._first(seed))
+        if len(self.own) == 1:
+            self._bracket()
+        self._descend(self.ranked(self.designs)[:_STARTS])
+
+    def _correct(self, x: np.ndarray) -> None:
+        """Meet targets that a design (p,) misses by little: steps of Newton's and Broyden's methods."""
+        missed = self.missed(x[None])[0]
+        if self._is_met or missed.max() > _NEARLY:
+            return
+        kept = [k for k, each in enumerate(self.targets) if missed[k] > 0 or each.equals is not None]
+        excess = partial(self._some_excess, kept)
+        slopes, own = _slopes(excess, x), excess(x[None])[0]
+        for _ in range(_CORRECTIONS):
+            step = _step_within(slopes, own, x)
+            if not step.any():
+                return
+            x = x + step
+            own = excess(x[None])[0]
+            slopes = slopes + np.outer(own, step) / (step @ step)
 
     def _first(self, seed: int) -> np.ndarray:
         """Designs (N, p) with which the search begins: the own one, and others over the ranges."""
@@ -304,6 +332,19 @@ class Search:
             a, b = a[:, None], b[:, None]
             found = -(a + b) / (a * b) * own + b / (a * (b - a)) * before - a / (b * (b - a)) * after
         return found.T
+
+
+def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """The shortest step (p,) from shares that cancels an excess; numbers that reach bounds stay there."""
+    step, free = np.zeros(len(x)), np.ones(len(x), dtype=bool)
+    while free.any():
+        step[free] = np.linalg.lstsq(slopes[:, free], -excess - slopes[:, ~free] @ step[~free], rcond=None)[0]
+        beyond = free & ((x + step < 0) | (x + step > 1))
+        if not beyond.any():
+            break
+        step[beyond] = np.clip(x + step, 0.0, 1.0)[beyond] - x[beyond]
+        free &= ~beyond
+    return step
 
 
 def _at(function: Function) -> Callable[[np.ndarray], Any]:
