@@ -118,6 +118,7 @@ class Scene(OneLine):
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
             set_fields(self, physics_choice=None)  # the choice was that of another physics
+        _check_layers(self.beam, self.physics)
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
         _check_matrices(self.beam, self.physics)
@@ -348,6 +349,14 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
     if physics.torsion and not physics.camber and beam.section is None:
         needed |= dict.fromkeys(_OF_TORSION, "torsion")
     return needed | ({"axial_stiffness": "stretch"} if physics.stretch else {})
+
+
+def _check_layers(beam: Beam, physics: Physics) -> None:
+    """Refuse camber and torsion of sections with piezoelectric layers, which are those of no rectangle."""
+    for name, lacks in (("camber", beam.section is None), ("torsion", beam.torsion_stiffness is None)):
+        if beam.electrodes is not None and lacks and getattr(physics, name):
+            bound = "it is not modelled of sections with piezoelectric layers"
+            raise InvalidValue(f"physics.{name}", True, bound, "leave it out")
 
 
 def _check_properties(beam: Beam, physics: Physics) -> None:

@@ -123,6 +123,8 @@ def test_outputs_that_a_circuit_does_not_have_are_refused():
     beside = with_numbers(SCENE, {"harvester.start": 0.02})
     with pytest.raises(ValueError, match=r"position = 0\.01 m: the layers begin at 0\.02 m"):
         bd.frequency_response(beside, 20.0, [10.0], output=bd.LayerStrain(0.01))
+    with pytest.raises(ValueError, match=r"camber = True: it is not modelled of sections with piezo"):
+        replace(SCENE, physics=bd.Physics(camber=True))
     with pytest.raises(ValueError, match="short-circuited"):
         replace(SCENE, physics=bd.Physics(large_deflection=True))
 
