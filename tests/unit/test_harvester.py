@@ -192,6 +192,16 @@ def test_sensitivities_of_a_scene_with_layers(capsys):
     assert "harvester.s11e" in capsys.readouterr().out
 
 
+def test_natural_modes_say_their_circuit(capsys, tmp_path):
+    """A load changes none of them: short-circuited, or open."""
+    path = tmp_path / "open.toml"
+    path.write_text(TEXT.replace('"200 kohm"', '"inf"'), encoding="utf-8")
+    for scene, said in ((EXAMPLE, "with the layers short-circuited, by"), (path, "with an open circuit, by")):
+        assert main(["modes", str(scene)]) == 0
+        assert main(["locus", str(scene), "--speeds", "0:50:2 rad/s"]) == 0
+        assert " ".join(capsys.readouterr().out.split()).count(said) == 2
+
+
 def test_the_command(capsys, tmp_path):
     path = tmp_path / "power.csv"
     given = ["harvest", str(EXAMPLE), "--speeds", "40:60:3 rad/s", "--modes", "2", "--csv", str(path)]

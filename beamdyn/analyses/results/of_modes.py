@@ -103,8 +103,18 @@ def modes_columns(result: Modes) -> Columns:
         Column("growth_rate", rate, "1/s", error=np.where(rate == 0, 0.0, size)),
         Column("status", result.status),
         *_kinds(result),
-        title=f"Natural modes at {at}, by {result.provenance.method}",
+        title=f"Natural modes at {at}{_circuit(result)}, by {result.provenance.method}",
         note=said_of_model(result, effects.sentence()),
+    )
+
+
+def _circuit(result: Modes | Locus) -> str:
+    """With which circuit a harvester's natural modes are: none of them has the load."""
+    electrodes = result.scene.beam.electrodes
+    if electrodes is None:
+        return ""
+    return (
+        " with an open circuit" if math.isinf(electrodes.resistance) else " with the layers short-circuited"
     )
 
 
@@ -146,7 +156,7 @@ def locus_table(result: Locus) -> Group:
     words = *words_of_directions(result.scene), *_other_kinds(result)
     letters = "; ".join(f"{word[0]}: mostly {word}" for word in words)
     title = (
-        f"Natural frequencies{letters and f' ({letters})'}, by {result.provenance.method}"
+        f"Natural frequencies{letters and f' ({letters})'}{_circuit(result)}, by {result.provenance.method}"
         f"{selection_note(shown, result.speeds)}"
     )
     columns = Columns(
