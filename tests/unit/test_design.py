@@ -88,6 +88,12 @@ def test_a_value_is_met_exactly_beside_the_best_of_another(tip, radius, wanted):
     np.testing.assert_allclose(found.reached[0], wanted, rtol=1e-10)
 
 
+def test_of_designs_far_from_a_limit_the_nearest_is_found():
+    """A thousand times less than is wanted: 0.4 mm, which is the thickest, has the most."""
+    found = bd.design(INWARD, {"beam.thickness": (1e-4, 4e-4)}, [bd.Target("frequencies", at_least=1e5)])
+    assert not found.found and found.value[0] == 4e-4
+
+
 def test_an_answer_beyond_all_numbers_is_said_in_words():
     outward = bd.Scene(INWARD.beam, bd.Mount(radius=0.2, setting_angle=np.pi))
     found = bd.design(outward, THICKNESS, [bd.Target("critical_speed", equals=160.0)])

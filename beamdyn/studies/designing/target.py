@@ -15,8 +15,8 @@ from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.questions import KINDS, OPTIONS, Kind
 from beamdyn.studies.study import check_window
 
-_FAR = 5.0  # largest logarithm of an answer over what is wanted: also of designs without an answer
-_NONE = 100.0  # that of an answer that shall be the best and is not there, in SI
+_FAR = 5.0  # logarithm of an answer over what is wanted, beyond which it is compressed
+_NONE = 100.0  # that of an answer that is not there
 
 
 class Asked(NamedTuple):
@@ -134,8 +134,8 @@ class Target:
         sign = -1.0 if self.at_most is not None or self.best == "smallest" else 1.0
         with np.errstate(divide="ignore"):
             found = sign * np.log(value / wanted)
-        most = _FAR if self.best is None else _NONE
-        return np.clip(np.where(np.isnan(found), -most, found), -most, most)
+        found = np.clip(np.where(np.isnan(found), -_NONE, found), -_NONE, _NONE)
+        return found if self.best is not None else _compressed(found)
 
     def missed(self, excess: np.ndarray) -> np.ndarray:
         """By how much, as a logarithm, the target is missed; 0 of what shall be the best."""
@@ -163,6 +163,12 @@ class Target:
     def amount(self, value: float) -> str:
         """A value of the answer with its unit."""
         return say_number(value, self.kind.unit)
+
+
+def _compressed(excess: np.ndarray) -> np.ndarray:
+    """Logarithms whose order stays, but that do not outgrow those of other targets."""
+    beyond = np.maximum(np.abs(excess) - _FAR, 0.0)
+    return np.clip(excess, -_FAR, _FAR) + np.sign(excess) * np.log1p(beyond)
 
 
 def say_number(value: float, unit: str) -> str:
