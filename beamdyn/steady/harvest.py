@@ -308,7 +308,7 @@ def best_resistance(
     """Find the load resistance of the largest mean power at a speed, by bounded search.
 
     Resistances are tried over four decades either side of 1/(omega C), with the first natural frequency, and
-    the best is refined by Brent's method, to 1e-6.
+    the best is refined by Brent's method, to 1e-6 for the modes that are kept.
 
     Parameters
     ----------
