@@ -117,6 +117,8 @@ class CriticalPoint(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the critical speed by the effects that the model leaves out, of shape ()."""
+        if self.reason == _LOST:
+            return nothing_known(self.scene, "it is not computed where rotation bends the beam")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -211,12 +213,16 @@ def critical_point(
     check_discretization(discretization)
     if scene.physics.large_deflection and _is_loaded_across(scene):
         if scene.bends_in_space:
-            return _of_bent_beam(
-                scene, discretization, affordable_target(scene, discretization, target), start
-            )
+            return _of_bent_beam(scene, discretization, target, tolerance, start)
         return _argued(scene, Buckling(False, _BENT), start)
     # Large deflection does not change when a straight beam buckles.
-    scene = scene.straightened
+    return _of_straight_beam(scene.straightened, discretization, target, tolerance, start)
+
+
+def _of_straight_beam(
+    scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
+) -> CriticalPoint:
+    """The speed at which a straight beam buckles, by an argument or by a search."""
     target = affordable_target(scene, discretization, target)
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
@@ -228,47 +234,61 @@ def critical_point(
     found, reason = critical_search.search_critical_speed(first, target), buckling.why
     if np.isinf(found.error) and discretization == "fem":
         found = critical_search.search_critical_speed(models(scene, "ritz"), target)
-    if (
-        scene.physics.stretch
-    ):  # the lower of the critical speeds: a basis that resolves it may not see bending's
-        reason = "the rotation softens the stretch by more than the axial stiffness"
-        if sought:
-            without = replace(scene, physics=replace(scene.physics, stretch=False))
-            bending = critical_search.search_critical_speed(models(without, discretization), target)
-            same = min(bending.error + found.error, UNRESOLVED)
-            if np.isfinite(bending.speed) and bending.speed <= found.speed * (1 + same):
-                found, reason = bending, buckling.why
+    if scene.physics.stretch:
+        without = replace(scene, physics=replace(scene.physics, stretch=False))
+        bending = (
+            critical_search.search_critical_speed(models(without, discretization), target) if sought else None
+        )
+        if bending is not None and _is_lower(bending, found):
+            found = bending
+        else:
+            reason = "the rotation softens the stretch by more than the axial stiffness"
     none_below = found.speed  # else it is bounded for a slender beam by planes
     if np.isinf(found.error):
         by_plane = () if scene.physics.stretch else map(bound_critical_speed, separate_planes(scene))
         none_below = min(by_plane, default=0.0 if scene.physics.stretch else buckling.none_below)
-    names = str(found.model.discretization), str(found.coarse.discretization)
     return CriticalPoint(
         speed=found.speed,
         error=found.error,
         none_below=none_below,
         reason=reason,
         warnings=(*_warnings(scene, found, buckling, none_below, discretization, tolerance),),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        provenance=_made_by(found, start),
         scene=scene,
         model=found.model,
     )
 
 
+def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundSpeed) -> bool:
+    """Whether bending is critical first: a basis that resolves stretch may not see bending's speed."""
+    same = min(bending.error + found.error, UNRESOLVED)
+    return bool(np.isfinite(bending.speed)) and bending.speed <= found.speed * (1 + same)
+
+
+def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
+    """The provenance of a search that began at a time."""
+    names = str(found.model.discretization), str(found.coarse.discretization)
+    return Provenance(__version__, *names, perf_counter() - start)
+
+
 def _of_bent_beam(
-    scene: Scene, discretization: DiscretizationChoice, target: float, start: float
+    scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
     """The speed at which a beam that rotation bends from rest on loses its stability."""
+    target = affordable_target(scene, discretization, target)
     models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
     found, is_lost = critical_search.search_bent(models, target)
-    names = str(found.model.discretization), str(found.coarse.discretization)
+    missed = is_lost and tolerance is not None
     return CriticalPoint(
         speed=found.speed if is_lost else np.inf,
         error=found.error if is_lost else 0.0,
         none_below=found.speed,
         reason=_LOST if is_lost else _KEPT,
-        warnings=tuple(warn_of_left_out(scene)),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        warnings=(
+            *warn_of_left_out(scene),
+            *(warn_of_missed_tolerance(found.error, tolerance) if missed else ()),
+        ),
+        provenance=_made_by(found, start),
         scene=scene,
         model=None,
     )

@@ -21,6 +21,7 @@ _OF_SHORTEST = 4 * float(np.finfo(float).eps)  # rounding error times the cube o
 _ROUNDING_OF_BENT = (
     1e-10  # relative: the stiffness whose sign is sought is small beside those that add up to it
 )
+_MESHES_OF_BENT = 1e-5  # least error at which meshes of a bent beam aim: each costs as much as all before
 _TO_HALF = 4  # steps from a basis to one of about half its size
 
 
@@ -103,6 +104,8 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
     Where it does not, the speed is the largest that was tried.
     """
     found, is_lost = compare_bent(next(models))
+    if found.model.discretization.order is not None:
+        target = max(target, _MESHES_OF_BENT)
     while is_lost and found.error > max(target, 3 * found.rounding) and (finer := next(models, None)):
         found, is_lost = compare_bent(finer)
     return found, is_lost
@@ -113,7 +116,13 @@ def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
     solver, coarse = model.solver, model.compared.solver
     assert isinstance(solver, DeflectedSolver) and isinstance(coarse, DeflectedSolver)
     (squared, is_lost), (of_coarse, also) = (find_loss_of_stability(s.load) for s in (solver, coarse))
-    margin = (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor
-    error = margin * abs(of_coarse / squared - 1) / 2 + _ROUNDING_OF_BENT
+    error = _margin(model) * abs(of_coarse / squared - 1) / 2 + _ROUNDING_OF_BENT
     error = error if is_lost and also else np.inf
     return FoundSpeed(model, model.compared, float(np.sqrt(squared)), error, _ROUNDING_OF_BENT), is_lost
+
+
+def _margin(model: Model) -> float:
+    """Error over the distance from the model compared with: of a mesh of twice the elements at most 1."""
+    if model.discretization.order is not None:
+        return 1.0
+    return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor

@@ -13,6 +13,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.modes.modal import equilibrium
 from beamdyn.scene.profile import to_profile
 from benchmarks.cases.elastica import harvester_at
 
@@ -154,3 +155,24 @@ def test_an_effect_that_large_deflection_excludes_is_refused_without_a_word_on_w
         InvalidValue, match=r"camber = True: this analysis models large deflection.*; leave it out"
     ):
         ask(scene, 50.0)
+
+
+def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tip without stiffness would coil by ever more turns, and the search would not end."""
+    swept = bd.Beam.from_stiffness(
+        1.0,
+        1.0,
+        1.0,
+        second_bending_stiffness=1.0,
+        torsion_stiffness=1e-3,
+        rotary_inertia=1e-4,
+        second_rotary_inertia=1e-4,
+        sweep=bd.Table([0.0, 0.5, 1.0], [0.0, 0.0, 0.5]),
+    )
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    scene = bd.Scene(swept, bd.Mount(0.2, np.pi, np.pi / 2), physics=physics)
+    whole = bd.critical_point(scene, bd.Ritz(6))
+    monkeypatch.setattr(equilibrium, "_COILED", 0.1)
+    short = bd.critical_point(scene, bd.Ritz(6))
+    assert whole.speed == short.speed == np.inf
+    assert 0 < short.none_below < whole.none_below

@@ -132,7 +132,18 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
 
 def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:
     """Number of negative eigenvalues of the symmetric Jacobian at a solution: 0 where it is stable."""
-    return int((np.linalg.eigvalsh(problem.jacobian(q, p)) < 0).sum())
+    matrix = problem.jacobian(q, p)
+    return int((scaled_eigenvalues(matrix, np.diag(matrix)) < 0).sum())
+
+
+def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
+    """Eigenvalues (n,) of a symmetric matrix in coordinates that make a diagonal one of +-1, from the lowest.
+
+    Their signs are those of the matrix itself (Sylvester), which rounding hides where coordinates are of
+    unlike sizes, as those of short elements are.
+    """
+    size = np.sqrt(np.where(diagonal == 0, 1.0, np.abs(diagonal)))
+    return np.linalg.eigvalsh(matrix / np.outer(size, size))
 
 
 def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:

@@ -20,6 +20,7 @@ from beamdyn.modes.modal.continuation import (
     find_at,
     find_turning_point,
     follow,
+    scaled_eigenvalues,
     solve_at,
     start_curve,
 )
@@ -30,8 +31,8 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles below which two equilibria are one [rad]
 _NEAR = 0.01  # difference of slope angles by which that of a coarse discretization may differ [rad]
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
-
 _FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
+_COILED = 2 * math.pi  # angle of a section [rad] beyond which no loss of stability is sought
 
 
 class NoEquilibrium(ArithmeticError):
@@ -222,18 +223,21 @@ def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
             if after.p_rate < 0:
                 return find_turning_point(load, before, after).p, True
             if count_negative(load, after.q, after.p):
-                least = partial(_least_stiffness, load, before, after)
+                diagonal = np.diag(load.jacobian(before.q, before.p))
+                least = partial(_least_stiffness, load, before, after, diagonal)
                 return float(brentq(least, before.p, after.p, xtol=1e-14 * after.p)), True
             before = after
-            if after.p > _FASTEST**2 * load.scale:
+            if after.p > _FASTEST**2 * load.scale or np.abs(after.q @ load.angles).max() > _COILED:
                 break
     return before.p, False
 
 
-def _least_stiffness(load: SteadyLoad, before: Point, after: Point, squared: float) -> float:
-    """Lowest eigenvalue of the stiffness at a squared speed between two points of a branch."""
+def _least_stiffness(
+    load: SteadyLoad, before: Point, after: Point, diagonal: np.ndarray, squared: float
+) -> float:
+    """Lowest eigenvalue of the stiffness at a squared speed between two points of a branch, scaled."""
     q = find_at(load, before, after, squared)
-    return float(np.linalg.eigvalsh(load.jacobian(q, squared))[0])
+    return float(scaled_eigenvalues(load.jacobian(q, squared), diagonal)[0])
 
 
 def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
