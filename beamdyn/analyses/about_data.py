@@ -23,6 +23,7 @@ from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.scene.measured_curves import MeasuredCurves
+from beamdyn.scene.numbers import is_speed
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
@@ -238,11 +239,15 @@ def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
         If a name is not known, or bounds are not two values with a unit.
     """
     found: dict[str, tuple[float, float] | None] = {}
-    known = [*{entry.path: entry for entry in numbers(describe(SceneInput))}.values()]
+    known = {entry.path: entry for entry in numbers(describe(SceneInput))}
     for part in filter(None, (each.strip() for each in text.split(","))):
         words = f'--free = "{part}"'
         key, _, bounds = (each.strip() for each in part.partition("="))
-        entry = find_input(known, key, words)
+        if is_speed(key):  # which each analysis refuses in its own words
+            found[key] = None
+            continue
+        of_beam = f"beam.{key}"  # of names without a table, that of the beam before those of its layers
+        entry = known[of_beam] if of_beam in known else find_input([*known.values()], key, words)
         found[entry.path] = _bounds(bounds, entry.quantity.unit, words) if bounds else None
     if not found:
         raise ValueError('--free: give the unknown numbers, e.g. "beam.thickness, mount.root_stiffness"')

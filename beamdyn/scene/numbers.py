@@ -74,6 +74,11 @@ def is_of_motion(path: str) -> bool:
     return path.startswith("motion.")
 
 
+def is_speed(path: str) -> bool:
+    """Whether a path is that of the speed, or of one of the motion, which analyses take in its place."""
+    return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
+
+
 def _is_of_a_part(path: str) -> bool:
     """Whether a path is that of a number of what not every scene has: its motion, or a harvester."""
     return is_of_motion(path) or path.startswith(_HARVESTER)
@@ -90,7 +95,7 @@ def check_path(argument: str, path: object) -> str:
         bound = "the name of an input is a string"
         raise InvalidValue(argument, path, bound, 'give one such as "beam.thickness"')
     if unit_of(path) is None:
-        near = difflib.get_close_matches(path, units(), n=1)
+        near = [SPEED] if is_speed(path) else difflib.get_close_matches(path, units(), n=1)
         raise InvalidValue(argument, path, "unknown input", f"give {near[0] if near else ', '.join(units())}")
     return path
 

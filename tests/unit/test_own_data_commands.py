@@ -75,6 +75,19 @@ def test_what_is_not_told_is_refused_after_it_is_shown(capsys):
         (("identify", SCENE, *MEASURED, "--free", "thicknes"), "did you mean thickness"),
         (("identify", SCENE, *MEASURED, "--free", "beam.thickness=1 mm"), "give two bounds and a unit"),
         (("identify", SCENE, *MEASURED, "--free", ","), "give the unknown numbers"),
+        (
+            ("identify", SCENE, *MEASURED, "--free", "motion.rotation.speed"),
+            "the speeds are those of the data",
+        ),
+        (("identify", SCENE, *MEASURED, "--free", "speed=1:2 rpm"), "the speeds are those of the data"),
+        (
+            ("identify", SCENE, *MEASURED, "--free", "motion.duration"),
+            '--free = "motion.duration": it is no number',
+        ),
+        (
+            ("design", SCENE, "--free", "motion.speed", "--so-that", "frequency 1 = 62 Hz"),
+            "is no number of a scene",
+        ),
     ],
 )
 def test_mistakes_are_refused(words, said, capsys):

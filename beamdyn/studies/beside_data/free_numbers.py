@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from beamdyn.common.inputs.checks import InvalidValue, positive
-from beamdyn.scene.numbers import check_path, number_at, with_numbers
+from beamdyn.scene.numbers import check_path, is_speed, number_at, with_numbers
 from beamdyn.scene.profile import mean
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber, numbers_of
@@ -121,8 +121,11 @@ def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeN
     if not isinstance(free, Mapping) or not free:
         bound = "give the numbers that are unknown, by their names"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
+    if speed := next((path for path in free if isinstance(path, str) and is_speed(path)), ""):
+        bound = "the speeds are those of the data, whose frequencies depend on no other"
+        raise InvalidValue("free", speed, bound, "leave it out, and give the data their speeds")
     paths = [check_path("free", path) for path in free]
-    made = numbers_of(opened(scene, paths), paths)
+    made = numbers_of(opened(scene, paths), paths, "free")
     return tuple(_free(scene, number, free[number.name]) for number in made)
 
 

@@ -16,7 +16,7 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.scene.numbers import SPEED, check_path, number_at, unit_of, with_numbers
+from beamdyn.scene.numbers import check_path, is_speed, number_at, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.designing.found_design import FoundDesign
 from beamdyn.studies.designing.search import Ranges, Search
@@ -104,9 +104,10 @@ def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) ->
 
 
 def _check_bounds(scene: Scene, path: str, bounds: object) -> VariedInput:
-    if check_path("free", path) == SPEED:
+    if isinstance(path, str) and is_speed(path):
         bound = "the speed is no number of a scene"
         raise InvalidValue("free", path, bound, "give targets their speeds")
+    check_path("free", path)
     own = number_at(scene, path)
     if bounds is None and own and np.isfinite(own):
         bounds = sorted((own / 2, own * 2))

@@ -82,8 +82,10 @@ def check_names(inputs: object) -> tuple[str, ...] | None:
     return tuple(dict.fromkeys(inputs))
 
 
-def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneNumber, ...]:
-    """The numbers of a scene, all or those that are named.
+def numbers_of(
+    scene: Scene, names: Sequence[str] | None = None, argument: str = "inputs"
+) -> tuple[SceneNumber, ...]:
+    """The numbers of a scene, all or those that an argument names.
 
     Raises
     ------
@@ -96,11 +98,11 @@ def numbers_of(scene: Scene, names: Sequence[str] | None = None) -> tuple[SceneN
     for name in names:
         if name == "speed":
             bound = "a critical or resonance speed is an answer, and no input"
-            raise InvalidValue("inputs", name, bound, "leave it out")
+            raise InvalidValue(argument, name, bound, "leave it out")
         if name not in found:
             near = difflib.get_close_matches(str(name), found, n=1, cutoff=_NEAR)
             remedy = f"give {near[0] if near else ', '.join(found)}"
-            raise InvalidValue("inputs", name, "it is no number of this scene", remedy)
+            raise InvalidValue(argument, name, "it is no number of this scene", remedy)
     return tuple(found[name] for name in names)
 
 
