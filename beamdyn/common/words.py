@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from typing import Self
 
+_LONG = 10.0  # length [m] from which on it is in m everywhere
+
 
 class Words(str):
     """A text made of parts, some of which each medium words in its own way.
@@ -104,8 +106,13 @@ class Setting(Named):
 
 
 def amount(*values: Any, unit: str = "m", digits: int = 6) -> Named:
-    """A length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or degrees."""
+    """A length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or degrees.
+
+    Lengths from 10 m on are in m everywhere.
+    """
     small, factor = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}[unit]
+    if unit == "m" and max(map(abs, values), default=0.0) >= _LONG:
+        small, factor = "m", 1.0
     return Named(_placed(values, digits, unit), _placed([factor * value for value in values], 6, small))
 
 

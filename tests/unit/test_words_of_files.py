@@ -10,6 +10,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli import main
 from beamdyn.common.edge.units import InvalidInput, quantity
+from beamdyn.common.words import amount
 
 ROLLING = "examples/rolling_harvester.toml"
 STRIP = Path("examples/tyre_harvester.toml").read_text()
@@ -116,3 +117,8 @@ def test_the_top_speed_of_a_wheel_may_be_that_of_the_vehicle(capsys, command: st
     assert main([command, ROLLING, "--top-speed", "59.4 km/h", *more]) == 0
     assert "up to 55 rad/s" in capsys.readouterr().out
     assert main([command, "examples/blade.toml", "--top-speed", "60 km/h"]) == 2
+
+
+def test_lengths_from_ten_metres_on_are_in_metres():
+    assert [amount(each).elsewhere for each in (0.05, 9.99, 31.6)] == ["50 mm", "9990 mm", "31.6 m"]
+    assert amount(0.5, -12.0).elsewhere == "(0.5, -12) m"
