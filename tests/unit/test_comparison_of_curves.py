@@ -120,7 +120,10 @@ def test_a_phase_that_is_off_is_told_where_the_response_is_largest():
     found = bd.compare(DAMPED, data)
     np.testing.assert_allclose(found.phase, 0.1, rtol=1e-9)  # of rounding alone
     np.testing.assert_allclose(found.rms, abs(np.exp(0.1j) - 1), rtol=1e-9)
-    assert "5.7 deg ahead there" in found.sentences()[0]
+    (said,) = found.sentences()
+    assert (
+        "is the same as 0.00023028 m" in said and "5.73 deg ahead there: outside the numerical error" in said
+    )
     assert bd.compare(DAMPED, replace(data, phase=None)).rms[0] < 1e-9
 
 
@@ -184,3 +187,14 @@ def test_a_history_up_to_the_end_of_a_recorded_motion():
     late = 1e-3
     data = bd.MeasuredHistory(times, run.deflection(np.maximum(times - late, 0.0)), rounding=1e-12)
     np.testing.assert_allclose(bd.compare(scene, data).delay, late, rtol=1e-3)
+
+
+def test_a_curve_beside_nothing_left_out_is_outside_its_data_alone():
+    positions, pressed = [0.0, 0.025], np.array([-0.3729, -0.1742])
+    strip = bd.Beam.from_stiffness(0.05, 0.0157, 0.001333)
+    scene = bd.Scene(strip, bd.Mount(radius=0.215))
+    off = bd.MeasuredLoads(positions, 2 * pressed, ["axial"], speed=50.0, rounding=5e-5)
+    (said,) = bd.compare(scene, off).sentences()
+    assert said.endswith("outside the data's uncertainty (0.0067 %).")
+    exact = replace(off, rounding=0.0)
+    assert bd.compare(scene, exact).sentences()[0].endswith("outside the numerical error.")

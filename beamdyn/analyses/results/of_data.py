@@ -92,7 +92,7 @@ def curve_columns(result: CurveComparison) -> Columns:
 
     shift = {"time": ("behind [s]", f"{result.delay:.4g}"), "frequency": ("phase ahead [deg]", "")}
     head, late = shift.get(result.along, ("", ""))
-    phases = [late or (f"{np.degrees(value):.3g}" if np.isfinite(value) else "-") for value in result.phase]
+    phases = [late or (_phase(value) if np.isfinite(value) else "-") for value in result.phase]
     at = result.places, np.arange(len(units))
     own = result.allowance[at] / np.where(result.peak == 0, np.inf, result.peak)
     return Columns(
@@ -108,6 +108,11 @@ def curve_columns(result: CurveComparison) -> Columns:
         title=f"Measured and computed over {result.along}, by {result.provenance.method}",
         note="\n".join(in_files(said, result.display_units) for said in result.sentences()),
     )
+
+
+def _phase(phase: float) -> str:
+    """A phase in degrees, to a hundredth."""
+    return f"{round(float(np.degrees(phase)), 2) + 0.0:.3g}"
 
 
 def curve_csv(result: CurveComparison) -> Columns:

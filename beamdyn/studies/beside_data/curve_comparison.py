@@ -16,7 +16,7 @@ from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words, amount
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, OUTSIDE
+from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 UNKNOWN = "not known"  # verdict where the numerical error is not
 _DIGITS = 5  # of values in sentences
 _FEW = 100  # values up to which they are drawn as points
+_IN_PHASE = 1e-3  # phase up to which there is none to name [deg]
+_VAIN = 1.0  # model error over the largest value from which on it decides nothing
 _TURNED = 0.5  # share of the difference that the other sign leaves, up to which the sign counts as turned
 _WIDE = 0.8  # width of lines through more values than a picture has dots
 
@@ -193,8 +195,9 @@ class CurveComparison(Result):
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
             return ("beside none in the model",)
-        side = "low" if deviation < 0 else "high"
-        return f"{percent(abs(deviation))} {side} of " if deviation else "the same as ", computed
+        if abs(deviation) <= NOTHING:
+            return "the same as ", computed
+        return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed
 
     def _where(self, at: float) -> str:
         """A time, speed, position or frequency in words."""
@@ -212,22 +215,24 @@ class CurveComparison(Result):
     def _shifted(self, k: int) -> str:
         """What the phase is, in words; empty if there is nothing to say."""
         phase = float(np.degrees(self.phase[k]))
-        if not np.isfinite(phase):
+        if not abs(phase) > _IN_PHASE:  # False for nan, too
             return ""
         side = "ahead" if phase > 0 else "behind"
         if self.along == "frequency":
-            return f", {abs(phase):.2g} deg {side} there" if phase else ""
-        late = f"{abs(self.delay):.3g} s ({abs(phase):.2g} deg of its main frequency)"
-        return f", with {late} {side} taken out" if self.delay else ""
+            return f", {abs(phase):.3g} deg {side} there"
+        late = f"{abs(self.delay):.3g} s ({abs(phase):.3g} deg of its main frequency)"
+        return f", with {late} {side} taken out"
 
     def _reason(self, k: int) -> str:
         """The verdict on one curve in words."""
-        left_out = percent(float(self.model_error[k]))
-        own = percent(float(_over(self.allowance[self.places[k], k], self.peak[k])))
+        left_out = float(self.model_error[k])
+        own = float(_over(self.allowance[self.places[k], k], self.peak[k]))
+        vain = ", which is as large as the curve itself and decides nothing" if left_out >= _VAIN else ""
+        of_data = f"the data's uncertainty ({percent(own)} of the largest) and " if own > NOTHING else ""
         return {
-            AGREES: f"within the data's uncertainty ({own} of the largest) and the numerical error",
-            LEFT_OUT: f"within what the model leaves out ({left_out})",
-            OUTSIDE: f"outside what the model leaves out ({left_out}) and the data's uncertainty ({own})",
+            AGREES: f"within {of_data}the numerical error",
+            LEFT_OUT: f"within what the model leaves out ({percent(left_out)}){vain}",
+            OUTSIDE: outside(left_out, own),
             UNKNOWN: "no verdict, as the numerical error is not known",
         }[self.verdict[k]]
 

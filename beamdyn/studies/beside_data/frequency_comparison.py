@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
+NOTHING = 1e-9  # relative change up to which there is none to name
 _DIGITS = 6  # of frequencies in sentences
 _PLACES = 61  # speeds at which a picture draws the model
 _ONE_SPEED = 0.1  # share of the first angular frequency up to which a picture of one speed goes
@@ -168,15 +169,16 @@ class FrequencyComparison(Result):
     def _say(self, k: int, words: str) -> Words:
         """One deviation in words."""
         deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
-        side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'}" if deviation else "the same"
+        side = "the same as"
+        if abs(deviation) > NOTHING:
+            side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of"
         left_out, own = (float(each[k] / self.computed[k]) for each in (self.model_error, self.allowance))
-        of_data = f" and the data's uncertainty ({percent(own)})" if own else ""
-        said = words.format(left_out=percent(left_out)) + of_data * (words == _WORDS[OUTSIDE])
+        said = outside(left_out, own) if words == OUTSIDE else words.format(left_out=percent(left_out))
         start = f"{self.label[k]} at "
         return Words(
             start,
             Speeds(self.speed[k]),
-            f": {self.measured[k]:.{_DIGITS}g} Hz is {side} of {computed}, {said}",
+            f": {self.measured[k]:.{_DIGITS}g} Hz is {side} {computed}, {said}",
         )
 
     def _explained(self) -> Iterator[str]:
@@ -201,7 +203,11 @@ class FrequencyComparison(Result):
         return mark_points(ax, speeds * per_si, self.measured, self.source or "measured")
 
 
-_WORDS = {
-    OUTSIDE: "outside what the model leaves out ({left_out})",
-    LEFT_OUT: "within what the model leaves out ({left_out})",
-}
+_WORDS = {OUTSIDE: OUTSIDE, LEFT_OUT: "within what the model leaves out ({left_out})"}
+
+
+def outside(left_out: float, own: float) -> str:
+    """That a value is off by more than both: what the model leaves out, and the data's uncertainty [1]."""
+    each = (left_out, "what the model leaves out"), (own, "the data's uncertainty")
+    limits = [f"{name} ({percent(size)})" for size, name in each if size > NOTHING]
+    return f"outside {' and '.join(limits) or 'the numerical error'}"

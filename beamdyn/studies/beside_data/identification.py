@@ -16,7 +16,7 @@ from beamdyn.common.results.statements import joined
 from beamdyn.common.words import Words
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyComparison
 from beamdyn.studies.beside_data.separability import NotSeparable
 from beamdyn.studies.beside_data.single_numbers import say_value
 
@@ -123,11 +123,10 @@ class Identification(Result):
             said = "cannot be told apart by these data" if many else "is not told by these data"
             more = joined(" or ", each.measurements) if each.measurements else "to keep one of them fixed"
             yield Words(joined(" and ", each.names), f" {said}. What would help: ", more, ".")
-        left_out = np.nan_to_num(self.comparison.model_error / self.comparison.computed)
-        yield (
-            f"The deviations that remain are {percent(self.scatter)} of the frequencies; "
-            f"what the model leaves out would change them by up to {percent(float(left_out.max()))}."
-        )
+        left_out = float(np.nan_to_num(self.comparison.model_error / self.comparison.computed).max())
+        up_to = f"what the model leaves out would change them by up to {percent(left_out)}"
+        more = f"; {up_to}." if left_out > NOTHING else "."
+        yield f"The deviations that remain are {percent(self.scatter)} of the frequencies{more}"
         yield from (f"Far off, and not left out: {each}." for each in self.outliers)
         alone = [k for k, mode in enumerate(self.comparison.mode) if not mode]
         for k in alone:
