@@ -82,7 +82,7 @@ def test_shapes_at_other_points_are_refused():
         bd.MeasuredFrequencies([62.0], positions=[0.0, 0.05], shapes=shapes)
     strip = bd.Scene(bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0))
     data = bd.MeasuredFrequencies([62.0], positions=[0.01, 0.03, 0.06], shapes=shapes)
-    with pytest.raises(ValueError, match=r"positions = 0.06 m: .* from 0 to the length"):
+    with pytest.raises(ValueError, match=r"positions = 0.06 m: .* from 0 to its length"):
         bd.compare(strip, data)
 
 

@@ -102,7 +102,7 @@ def read_csv(
     """
     lines = [line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)]
     if not lines:
-        raise text.lacking("expected a line of heads with units, such as 'x [m], mass [kg/m]'")
+        raise text.lacking("expected a line of heads with their units in brackets")
     head_line, *rest = lines
     outside = re.sub(r"[\[(][^\])]*[\])]", "", text.lines[head_line - 1])  # of the brackets of units
     delimiter = max(_DELIMITERS, key=outside.count)
@@ -146,7 +146,7 @@ def _read_head(
     """Read a head, and refuse a unit that is missing, unknown or of another kind."""
     match = _HEAD.fullmatch(cell)
     if match is None or not match[1] or to_number(cell) is not None:
-        raise text.refusal(line, f"expected a head such as 'mass [kg/m]', found {quote(cell)}")
+        raise text.refusal(line, f"expected a head with its unit in brackets, found {quote(cell)}")
     # Units in the spelling read elsewhere: N m2 for Nm^2 and N-m^2, as in files on wind turbines.
     head, unit = match[1], re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", (match[2] or "").strip())
     unit, plain = re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", unit), plain_name(head)
