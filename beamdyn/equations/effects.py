@@ -53,6 +53,8 @@ class Effect:
 
     def is_in(self, scene: Scene) -> bool:
         """Whether the model of a scene has the effect."""
+        if self is ROTARY_INERTIA and scene.twists_in_space:
+            return True
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:

@@ -190,6 +190,11 @@ class Scene(OneLine):
         return chosen.large_deflection and bool(others or is_oblique)
 
     @property
+    def twists_in_space(self) -> bool:
+        """Whether sections twist and tilt in space, by any angle: with all of their rotary inertia."""
+        return self.physics.torsion and self.bends_in_space
+
+    @property
     def straightened(self) -> Scene:
         """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
 
@@ -197,7 +202,13 @@ class Scene(OneLine):
         large deflection alone has.
         """
         torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
-        straight = replace(self.physics, large_deflection=False, branch="straight", torsion=torsion)
+        straight = replace(
+            self.physics,
+            large_deflection=False,
+            branch="straight",
+            torsion=torsion,
+            rotary_inertia=self.physics.rotary_inertia or self.twists_in_space,
+        )
         if self.beam.is_curved or self.beam.matrices is not None:
             beam = replace(self.beam, sweep=None, prebend=None, matrices=None)
             return replace(self, beam=beam, physics=straight)

@@ -413,3 +413,22 @@ def test_equations_that_have_no_eigenvalue_give_none(entry: float) -> None:
     M = np.full((2, 2), entry)
     pencil = SteadyPencil(M, NONE, NONE, M, NONE, np.zeros(2))
     assert np.isnan(shift_eigenvalues(pencil, 0.0, np.array([1j]), np.eye(2)[:, :1])).all()
+
+
+def test_torsion_in_space_has_all_rotary_inertia_and_leaves_none_out():
+    strip = bd.Beam.rectangular(0.4, 0.03, 0.003, 70e9, 2700.0, poissons_ratio=0.33)
+    mount = bd.Mount(0.1, np.pi, np.pi / 2, root_stiffness=40.0, second_root_stiffness=900.0)
+    asked, unasked = (
+        bd.natural_modes(
+            bd.Scene(
+                strip, mount, physics=bd.Physics(2, rotary_inertia=of, torsion=True, large_deflection=True)
+            ),
+            60.0,
+        )
+        for of in (True, False)
+    )
+    np.testing.assert_allclose(asked.frequency, unasked.frequency, rtol=1e-12)
+    assert "rotary inertia of sections" not in unasked.left_out_effects.changes
+    np.testing.assert_allclose(
+        unasked.left_out_effects.total_of_known, asked.left_out_effects.total_of_known, rtol=1e-6
+    )
