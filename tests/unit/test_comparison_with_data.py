@@ -10,6 +10,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
+from beamdyn.studies.beside_data.single_numbers import say_value
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
 SCENE = bd.Scene(STRIP, bd.Mount(radius=0.215))
@@ -99,3 +100,8 @@ def test_modes_without_a_value_and_values_without_a_mode_are_named():
 def test_another_kind_of_data_is_refused():
     with pytest.raises(ValueError, match=r"read a file by bd.read_measurements"):
         bd.compare(SCENE, [62.1])  # type: ignore[arg-type]
+
+
+def test_a_density_is_said_without_an_exponent():
+    assert say_value(7853.4, "kg/m3") == "7850 kg/m3"
+    assert say_value(2.0e-4, "m").elsewhere == "0.2 mm"

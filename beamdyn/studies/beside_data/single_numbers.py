@@ -31,6 +31,7 @@ _SOLVES = 25  # of one number
 _TOLERANCE = 1e-7  # relative change at which its fit ends
 _MATTERS = 1e-3  # least relative change of a frequency by a whole change of a number
 _DIGITS = 3  # of values in sentences
+_WHOLE = 6  # places before the point up to which a rounded value has no exponent
 _USUAL = {"Pa": ("GPa", 1e-9), "kg": ("g", 1e3)}
 _NOTHING = 1e-5  # relative deviation up to which none is left
 _TIE = 3  # decimals of remaining deviations that are told apart
@@ -159,5 +160,6 @@ def say_value(value: float, unit: str, digits: int = _DIGITS) -> str:
     if unit in ("m", "rad"):
         return amount(rounded, unit=unit)
     usual, size = _USUAL.get(unit, (unit, 1.0))
-    said = (f"{each:.{digits}g} {name}".rstrip() for each, name in ((rounded, unit), (rounded * size, usual)))
+    shown = max(digits, _WHOLE)
+    said = (f"{each:.{shown}g} {name}".rstrip() for each, name in ((rounded, unit), (rounded * size, usual)))
     return Named(*said)
