@@ -32,6 +32,7 @@ _SAME = 1e-6  # difference of slope angles below which two equilibria are one [r
 _NEAR = 0.01  # difference of slope angles by which that of a coarse discretization may differ [rad]
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
 _FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
+_SOUGHT = 20.0  # the same, to which a loss of stability is sought: beyond, boundary layers make steps short
 _COILED = 2 * math.pi  # angle of a section [rad] beyond which no loss of stability is sought
 
 
@@ -227,7 +228,7 @@ def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
                 least = partial(_least_stiffness, load, before, after, diagonal)
                 return float(brentq(least, before.p, after.p, xtol=1e-14 * after.p)), True
             before = after
-            if after.p > _FASTEST**2 * load.scale or np.abs(after.q @ load.angles).max() > _COILED:
+            if after.p > _SOUGHT**2 * load.scale or np.abs(after.q @ load.angles).max() > _COILED:
                 break
     return before.p, False
 
