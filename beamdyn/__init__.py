@@ -151,7 +151,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.study import study
     from beamdyn.studies.study_result import Study
     from beamdyn.studies.tradeoffs.tradeoff import Tradeoff, tradeoff
-    from beamdyn.transient.harvested import TransientHarvest, transient_harvest
+    from beamdyn.transient.harvested_energy import TransientHarvest, transient_harvest
     from beamdyn.transient.scipy_integrators import GaussCollocation
     from beamdyn.transient.simulate import simulate
     from beamdyn.transient.sweep import Sweep, SweepInterrupted, sweep

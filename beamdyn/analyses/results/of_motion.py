@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from beamdyn.steady.crossings import Crossings
     from beamdyn.steady.harvest import Harvest
     from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.harvested import TransientHarvest
+    from beamdyn.transient.harvested_energy import TransientHarvest
     from beamdyn.transient.sweep import Sweep
     from beamdyn.transient.transient import Transient
 

@@ -89,7 +89,7 @@ def design(
     own = ranges.shares(np.where(np.isfinite(given), given, middle))
     search = Search(scene, ranges, targets, own, discretization, tolerance)
     x = search.run(count("seed", seed, 0))
-    return _Told(search, x).result(given, start)
+    return _BestDesign(search, x).result(given, start)
 
 
 def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) -> tuple[VariedInput, ...]:
@@ -131,8 +131,8 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
 
 
 @dataclass(frozen=True)
-class _Told:
-    """What a search tells of its best design, of shares (p,)."""
+class _BestDesign:
+    """The best design of a search, by its shares (p,), and what is said of it."""
 
     search: Search
     x: np.ndarray
