@@ -53,6 +53,7 @@ PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall"
 READERS = {
     "beamdyn/analyses/about_loads.py",
     "beamdyn/analyses/about_linear_models.py",
+    "beamdyn/analyses/about_wanted_answers.py",
     "beamdyn/analyses/values.py",
     "beamdyn/app/scene_form.py",
     "beamdyn/analyses/about_campbell.py",
@@ -76,6 +77,7 @@ READERS = {
     "beamdyn/files/scenes.py",
     "beamdyn/common/plots/campbell.py",
     "beamdyn/scene/numbers.py",
+    "brakes/answers/finding.py",
 }
 PROBE = "import sys; from benchmarks.house import probe; probe(sys.argv[1:])"
 
