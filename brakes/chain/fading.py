@@ -75,7 +75,7 @@ def fade_of_stops(
     ...     stopped, drums, 0.39, lambda mu: 0.728 * mu / 0.39, stops=3, friction_curve=curve
     ... )
     >>> found.angle.round(1)  # rad: each stop is longer
-    array([51.4, 57.9, 67. ])
+    array([53.7, 60.4, 70.1])
     """
     kind("braked", braked, BrakedStop)
     stop, force = braked.stop, braked.actuation.actuator_force

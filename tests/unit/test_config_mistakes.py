@@ -255,7 +255,7 @@ from tests.unit.toml_scenes import (
         ("beam.twist", 10, 'beam.twist = 10: give a unit, e.g. "10 rad" or "10 deg"'),
         ("beam.twist", {"polynomial": ["0 deg", 5]}, "beam.twist.polynomial[1] = 5: give a unit, e.g."),
         ("modle", {}, "modle: unknown key; did you mean model?"),
-        (" ", 1, " : unknown key; known are beam, mount, motion, model, damping, physics"),
+        (" ", 1, " : unknown key; known are beam, mount, motion, model, damping, harvester, physics"),
     ],
 )
 def test_mistake_names_key_value_and_remedy(path, value, message):

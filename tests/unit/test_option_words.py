@@ -24,7 +24,7 @@ MESSAGES = [
     (("response", ROLLING, "--frequencies", "5 Hz", "--output", "tip across"), "[physics] planes = 2"),
     (("random", ROLLING, "--road", "A", "--input", "n1"), '--input = "n1"'),
     (("random", TYRE, "--road", "A"), "[motion]: missing: a road needs the rolling radius"),
-    (("random", ROLLING, "--road", "A"), "[model] damping_ratio = 0"),
+    (("random", ROLLING, "--road", "A"), "--damping-ratio = 0"),
     (("random", ROAD, "--road", "A", "--highest", "1e-9 1/m"), "it must be below --highest = 1e-09 1/m"),
     (("random", ROAD, "--road", "A", "--input", "force@tip"), '--input = "force@tip"'),
     (("random", ROAD, "--road", "A", "--input", "force@2 mm across"), '--input = "force@2 mm across"'),
