@@ -196,6 +196,7 @@ def test_values_to_begin_with_are_around_what_is_given(document):
         "caliper": ("dimensions.clearance", "1:1.5:21 mm"),
         "mechanism": ("points.E.y", "-32:-48:21 mm"),
         "scene": ("mount.bending_angle", "0:1:21 deg"),
+        "deck": ("deck.length", "32:48:21 m"),
     }
     friction = float(work.entries.get("brake.friction", "0"))  # of all others
     others = "brake.friction", f"{0.8 * friction:.3g}:{1.2 * friction:.3g}:21"
