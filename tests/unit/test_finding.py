@@ -112,8 +112,18 @@ def test_the_largest_of_a_level_answer_is_at_its_range():
     ("answer", "target", "values", "said"),
     [
         (lambda n: 2.0 * n, 8.0, [4.0], "answer = 8 at input = 4"),
-        (lambda n: 2.0 * n, 7.0, [4.0], "answer passes 7 from input = 3 (6) to 4 (8): 4 is the first past it"),
-        (lambda n: 12.0 / n, 7.0, [2.0], "answer passes 7 from input = 1 (12) to 2 (6): 2 is the first past it"),
+        (
+            lambda n: 2.0 * n,
+            7.0,
+            [4.0],
+            "answer passes 7 from input = 3 (6) to 4 (8): 4 is the first past it",
+        ),
+        (
+            lambda n: 12.0 / n,
+            7.0,
+            [2.0],
+            "answer passes 7 from input = 1 (12) to 2 (6): 2 is the first past it",
+        ),
         (lambda n: n * (8 - n), 12.0, [2.0, 6.0], "answer = 12 at input = 2 and 6"),
         (lambda n: 2.0 * n, 30.0, [], "none from 1 to 10: answer is at most 20, at input = 10"),
         (

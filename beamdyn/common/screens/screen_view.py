@@ -225,27 +225,16 @@ class ScreenView:
     def solve(self, held: bool = False) -> None:
         """Have the present entries solved, and the answer shown when it comes; the last one stays until then.
 
-        What changes meanwhile is solved next, its last state alone.  Where tables take long, as they state
-        errors of the model, the drawing is made first.
+        What changes meanwhile is solved next, its last state alone.
 
         Parameters
         ----------
         held : bool
             Whether something is being dragged: then as far as the drawing shows it.
         """
-        tasks = [page_tasks.solve_for_drawing, page_tasks.solve]
-        if self._answered is None or not (held or self._draws_first):
-            tasks = tasks[1:]
-        elif held:
-            tasks = tasks[:1]
-        entries = dict(self.work.entries)
-        self._way.want(*(partial(self._make, task, entries) for task in tasks))
+        task = page_tasks.solve_for_drawing if held and self._answered else page_tasks.solve
+        self._way.want(partial(self._make, task, dict(self.work.entries)))
         self.state()
-
-    @property
-    def _draws_first(self) -> bool:
-        """Whether the drawing is solved before the tables: these took long, and it is not there yet."""
-        return self._way.usual > 0 and not self._partial and self.screen.picture is None
 
     async def settled(self) -> None:
         """Wait until the present entries have been solved."""
@@ -341,15 +330,15 @@ class ScreenView:
 
     def show(self) -> None:
         """Show the latest answer, and the design that it is compared with."""
-        answered, waits = self._answered, self.dragged or self._partial
+        answered, held = self._answered, self.dragged
         if answered is None:
             return
         with self._writer.writing(self._headline, self._good):
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()
-        toggle(self._tables, "waits", waits)
-        if not waits:  # while a point is moved, its drawing alone follows
+        toggle(self._tables, "waits", held)
+        if not held:  # while a point is moved, its drawing alone follows
             self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
             for more in self._made:
