@@ -29,7 +29,7 @@ def solved(document):
 
 
 def inputs(page):
-    (text,) = re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)
+    text = re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)[0]  # a deck's scene is another
     return tomllib.loads(unescape(text))
 
 
