@@ -29,7 +29,7 @@ def solved(document):
 
 
 def inputs(page):
-    text = re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)[0]  # a deck's scene is another
+    text = re.findall(r"<pre>(.*?)</pre>", page, re.DOTALL)[-1]  # after the scene that a deck makes
     return tomllib.loads(unescape(text))
 
 
