@@ -278,16 +278,15 @@ def _of_bent_beam(
     target = affordable_target(scene, discretization, target)
     models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
     found, is_lost = critical_search.search_bent(models, target)
-    missed = is_lost and tolerance is not None
+    warnings = [*warn_of_left_out(scene)]
+    if is_lost and tolerance is not None:
+        warnings += warn_of_missed_tolerance(found.error, tolerance)
     return CriticalPoint(
         speed=found.speed if is_lost else np.inf,
         error=found.error if is_lost else 0.0,
         none_below=found.speed,
         reason=_LOST if is_lost else _KEPT,
-        warnings=(
-            *warn_of_left_out(scene),
-            *(warn_of_missed_tolerance(found.error, tolerance) if missed else ()),
-        ),
+        warnings=tuple(warnings),
         provenance=_made_by(found, start),
         scene=scene,
         model=None,
