@@ -22,8 +22,8 @@ class Started:
         self.futures[name] = asyncio.get_running_loop().create_future()
         return self.futures[name]
 
-    def want(self, *names):
-        self.way.want(*(lambda name=name: self.start(name) for name in names))
+    def want(self, name):
+        self.way.want(lambda: self.start(name))
 
     async def end(self, name):
         self.futures[name].set_result(name)
@@ -31,23 +31,16 @@ class Started:
             await asyncio.sleep(0)
 
 
-def test_a_drawing_is_shown_before_its_tables_and_both_give_way_to_what_is_newer(monkeypatch):
+def test_what_waits_gives_way_to_what_is_newer(monkeypatch):
     monkeypatch.setattr("nicegui.background_tasks.create", asyncio.ensure_future)
 
     async def body():
         made = Started()
-        made.want("drawing 1", "tables 1")
-        await made.end("drawing 1")
-        made.want("drawing 2", "tables 2")
-        await made.end("tables 1")
-        await made.end("drawing 2")
-        await made.end("tables 2")
-        assert made.shown == [
-            ("drawing 1", False),
-            ("tables 1", False),
-            ("drawing 2", False),
-            ("tables 2", True),
-        ]
+        for name in ("first", "second", "third"):
+            made.want(name)
+        await made.end("first")
+        await made.end("third")
+        assert made.shown == [("first", False), ("third", True)] and [*made.futures] == ["first", "third"]
         assert not made.way.busy
 
     asyncio.run(body())

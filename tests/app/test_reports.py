@@ -42,6 +42,7 @@ def test_report_has_inputs_results_drawings_and_version(document):
     drawings = len(document.screens) + sum(part.title == "Free bodies" for part in more)
     assert page.count("data:image/svg+xml;base64,") == drawings
     assert inputs(page) == tomllib.loads(work.text()) == tomllib.loads(document.base)
+    assert page.count("<pre>") == (2 if document.name == "deck" else 1)
     assert f"beamdyn {__version__}" in page
     assert all(f"# {path} = {text}" in page for path, text in document.aside.items())
     for screen in document.screens:

@@ -91,8 +91,7 @@ def test_lateral_buckling_of_a_blade_that_its_carrier_pushes() -> None:
     below, above = (bd.natural_modes(found.scene, k * found.speed, 1) for k in (1 - 1e-5, 1 + 1e-5))
     assert not np.real(below.eigenvalue).any() and np.real(above.eigenvalue).any()
     shallow = bd.critical_point(deep_blade(WEAK, 1.0), bd.Ritz(6))
-    # It is sought to 20 times the first frequency at rest, 3.516 sqrt(EI/(m L^4)).
-    assert shallow.speed == np.inf and shallow.none_below > 20 * 3.516 * np.sqrt(WEAK)
+    assert shallow.speed == np.inf and shallow.none_below > 100 * np.sqrt(WEAK)
 
 
 def test_a_mesh_finds_the_speed_at_which_a_deep_strip_buckles_sideways() -> None:

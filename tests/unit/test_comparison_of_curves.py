@@ -100,6 +100,12 @@ def test_verdicts_ask_the_data_first_then_the_model():
         "within the model error",
     )
     assert replace(found, error=np.full((2, 1), np.inf)).verdict == ("not known",)
+    vain = replace(found, model_error=np.array([14.14]), allowance=np.zeros((2, 1)))
+    assert vain.verdict == ("not known",)
+    assert (
+        "no verdict, as what the model leaves out (1414 %) is more than the curve itself"
+        in vain.sentences()[0]
+    )
 
 
 def test_a_largest_value_that_is_off_is_outside_though_the_whole_is_near():

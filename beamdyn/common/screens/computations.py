@@ -48,8 +48,7 @@ class LatestComputation:
     ) -> None:
         self.slow, self.waited, self.usual = False, 0.0, 0.0
         self._show, self._fail, self._tell = settle, fail, tell
-        self._wanted: list[Callable[[], asyncio.Future[Any]]] = []
-        self._outdated = False  # whether others have been asked for since the one under way began
+        self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
         self._task: asyncio.Task[None] | None = None
 
@@ -58,19 +57,19 @@ class LatestComputation:
         """Whether something is under way."""
         return self._task is not None
 
-    def want(self, *starts: Callable[[], asyncio.Future[Any]]) -> None:
-        """Start computations, one after the other; they follow the one under way in place of what waited."""
-        self._wanted, self._outdated = [*starts], True
-        while self._task is None and self._wanted:
+    def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
+        """Start a computation, or let it follow the one under way in place of another that waited."""
+        self._wanted = start
+        if self._task is None:
             future = self._next()
             if future.done():
-                self._settle(future, not self._wanted)
+                self._settle(future, True)
             else:
                 self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
         """End the computation under way; nothing follows it."""
-        self._wanted = []
+        self._wanted = None
         if self._future is not None:
             self._future.cancel()
 
@@ -81,7 +80,8 @@ class LatestComputation:
 
     def _next(self) -> asyncio.Future[Any]:
         """Start what is wanted; the future of what cannot be started holds the error."""
-        start, self._outdated = self._wanted.pop(0), False
+        assert self._wanted is not None
+        start, self._wanted = self._wanted, None
         try:
             self._future = start()
         except Exception as error:
@@ -122,12 +122,12 @@ class LatestComputation:
                 await asyncio.wait([future], timeout=SOON)
                 while not future.done():
                     self._count(monotonic() - start)
-                    if self._outdated and self.waited > _PATIENCE:
+                    if self._wanted is not None and self.waited > _PATIENCE:
                         future.cancel()
                     await asyncio.wait([future], timeout=SOON)
                 if self.slow and not future.cancelled():
                     self.usual = monotonic() - start
-                if not self._wanted:
+                if self._wanted is None:
                     break
                 done, future = future, self._next()
                 await asyncio.sleep(0)  # it is on its way before the last one is shown, which takes its time

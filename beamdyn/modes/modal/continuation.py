@@ -92,7 +92,7 @@ def start_curve(problem: Problem, q: np.ndarray, p: float, towards: float) -> Po
     return _normalized(problem, q, p, q_rate, 1.0, towards)
 
 
-def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterator[Point]:
+def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
     """Yield the points of a curve, beginning after `start`, in steps that follow its curvature.
 
     Parameters
@@ -103,6 +103,8 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
         A point of the curve.
     longest : float
         Longest step, by the change of the slope angles, or of the parameter over its size.
+    easy : int
+        Iterations of Newton's method up to which the next step is longer.
 
     Raises
     ------
@@ -127,7 +129,7 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST) -> Iterato
         # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
         by_angles, by_parameter = _metric(problem, point.q_rate, 0.0), 1 / (1 + abs(point.p) / problem.scale)
         most = longest * (1 / max(by_angles, by_parameter))
-        step = min(most, 1.5 * step) if iterations <= _EASY else max(step / 2, _SHORTEST)
+        step = min(most, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
 
 def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:

@@ -32,7 +32,8 @@ _SAME = 1e-6  # difference of slope angles below which two equilibria are one [r
 _NEAR = 0.01  # difference of slope angles by which that of a coarse discretization may differ [rad]
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
 _FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
-_SOUGHT = 20.0  # the same, to which a loss of stability is sought: beyond, boundary layers make steps short
+_SOUGHT = 30.0  # the same, to which a loss of stability is sought: beyond, boundary layers make steps short
+_PATIENT = 8  # iterations that a step may take there: in boundary layers the last ones gain a few digits each
 _COILED = 2 * math.pi  # angle of a section [rad] beyond which no loss of stability is sought
 
 
@@ -220,7 +221,7 @@ def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
 
     before = start_curve(load, np.zeros(load.elastica.size), 0.0, 1.0)
     with suppress(NotConverged):
-        for after in follow(load, before):
+        for after in follow(load, before, easy=_PATIENT):
             if after.p_rate < 0:
                 return find_turning_point(load, before, after).p, True
             if count_negative(load, after.q, after.p):

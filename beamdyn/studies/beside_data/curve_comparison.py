@@ -21,11 +21,11 @@ from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, N
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-UNKNOWN = "not known"  # verdict where the numerical error is not
+UNKNOWN = "not known"  # verdict where the numerical error is not, or what is left out may change all
 _DIGITS = 5  # of values in sentences
 _FEW = 100  # values up to which they are drawn as points
 _IN_PHASE = 1e-3  # phase up to which there is none to name [deg]
-_VAIN = 1.0  # model error over the largest value from which on it decides nothing
+_VAIN = 1.0  # model error over the largest value above which it decides nothing
 _TURNED = 0.5  # share of the difference that the other sign leaves, up to which the sign counts as turned
 _WIDE = 0.8  # width of lines through more values than a picture has dots
 
@@ -151,6 +151,7 @@ class CurveComparison(Result):
         """Verdict on each curve: "agrees", "within the model error", "outside" or "not known"; shape (C,).
 
         Both the largest value and the root mean square of the difference have to be within the bounds.
+        A model error larger than the curve decides nothing.
         """
         at = self.places, np.arange(len(self.name))
         off = np.array([np.abs(self.peak - self.computed_peak), _rms(self.measured - self.computed)])
@@ -159,9 +160,10 @@ class CurveComparison(Result):
         each = [
             ~np.isfinite(sure).all(axis=0),
             (off <= sure).all(axis=0),
+            self.model_error > _VAIN,
             (off <= sure + left_out).all(axis=0),
         ]
-        return tuple(np.select(each, [UNKNOWN, AGREES, LEFT_OUT], OUTSIDE).tolist())
+        return tuple(np.select(each, [UNKNOWN, AGREES, UNKNOWN, LEFT_OUT], OUTSIDE).tolist())
 
     @property
     def agrees(self) -> bool:
@@ -227,13 +229,15 @@ class CurveComparison(Result):
         """The verdict on one curve in words."""
         left_out = float(self.model_error[k])
         own = float(_over(self.allowance[self.places[k], k], self.peak[k]))
-        vain = ", which is as large as the curve itself and decides nothing" if left_out >= _VAIN else ""
+        lacking = "the numerical error is not known"
+        if left_out > _VAIN:
+            lacking = f"what the model leaves out ({percent(left_out)}) is more than the curve itself"
         of_data = f"the data's uncertainty ({percent(own)} of the largest) and " if own > NOTHING else ""
         return {
             AGREES: f"within {of_data}the numerical error",
-            LEFT_OUT: f"within what the model leaves out ({percent(left_out)}){vain}",
+            LEFT_OUT: f"within what the model leaves out ({percent(left_out)})",
             OUTSIDE: outside(left_out, own),
-            UNKNOWN: "no verdict, as the numerical error is not known",
+            UNKNOWN: f"no verdict, as {lacking}",
         }[self.verdict[k]]
 
     def plot(self, ax: Axes | None = None) -> Axes:

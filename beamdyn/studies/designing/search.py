@@ -68,7 +68,7 @@ class Ranges:
         low, high, positive = self._ends
         ratio = np.where(positive, high / np.where(positive, low, 1.0), 1.0)
         found = np.where(positive, low * ratio**shares, low + (high - low) * shares)
-        return np.where(shares == 1, high, found)
+        return np.where(shares >= 1 - _CLOSE, high, np.where(shares <= _CLOSE, low, found))
 
     def shares(self, values: np.ndarray) -> np.ndarray:
         """Shares (p,) of values, within the bounds."""

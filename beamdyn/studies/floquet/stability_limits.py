@@ -90,7 +90,7 @@ class StabilityLimits(Result):
                 *self.place[self.curve == k].T,
                 color=COLOURS[1],
                 linewidth=1.2,
-                label="" if k > 1 else "followed",
+                label="" if k > 1 else "limit by continuation",
             )
         return add_legend(ax)
 
