@@ -24,4 +24,5 @@ ax.annotate(
     f"{1e6 * found.power[at]:.0f} µW at {km_per_hour[at]:.0f} km/h",
     (speeds[at], found.power[at]),
     xytext=(72, 2 * found.power[at]),
+    arrowprops={"arrowstyle": "-", "color": "0.4"},
 )
